@@ -31,7 +31,7 @@ def test_numpy_cloud_to_scans(tmp_path):
 
 def only_tells_of_the_path(errors):
     """The street has cars where the vehicle drove; points of these are left out, and that is said."""
-    return errors.count("Warning: ") == errors.count("are where the recording vehicle drove")
+    return errors.count("Warning: ") == errors.count("are in the driven path of the recording vehicle")
 
 
 def test_sensor_from_csv(tmp_path):

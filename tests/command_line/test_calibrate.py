@@ -111,7 +111,7 @@ class Calibrate(ProgramTest):
         (sequence / "poses.txt").write_text("\n".join(lines) + "\n")
         words = ["calibrate", sequence, "--own-body", "0", "--overwrite", "-o", self.folder / "out"]
         # By such poses no points tell that the sensor was at rest within scans.
-        warning, report = "taken as if it stood still", self.folder / "report.json"
+        warning, report = "assumed to be at rest", self.folder / "report.json"
         self.run_warned(warning, *words, "--report", report)
         mount = json.loads(report.read_text(encoding="utf-8"))["mount"]
         self.assertIs(mount["applied"], True)

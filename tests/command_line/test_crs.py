@@ -137,7 +137,7 @@ class PartsOfFiles(ProgramTest):
         found = self.report("info", self.cloud, "--extent", "2,-1,5,9")["files"][0]
         self.assertAlmostEqual(found["points"], inside, delta=3)  # floats of 0.1 um, not mm
         self.run_bad(65, "info", las, "--extent", "0,0,1,1",
-                     says=["no point of", "a.las", "x 0 .. 1", "by its header"])
+                     says=["no point of", "a.las", "x 0 .. 1", "the header of"])
         # In the millimetres of the file.
         said = self.run_bad(65, "info", las, "--extent", "0.1,0,1,0.30000000000000004").stderr
         self.assertIn("x 0.1 .. 1, y 0 .. 0.3;", said)

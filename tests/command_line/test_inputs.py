@@ -32,7 +32,7 @@ class Folders(ProgramTest):
                          (self.folder / "same.ply").read_bytes())
         other = scans / "sequences" / "01"
         shutil.copytree(scans / "sequences" / "00", other)
-        self.run_bad(64, "model", scans, "-o", self.folder / "m.ply", says=["very same pose"])
+        self.run_bad(64, "model", scans, "-o", self.folder / "m.ply", says=["start at the same pose"])
         poses = (other / "poses.txt").read_text().splitlines()
         (other / "poses.txt").write_text("".join(
             " ".join(line.split()[:11] + [str(float(line.split()[11]) + 0.5)]) + "\n"
@@ -198,7 +198,7 @@ class Dropped(ProgramTest):
         report = self.folder / "near.json"
         result = run(*command, "--own-body", "2.5", "--report", report)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("2.5 m, left out", result.stderr)
+        self.assertIn("2.5 m and are removed", result.stderr)
         self.assertEqual(json.loads(report.read_text())["points_own_body"], near)
         self.run_bad(64, *self.model_of("none.xyz", self.rows()), "--own-body", "2",
                      says=["where it was"])

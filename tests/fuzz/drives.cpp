@@ -5,15 +5,13 @@
 #include <vector>
 
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
-#include "adasplats/cloud/load/nuscenes_scene.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/pandaset_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/cloud/sequence/kitti_raw.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
@@ -60,7 +58,7 @@ void read_times(const Input& input) {
 
 void read_boxes(const Input& input) {
   const MovingBoxes boxes(input.file);
-  boxes.hold(0.5, {1, 2, 3});
+  boxes.contains(0.5, {1, 2, 3});
 }
 
 void open_kitti(const Input& input) { require_sound(open_kitti_sequence(input.folder)); }

@@ -44,11 +44,11 @@ constexpr FuzzTarget kTargets[] = {
      kZstdWindow_mb},
     {"ros-message", "", "io/bags/ros_values.cpp io/bags/ros_reader.h", &read_ros_message},
     {"unpack", "", "io/bags/unpack.cpp", &read_packed_bytes, 1 * kKiB, kZstdWindow_mb},
-    {"clouds", "a.mcap", "cloud/load/recording_survey.cpp cloud/load/recorded_trajectory.cpp",
+    {"clouds", "a.mcap", "cloud/load/recording_drive.cpp cloud/load/recording_poses.cpp",
      &survey_clouds, 4 * kKiB, kZstdWindow_mb},
     {"pcap", "a.pcap", "io/packets", &read_capture},
     {"packet", "", "sensors/packet_decoder.cpp", &read_packet, 26 * kKiB},
-    {"capture", "a.pcap", "cloud/load/packet_survey.cpp", &survey_capture, 8 * kKiB},
+    {"capture", "a.pcap", "cloud/load/packet_drive.cpp", &survey_capture, 8 * kKiB},
     // Places
     {"obj", "a.obj", "io/text/obj.cpp scene/mesh_model.cpp", &read_mesh},
     {"mesh-ply", "a.ply", "scene/mesh_model.cpp io/ply", &read_mesh},
@@ -83,8 +83,7 @@ constexpr FuzzTarget kTargets[] = {
      "v1.0-mini/scene.json v1.0-mini/sample.json v1.0-mini/sample_data.json "
      "v1.0-mini/sensor.json v1.0-mini/calibrated_sensor.json v1.0-mini/ego_pose.json "
      "v1.0-mini/lidarseg.json v1.0-mini/category.json",
-     "cloud/load/nuscenes_scene.cpp cloud/load/nuscenes_drive.cpp cloud/load/json_rows.cpp",
-     &open_nuscenes},
+     "cloud/load/nuscenes_drive.cpp cloud/load/json_rows.cpp", &open_nuscenes},
     // Settings
     {"sensor-toml", "a.toml", "sensors/lidar_toml.cpp sensors/lidar_file.cpp", &read_lidar_file},
     {"sensor-json", "a.json", "sensors/lidar_ouster.cpp", &read_lidar_file},

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load/packet_survey.h"
-#include "adasplats/cloud/load/recorded_trajectory.h"
-#include "adasplats/cloud/load/recording_survey.h"
+#include "adasplats/cloud/load/packet_drive.h"
+#include "adasplats/cloud/load/recording_drive.h"
+#include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/io/bags/recording.h"

@@ -11,7 +11,7 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/data_tree.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/packet_drive.h"
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"

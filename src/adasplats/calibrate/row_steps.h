@@ -10,7 +10,6 @@
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/cloud/points/laser_offsets.h"
-#include "adasplats/cloud/points/laser_ray.h"
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/symmetric_eigen.h"

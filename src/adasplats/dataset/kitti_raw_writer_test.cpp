@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "adasplats/cloud/sequence/kitti_raw.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"

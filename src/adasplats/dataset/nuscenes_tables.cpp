@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/poses/sensor_axes.h"
 #include "adasplats/dataset/nuscenes_categories.h"
 #include "adasplats/dataset/oxts_records.h"
 #include "adasplats/dataset/scan_values.h"

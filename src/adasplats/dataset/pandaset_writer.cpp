@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/poses/sensor_axes.h"
 #include "adasplats/dataset/driver_order.h"
 #include "adasplats/dataset/oxts_records.h"
 #include "adasplats/dataset/pandaset_frames.h"

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "adasplats/cloud/poses/kitti_poses.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/poses/kitti_poses.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"

@@ -50,7 +50,7 @@ std::size_t view_bin(double azimuth_rad) {
 struct SweptRings {
   std::vector<std::vector<AzimuthPoint>> points;  ///< by ring, ascending
   std::vector<double> elevations_rad;             ///< NaN: not known
-  std::size_t columns = 0;                        ///< of a turn; 0: the step cannot be told
+  std::size_t columns = 0;                        ///< of a turn; 0: unknown
   std::vector<double> phases;                     ///< steps from azimuth 0 to the ring's firings
 };
 
@@ -290,7 +290,7 @@ std::vector<std::size_t> regions_with_blocks(std::vector<std::uint8_t> cells, st
   return kept;
 }
 
-/// Where the sensor was at an azimuth, told by the points there: it moves as it turns.
+/// Where the sensor was at an azimuth, from the points there: it moves as it turns.
 class SweepOrigins {
  public:
   SweepOrigins(const PointCloud& cloud, const SweptRings& sweep, const EmptyBeamOptions& options)
@@ -310,7 +310,7 @@ class SweepOrigins {
   }
 
   /// By the nearest point of the ring; of any ring where that one is far or the sensor moved much
-  /// from one side to the other, as at the seam of a sweep. Nothing where neither tells.
+  /// from one side to the other, as at the seam of a sweep. Nothing if both fail.
   std::optional<Vec3f> find(std::size_t ring, double azimuth_rad) const {
     const Nearest of_ring = nearest_in(sweep_.points[ring], azimuth_rad);
     if (of_ring.is_near && of_ring.moved_m < options_.max_moved_m) return of_ring.origin;

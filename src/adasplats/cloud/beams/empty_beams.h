@@ -21,8 +21,8 @@ struct EmptyBeamOptions {
   /// p, that is p at most: where it passes, 3 x 3 cells are empty by chance once in 50,000. KITTI's
   /// HDL-64E has 0.83, PandaSet's Pandar64 0.95.
   double min_regular = 0.7;
-  std::size_t min_ring_points = 20;  ///< of a ring in a scan that tell its elevation there
-  /// Azimuth to the point that tells a beam's origin, and how far the sensor may have moved between
+  std::size_t min_ring_points = 20;  ///< of a ring in a scan, to estimate its elevation there
+  /// Azimuth to the point that gives a beam's origin, and how far the sensor may have moved between
   /// the points on both sides: either must hold, of points of its own ring both.
   double max_away_rad = 10 * kDegree;
   double max_moved_m = 0.1;
@@ -38,11 +38,10 @@ struct EmptyBeamOptions {
 /// in the world (by 3 degrees), in connected regions of (ring, column) that hold three by three
 /// empty cells. No evidence is: what lies beyond the field of view (azimuths without points in all
 /// scans), a column without any point if some of its beams go down (they would have met the ground:
-/// the column was not measured), rings that never have points, beams far from any point that tells
-/// their origin.
-/// Give it the cloud before points are taken away: where one was, its beam did return. Glass and
-/// what is too far away return nothing either. By scans; empty where the rings or the steps cannot
-/// be told. Time: a sort by scans and a few passes over the points.
+/// the column was not measured), rings that never have points, beams far from any point that could
+/// give their origin. Call it before points are removed: where one was, its beam did return. Glass
+/// and distant objects return nothing either. By scans; empty if the rings or the steps cannot be
+/// determined. Time: a sort by scans and a few passes over the points.
 std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeamOptions& options,
                                         const Executor& executor);
 

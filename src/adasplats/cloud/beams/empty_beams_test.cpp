@@ -103,7 +103,7 @@ TEST(EmptyBeams, OfATiltedSensorWhoseStepsAreWiderThanTheGapsBetweenItsRings) {
 }
 
 TEST(EmptyBeams, FarFromAllPointsOnlyWhereTheSensorHardlyMoved) {
-  // Looks up along the street, so that a wide part of the sweep is sky; then across it, which tells
+  // Looks up along the street, so that a wide part of the sweep is sky; then across it, which shows
   // that the field of view holds that part.
   SpinningSensor sensor = pitched();
   sensor.world_from_sensor = rotation_from_yaw_pitch_roll(1.57, 45 * kDegree, 0.02);

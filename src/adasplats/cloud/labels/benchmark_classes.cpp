@@ -65,7 +65,7 @@ bool is_semantickitti(const LabelScheme& labels) {
          });
 }
 
-BenchmarkClass judged(const SemanticClass& c) {
+BenchmarkClass as_benchmark_class(const SemanticClass& c) {
   return {c.name, c.group, c.mobility != Mobility::fixed};
 }
 
@@ -74,7 +74,8 @@ std::vector<BenchmarkClass> classes_of_benchmark(const LabelScheme& labels) {
   for (const auto& [from, to] : kSemanticKittiBenchmark) {
     if (from != to || from == kNothing) continue;
     const SemanticClass* const own = labels.find(from);
-    classes.push_back(judged(own != nullptr ? *own : *semantickitti_labels().find(from)));
+    classes.push_back(
+        as_benchmark_class(own != nullptr ? *own : *semantickitti_labels().find(from)));
   }
   return classes;
 }
@@ -86,7 +87,7 @@ BenchmarkClasses::BenchmarkClasses(const LabelScheme& labels) : scheme_(labels.n
   if (is_mapped) classes_ = classes_of_benchmark(labels);
   for (const SemanticClass& c : labels.classes()) {
     const bool is_new = c.name != kNothing && number_of(c.name) == classes_.size();
-    if (!is_mapped && is_new) classes_.push_back(judged(c));
+    if (!is_mapped && is_new) classes_.push_back(as_benchmark_class(c));
   }
   number_of_id_.resize(1 << 16);
   number_of_id_.front() = classes_.size();

@@ -53,7 +53,7 @@ std::string why_nothing_is_removed(const PointCloud& cloud, const LabelScheme* l
                                    DynamicRemoval removal) {
   if (removal == DynamicRemoval::none) return "";
   if (cloud.classes.empty()) return "the points have no labels";
-  if (labels == nullptr) return "the points have labels but `labels` does not say what they mean";
+  if (labels == nullptr) return "labels have no scheme (name it with `labels`, for example asprs)";
   if (can_remove(*labels, removal)) return "";
   const std::string scheme = "the label scheme '" + labels->name() + "' has no class that is ";
   if (removal == DynamicRemoval::moving && can_remove(*labels, DynamicRemoval::movable)) {

@@ -3,6 +3,7 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -111,6 +112,134 @@ const LabelScheme& paris_carla_3d_labels() {
                                    {21, "water", ground, fixed, {45, 60, 150}},
                                    {22, "terrain", ground, fixed, {145, 170, 100}}});
   return scheme;
+}
+
+// Groups as above; colours are our own, alike for like classes.
+
+const LabelScheme& pandaset_labels() {
+  using enum SemanticGroup;
+  using enum Mobility;
+  static const LabelScheme scheme(
+      "pandaset", {{0, "unlabeled", surface, fixed, {0, 0, 0}},
+                   {1, "Smoke", non_surface, fixed, {120, 120, 120}},
+                   {2, "Exhaust", non_surface, fixed, {130, 120, 110}},
+                   {3, "Spray or rain", non_surface, fixed, {110, 130, 150}},
+                   {4, "Reflection", non_surface, fixed, {200, 200, 220}},
+                   {5, "Vegetation", non_surface, fixed, {0, 175, 0}},
+                   {6, "Ground", ground, fixed, {150, 240, 80}},
+                   {7, "Road", ground, fixed, {255, 0, 255}},
+                   {8, "Lane Line Marking", ground, fixed, {150, 255, 170}},
+                   {9, "Stop Line Marking", ground, fixed, {130, 235, 170}},
+                   {10, "Other Road Marking", ground, fixed, {110, 215, 170}},
+                   {11, "Sidewalk", ground, fixed, {75, 0, 75}},
+                   {12, "Driveway", ground, fixed, {255, 150, 255}},
+                   {13, "Car", surface, movable, {100, 150, 245}},
+                   {14, "Pickup Truck", surface, movable, {90, 120, 230}},
+                   {15, "Medium-sized Truck", surface, movable, {80, 60, 200}},
+                   {16, "Semi-truck", surface, movable, {80, 30, 180}},
+                   {17, "Towed Object", surface, movable, {60, 60, 160}},
+                   {18, "Motorcycle", non_surface, movable, {30, 60, 150}},
+                   {19, "Other Vehicle - Construction Vehicle", surface, movable, {0, 40, 230}},
+                   {20, "Other Vehicle - Uncommon", surface, movable, {0, 0, 255}},
+                   {21, "Other Vehicle - Pedicab", surface, movable, {40, 40, 255}},
+                   {22, "Emergency Vehicle", surface, movable, {0, 90, 255}},
+                   {23, "Bus", surface, movable, {100, 80, 250}},
+                   {24, "Personal Mobility Device", non_surface, movable, {150, 30, 90}},
+                   {25, "Motorized Scooter", non_surface, movable, {60, 90, 180}},
+                   {26, "Bicycle", non_surface, movable, {100, 230, 245}},
+                   {27, "Train", surface, movable, {0, 0, 205}},
+                   {28, "Trolley", surface, movable, {20, 0, 205}},
+                   {29, "Tram / Subway", surface, movable, {40, 0, 205}},
+                   {30, "Pedestrian", non_surface, movable, {255, 30, 30}},
+                   {31, "Pedestrian with Object", non_surface, movable, {255, 60, 60}},
+                   {32, "Animals - Bird", non_surface, movable, {230, 90, 140}},
+                   {33, "Animals - Other", non_surface, movable, {230, 60, 140}},
+                   {34, "Pylons", linear, fixed, {255, 140, 0}},
+                   {35, "Road Barriers", non_surface, fixed, {255, 120, 50}},
+                   {36, "Signs", linear, fixed, {255, 0, 0}},
+                   {37, "Cones", linear, fixed, {255, 160, 0}},
+                   {38, "Construction Signs", linear, fixed, {255, 60, 0}},
+                   {39, "Temporary Construction Barriers", non_surface, fixed, {235, 120, 50}},
+                   {40, "Rolling Containers", surface, movable, {120, 90, 60}},
+                   {41, "Building", surface, fixed, {255, 200, 0}},
+                   {42, "Other Static Object", surface, fixed, {50, 255, 255}}});
+  return scheme;
+}
+
+const LabelScheme& nuscenes_labels() {
+  using enum SemanticGroup;
+  using enum Mobility;
+  static const LabelScheme scheme(
+      "nuscenes", {{0, "noise", non_surface, fixed, {0, 0, 0}},
+                   {1, "animal", non_surface, movable, {230, 60, 140}},
+                   {2, "human.pedestrian.adult", non_surface, movable, {255, 30, 30}},
+                   {3, "human.pedestrian.child", non_surface, movable, {255, 60, 60}},
+                   {4, "human.pedestrian.construction_worker", non_surface, movable, {255, 90, 30}},
+                   {5, "human.pedestrian.personal_mobility", non_surface, movable, {150, 30, 90}},
+                   {6, "human.pedestrian.police_officer", non_surface, movable, {220, 30, 90}},
+                   {7, "human.pedestrian.stroller", non_surface, movable, {220, 90, 90}},
+                   {8, "human.pedestrian.wheelchair", non_surface, movable, {200, 60, 120}},
+                   {9, "movable_object.barrier", non_surface, fixed, {255, 120, 50}},
+                   {10, "movable_object.debris", non_surface, fixed, {160, 110, 70}},
+                   {11, "movable_object.pushable_pullable", surface, movable, {120, 90, 60}},
+                   {12, "movable_object.trafficcone", linear, fixed, {255, 160, 0}},
+                   {13, "static_object.bicycle_rack", non_surface, fixed, {190, 120, 50}},
+                   {14, "vehicle.bicycle", non_surface, movable, {100, 230, 245}},
+                   {15, "vehicle.bus.bendy", surface, movable, {120, 80, 250}},
+                   {16, "vehicle.bus.rigid", surface, movable, {100, 80, 250}},
+                   {17, "vehicle.car", surface, movable, {100, 150, 245}},
+                   {18, "vehicle.construction", surface, movable, {0, 40, 230}},
+                   {19, "vehicle.emergency.ambulance", surface, movable, {0, 90, 255}},
+                   {20, "vehicle.emergency.police", surface, movable, {0, 120, 255}},
+                   {21, "vehicle.motorcycle", non_surface, movable, {30, 60, 150}},
+                   {22, "vehicle.trailer", surface, movable, {60, 60, 160}},
+                   {23, "vehicle.truck", surface, movable, {80, 30, 180}},
+                   {24, "flat.driveable_surface", ground, fixed, {255, 0, 255}},
+                   {25, "flat.other", ground, fixed, {175, 0, 75}},
+                   {26, "flat.sidewalk", ground, fixed, {75, 0, 75}},
+                   {27, "flat.terrain", ground, fixed, {150, 240, 80}},
+                   {28, "static.manmade", surface, fixed, {255, 200, 0}},
+                   {29, "static.other", surface, fixed, {50, 255, 255}},
+                   {30, "static.vegetation", non_surface, fixed, {0, 175, 0}},
+                   {31, "vehicle.ego", surface, movable, {90, 90, 90}},
+                   {kNuscenesUnlabeled, "unlabeled", surface, fixed, {0, 0, 0}}});
+  return scheme;
+}
+
+const LabelScheme& asprs_labels() {
+  using enum SemanticGroup;
+  using enum Mobility;
+  static const LabelScheme scheme("asprs",
+                                  {{0, "never classified", surface, fixed, {0, 0, 0}},
+                                   {1, "unclassified", surface, fixed, {170, 170, 170}},
+                                   {2, "ground", ground, fixed, {150, 240, 80}},
+                                   {3, "low vegetation", non_surface, fixed, {0, 205, 0}},
+                                   {4, "medium vegetation", non_surface, fixed, {0, 175, 0}},
+                                   {5, "high vegetation", non_surface, fixed, {0, 135, 0}},
+                                   {6, "building", surface, fixed, {255, 200, 0}},
+                                   {7, "low noise", non_surface, fixed, {255, 0, 0}},
+                                   {8, "model key point", ground, fixed, {190, 240, 140}},
+                                   {9, "water", ground, fixed, {60, 140, 255}},
+                                   {10, "rail", ground, fixed, {175, 0, 75}},
+                                   {11, "road surface", ground, fixed, {255, 0, 255}},
+                                   {12, "overlap", surface, fixed, {120, 120, 150}},
+                                   {13, "wire guard", linear, fixed, {255, 220, 120}},
+                                   {14, "wire conductor", linear, fixed, {255, 240, 150}},
+                                   {15, "transmission tower", linear, fixed, {255, 150, 0}},
+                                   {16, "wire connector", linear, fixed, {255, 180, 90}},
+                                   {17, "bridge deck", ground, fixed, {255, 150, 255}},
+                                   {18, "high noise", non_surface, fixed, {200, 0, 0}},
+                                   {19, "overhead structure", surface, fixed, {220, 160, 90}},
+                                   {20, "ignored ground", ground, fixed, {130, 180, 90}},
+                                   {21, "snow", ground, fixed, {240, 240, 255}},
+                                   {22, "temporal exclusion", non_surface, fixed, {90, 90, 90}}});
+  return scheme;
+}
+
+std::span<const LabelScheme* const> known_label_schemes() {
+  static const std::array schemes = {&semantickitti_labels(), &paris_carla_3d_labels(),
+                                     &pandaset_labels(), &nuscenes_labels(), &asprs_labels()};
+  return schemes;
 }
 
 }  // namespace adasplats

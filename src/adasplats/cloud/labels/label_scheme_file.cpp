@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> kDefaultRgb = {160, 160, 160};
 
-/// A file being read: it only knows how to complain about places in itself.
+/// Reads values of a file, with errors that name the line.
 class SchemeFile {
  public:
   explicit SchemeFile(const std::string& path) : path_(path) {}
@@ -31,7 +31,7 @@ class SchemeFile {
     return error(node.source().begin.line, message);
   }
 
-  void refuse_unknown_keys(const toml::table& table, const std::vector<std::string>& known) const {
+  void reject_unknown_keys(const toml::table& table, const std::vector<std::string>& known) const {
     for (const auto& [key, value] : table) {
       const std::string word(key.str());
       if (std::ranges::find(known, word) != known.end()) continue;
@@ -82,7 +82,7 @@ class SchemeFile {
 };
 
 /// The parser recurses over dotted keys without a limit of its own (over brackets it has one).
-void refuse_deep_keys(const SchemeFile& file, std::string_view text) {
+void reject_deep_keys(const SchemeFile& file, std::string_view text) {
   constexpr int kMaxDots = 64;
   std::uint64_t line = 1;
   int dots = 0;
@@ -97,7 +97,7 @@ void refuse_deep_keys(const SchemeFile& file, std::string_view text) {
 }
 
 toml::table parse(const SchemeFile& file, const std::string& text) {
-  refuse_deep_keys(file, text);
+  reject_deep_keys(file, text);
   try {
     return toml::parse(std::string_view(text));
   } catch (const toml::parse_error& problem) {
@@ -118,7 +118,7 @@ std::array<std::uint8_t, 3> read_rgb(const SchemeFile& file, const toml::node& n
 SemanticClass read_class(const SchemeFile& file, const toml::node& node) {
   const toml::table* table = node.as_table();
   if (table == nullptr) throw file.error(node, "'class' is not a list of [[class]] tables");
-  file.refuse_unknown_keys(*table, {"id", "name", "group", "mobility", "rgb"});
+  file.reject_unknown_keys(*table, {"id", "name", "group", "mobility", "rgb"});
   SemanticClass result{};
   result.id = static_cast<std::uint16_t>(file.integer(file.required(*table, "id"), "id", 0xffff));
   result.name = file.text(file.required(*table, "name"), "name");
@@ -139,7 +139,7 @@ SemanticClass read_class(const SchemeFile& file, const toml::node& node) {
 LabelScheme read_scheme(const std::string& path) {
   const SchemeFile file(path);
   const toml::table root = parse(file, read_file(path));
-  file.refuse_unknown_keys(root, {"name", "class"});
+  file.reject_unknown_keys(root, {"name", "class"});
   const toml::node* name = root.get("name");
   const toml::node* classes = root.get("class");
   if (name == nullptr) throw file.error(1, "a label scheme needs 'name'");

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().front() == '.'; }
 
-/// What a folder holds, by name.
+/// The entries of a folder, by name.
 std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
   std::vector<fs::directory_entry> entries;
   std::error_code problem;
@@ -33,12 +33,12 @@ std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// What is in a folder that is no sequence.
+/// The contents of a folder that is not a sequence.
 struct Folder {
   fs::path path;
   std::vector<fs::path> sequences;
   std::map<FileKind, std::vector<fs::path>> files;
-  bool has_poses = false;  ///< poses.csv, as `simulate` writes it beside scans
+  bool has_poses = false;  ///< has a poses.csv, as `simulate` writes it with scans
 
   std::size_t count(FileKind kind) const {
     const auto found = files.find(kind);
@@ -46,10 +46,10 @@ struct Folder {
   }
 };
 
-Folder look_into(const fs::path& path) {
+Folder read_folder(const fs::path& path) {
   Folder folder{path, sequences_of_tree(path), {}, false};
   for (const fs::directory_entry& entry : entries_of(path)) {
-    std::error_code ignored;  // a broken link is no file
+    std::error_code ignored;  // a broken link is not a file
     if (!entry.is_regular_file(ignored)) continue;
     if (entry.path().filename() == "poses.csv") folder.has_poses = true;
     if (const FileKind kind = kind_of_file(entry.path()); kind != FileKind::other)
@@ -81,15 +81,16 @@ std::string list_of(const Folder& folder) {
   return list;
 }
 
-/// The folder holds several things; it says which and that one of them is to be named.
-Error unclear(const Folder& folder) {
+/// The folder holds several kinds of input.
+Error ambiguous_folder(const Folder& folder) {
   const auto points = folder.files.find(FileKind::points);
   std::string one;
   if (points != folder.files.end()) one = points->second.front().string();
   if (!folder.sequences.empty())
     one = folder.sequences.front().string() + (one.empty() ? "" : " or " + one);
-  return Error(ErrorKind::usage, folder.path.string() + ": holds " + list_of(folder) +
-                                     "; name what is meant, " + one + " say");
+  return Error(ErrorKind::usage,
+               folder.path.string() + ": contains several kinds of input: " + list_of(folder) +
+                   "; give one of them instead of the folder, for example " + one);
 }
 
 bool same_extension(const std::vector<fs::path>& files) {
@@ -98,8 +99,8 @@ bool same_extension(const std::vector<fs::path>& files) {
       files, [&](const fs::path& file) { return extension(file) == extension(files.front()); });
 }
 
-/// Whether all there is are files of points in one format and trajectories.
-bool holds_scans_alone(const Folder& folder) {
+/// Whether the folder holds only point files of one format, and trajectories.
+bool is_folder_of_scans(const Folder& folder) {
   const auto points = folder.files.find(FileKind::points);
   return points != folder.files.end() && same_extension(points->second) &&
          folder.count(FileKind::mesh) == 0 && folder.count(FileKind::splat_model) == 0;
@@ -109,31 +110,32 @@ std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
   if (folder.has_poses && folder.count(FileKind::points) == 0)
     throw Error(ErrorKind::data,
                 folder.path.string() +
-                    ": holds scans in the sensor frame (poses.csv is beside them) in no format of "
-                    "points; simulate with `format` semantickitti to use them as points");
-  if (folder.has_poses && (scans == SensorScans::refused || !holds_scans_alone(folder)))
-    throw Error(ErrorKind::data,
-                folder.path.string() +
-                    ": holds scans in the sensor frame (poses.csv is beside them); give that as "
-                    "`trajectory` or simulate with `format` semantickitti to use them as points");
+                    ": contains scans in the sensor frame (it has a poses.csv), but not in a point "
+                    "format; simulate with `format` semantickitti to use them as points");
+  if (folder.has_poses && (scans == SensorScans::refused || !is_folder_of_scans(folder)))
+    throw Error(
+        ErrorKind::data,
+        folder.path.string() +
+            ": contains scans in the sensor frame (it has a poses.csv); give its poses.csv as "
+            "`trajectory`, or simulate with `format` semantickitti to use them as points");
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
     throw Error(ErrorKind::no_input, folder.path.string() +
-                                         ": holds neither a folder 'velodyne' nor files of points" +
-                                         (others == 0 ? "" : ", but " + list_of(folder)));
+                                         ": contains neither a folder 'velodyne' nor point files" +
+                                         (others == 0 ? "" : "; it contains " + list_of(folder)));
   }
   const std::vector<fs::path>& files = folder.files.at(FileKind::points);
   const std::size_t poses =
       scans == SensorScans::taken ? folder.count(FileKind::trajectory) : std::size_t{0};
-  if (others != poses || !same_extension(files)) throw unclear(folder);
+  if (others != poses || !same_extension(files)) throw ambiguous_folder(folder);
   if (scans == SensorScans::refused && files.size() > 1 &&
       lower_case(files.front().extension().string()) == ".bin")
     throw Error(ErrorKind::data,
-                folder.path.string() + ": holds " + std::to_string(files.size()) +
-                    " .bin files, scans in the frame of a sensor that moves; give their poses "
-                    "as `trajectory`, or name the sequence folder, which has poses.txt and them in "
-                    "a folder 'velodyne'");
+                folder.path.string() + ": contains " + std::to_string(files.size()) +
+                    " .bin files, which are scans in the frame of a moving sensor; give their "
+                    "poses as `trajectory`, or give the sequence folder that contains poses.txt "
+                    "and the folder 'velodyne'");
   std::vector<CloudInput> inputs;
   inputs.reserve(files.size());
   for (const fs::path& file : files) inputs.push_back({file, false});
@@ -155,19 +157,19 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
 }
 
 std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
-  std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
+  std::error_code ignored;  // an unreadable path fails when it is opened as a file
   if (!fs::is_directory(path, ignored) || is_drive_by_itself(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
-  const Folder folder = look_into(path);
+  const Folder folder = read_folder(path);
   if (folder.sequences.empty()) return files_of(folder, scans);
-  if (folder.count(FileKind::points) != 0) throw unclear(folder);
+  if (folder.count(FileKind::points) != 0) throw ambiguous_folder(folder);
   std::vector<CloudInput> inputs;
   for (const fs::path& sequence : folder.sequences) inputs.push_back({sequence, true});
   return inputs;
 }
 
-void require_one_world(std::span<const CloudInput> sequences) {
-  constexpr double kSame_m = 1e-3;  // two drives do not begin at one place to a millimetre
+void require_distinct_starts(std::span<const CloudInput> sequences) {
+  constexpr double kSame_m = 1e-3;  // two drives do not start within a millimetre
   std::vector<Vec3d> begins;
   for (const CloudInput& sequence : sequences) {
     const Trajectory poses = open_kitti_sequence(sequence.path).trajectory;
@@ -176,35 +178,40 @@ void require_one_world(std::span<const CloudInput> sequences) {
       if (!(length(begins[k] - begins.back()) < kSame_m)) continue;
       throw Error(ErrorKind::usage,
                   sequences[k].path.string() + " and " + sequence.path.string() +
-                      ": begin at the very same pose, so that they are either one drive or each in "
-                      "a frame of its own; name one of them");
+                      ": start at the same pose, so they are either the same drive or each in its "
+                      "own frame and cannot be joined; give only one of them");
     }
   }
 }
 
 void require_points(const fs::path& file) {
-  const auto refuse = [&file](const std::string& what) {
+  const auto reject = [&file](const std::string& what) {
     throw Error(ErrorKind::data, file.string() + ": " + what);
   };
   switch (kind_of_file(file)) {
     case FileKind::mesh:
-      return refuse(
-          "is a triangle mesh (its header declares faces), not points; simulate, render and "
-          "evaluate truth take meshes");
+      return reject(
+          "is a triangle mesh (its header declares faces), not a point cloud; simulate, render and "
+          "evaluate truth read meshes");
     case FileKind::splat_model:
-      return refuse(
-          "is a splat model (it has normals and radii), not points; simulate, render, view and "
-          "evaluate take models");
+      return reject(
+          "is a splat model (it has normals and radii), not a point cloud; simulate, render, view "
+          "and evaluate read models");
     case FileKind::trajectory:
-      return refuse(
-          "is a trajectory (a line is a pose), not points; `trajectory` takes it where a line "
-          "before "
-          "the poses names the columns (time,x,y,z,qw,qx,qy,qz or # timestamp tx ty tz qx qy qz "
-          "qw) "
-          "or where it has KITTI's 12 numbers a line");
+      return reject(
+          "is a trajectory (each line is a pose), not a point cloud; give it as `trajectory`, with "
+          "a line before the poses that names the columns (time,x,y,z,qw,qx,qy,qz or # timestamp "
+          "tx ty tz qx qy qz qw) or with KITTI's 12 numbers per line");
     case FileKind::points:
     case FileKind::other: return;
   }
+}
+
+void require_one_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
+                     ProgressSink& progress) {
+  SharedCrs shared;
+  for (const auto& [file, crs] : inputs) shared.add(file, crs);
+  if (const std::string warning = shared.warning(); !warning.empty()) progress.warn(warning);
 }
 
 }  // namespace adasplats

@@ -97,8 +97,8 @@ TEST(CloudInputs, TreesAreTheirSequences) {
   EXPECT_EQ(names_of(folder.path()), all);
   EXPECT_EQ(names_of(folder.path() / "sequences"),
             (std::vector<std::string>{"00 (sequence)", "01 (sequence)"}));
-  require_one_world(cloud_inputs(folder.path()));
-  folder.write("model.ply", kModel);  // no points: nothing is unclear
+  require_distinct_starts(cloud_inputs(folder.path()));
+  folder.write("model.ply", kModel);  // no points: nothing is ambiguous_folder
   EXPECT_EQ(names_of(folder.path()), all);
   folder.write("mapping.ply", kCloud);
   expect_error(ErrorKind::usage,
@@ -111,7 +111,7 @@ TEST(CloudInputs, SequencesThatBeginAtOnePoseAreNoPlace) {
   const TemporaryFolder folder;
   for (const char* name : {"sequences/00", "sequences/01"}) write_sequence(folder, name);
   expect_error(ErrorKind::usage, {"sequences/00", "sequences/01", "name one"},
-               [&] { require_one_world(cloud_inputs(folder.path())); });
+               [&] { require_distinct_starts(cloud_inputs(folder.path())); });
 }
 
 TEST(CloudInputs, TilesOfOneExtension) {
@@ -121,7 +121,7 @@ TEST(CloudInputs, TilesOfOneExtension) {
   folder.write("a.prj", "PROJCS");
   EXPECT_EQ(names_of(folder.path()), (std::vector<std::string>{"a.XYZ", "b.xyz"}));
   folder.write("c.csv", "x,y,z\n1,2,3\n");
-  expect_error(ErrorKind::usage, {"a.XYZ, b.xyz, c.csv", "name what is meant"},
+  expect_error(ErrorKind::usage, {"a.XYZ, b.xyz, c.csv", "give one of them instead"},
                [&] { cloud_inputs(folder.path()); });
 }
 

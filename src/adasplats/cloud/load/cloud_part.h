@@ -17,14 +17,14 @@
 
 namespace adasplats {
 
-/// Beyond it doubles do not hold 0.1 mm, and no place on Earth has such coordinates.
-inline constexpr double kLargestCoordinateM = 1e12;
+/// Beyond it doubles do not resolve 0.1 mm, and nothing on Earth has such coordinates.
+inline constexpr double kMaxCoordinate_m = 1e12;
 
-/// Whether these are coordinates of a place: finite, and not beyond that.
-inline bool is_place(Vec3d p) {
+/// Whether coordinates are usable: finite and within that limit.
+inline bool is_valid_position(Vec3d p) {
   // False for NaN as well.
-  return std::fabs(p.x) <= kLargestCoordinateM && std::fabs(p.y) <= kLargestCoordinateM &&
-         std::fabs(p.z) <= kLargestCoordinateM;
+  return std::fabs(p.x) <= kMaxCoordinate_m && std::fabs(p.y) <= kMaxCoordinate_m &&
+         std::fabs(p.z) <= kMaxCoordinate_m;
 }
 
 /// Consecutive points of a part that came from one file.
@@ -36,18 +36,18 @@ struct PartRun {
   std::size_t scan = 0;  ///< of the sequence
 };
 
-/// What one input of load_cloud gives while the common origin is not known yet.
+/// The points of one input of load_cloud before the common origin is chosen.
 struct CloudPart {
-  /// Attributes as they will be. `positions` are in the sensor frames of the runs for sequences
-  /// (the scans' own floats: nothing is lost) and empty for files. `sensor_positions` say nothing
-  /// yet: they are empty, or memory for later.
+  /// Attributes in their final form. `positions` are in the sensor frames of the runs for sequences
+  /// (the scans' own floats, so nothing is lost) and empty for files. `sensor_positions` are not
+  /// set yet: empty, or memory for later.
   PointCloud cloud;
-  std::vector<Vec3d> world_positions;         ///< of files
-  std::vector<Vec3d> world_sensors;           ///< of files that have them
-  std::vector<double> times_s;                ///< of files that have them, in whatever clock...
-  SaidClock said_clock = SaidClock::nothing;  ///< ...and what the file says of that
-  std::vector<Vec3f> scan_origins;            ///< of sequences whose scans say them, sensor frames
-  std::vector<std::uint8_t> in_boxes;         ///< KittiScan::in_boxes; empty: none is
+  std::vector<Vec3d> world_positions;  ///< of files
+  std::vector<Vec3d> world_sensors;    ///< of files that have them
+  std::vector<double> times_s;         ///< of files that have them, in the file's clock
+  DeclaredClock declared_clock = DeclaredClock::none;  ///< which is this, if the file declares it
+  std::vector<Vec3f> scan_origins;     ///< of sequences with an origin per point, sensor frames
+  std::vector<std::uint8_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence
@@ -69,26 +69,21 @@ struct CloudPart {
   }
 };
 
-/// Reads the scans of a sequence that `options` choose; `first_scan_index` numbers the first.
+/// Reads the chosen scans of a sequence; `first_scan_index` is the number of the first.
 CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& options,
                              std::uint32_t first_scan_index, const Executor& executor,
                              ProgressSink& progress);
-/// A sequence folder with recognised beams (where options want it). Errors: those of
-/// open_kitti_sequence and require_poses_that_fit.
+/// Opens a sequence folder and recognises its beams (unless beams_from_poses). Errors: those of
+/// open_kitti_sequence and verify_poses.
 KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options,
                             const Executor& executor);
 
-/// Reads a file of points, on the threads of `executor` where one is given.
+/// Reads a file of points, on the threads of `executor` if given.
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor = nullptr);
 
-/// The same of columns that are in memory; `path` is for messages.
+/// The same for columns in memory; `path` is for messages.
 CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
                         const LoadOptions& options, ProgressSink& progress);
-
-/// One cloud of all; `scan_poses` are of their scans. Inputs with and without an attribute together
-/// lose it, with a warning; sensor positions stay (load_cloud).
-PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,
-                  ProgressSink& progress);
 
 }  // namespace adasplats

@@ -25,7 +25,7 @@ inline std::optional<double> range_in_court(Vec3d origin, Vec3d way) {
   return range_m;
 }
 
-/// A curve at a speed that changes: an even drive would not tell one clock from another.
+/// A curve at a speed that changes: an even drive would not distinguish clocks.
 inline RigidTransform sensor_at(double time_s) {
   return {rotation_from_yaw_pitch_roll(0.6 * time_s, 0, 0),
           {-6 + 6 * time_s + 4 * time_s * time_s, 2 * time_s, 1.9}};

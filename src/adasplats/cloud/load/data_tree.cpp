@@ -17,7 +17,7 @@ constexpr std::array kDataTrees = {
              &pandaset_class_names},
     DataTree{"nuScenes scene", &is_nuscenes_root, &open_nuscenes_drive, &nuscenes_class_names}};
 
-/// The first class that a scheme does not have by that name.
+/// The first class that a scheme does not have under that name.
 const ClassNames::value_type* first_other(const ClassNames& names, const LabelScheme& scheme) {
   for (const auto& entry : names) {
     const SemanticClass* const known = scheme.find(entry.first);
@@ -34,7 +34,7 @@ ClassNames class_names_in(const std::filesystem::path& path) {
 }  // namespace
 
 const DataTree* data_tree_of(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked into is none
+  std::error_code ignored;  // an unreadable folder is not a data set
   if (!std::filesystem::is_directory(path, ignored)) return nullptr;
   const auto found =
       std::ranges::find_if(kDataTrees, [&path](const DataTree& tree) { return tree.is_one(path); });
@@ -50,8 +50,8 @@ KittiSequence open_data_tree(const DataTree& tree, const FrameDrive& drive,
   if (states_others)
     throw Error(ErrorKind::usage,
                 drive.folder.string() + ": is a " + tree.name +
-                    ", which has poses, times and frames of its own: `trajectory`, `scan_times`, "
-                    "`topic`, `poses_topic`, `points_in` and `sweep_points` are for other drives");
+                    ", which contains poses, times and frames; `trajectory`, `scan_times`, "
+                    "`topic`, `poses_topic`, `points_in` and `sweep_points` do not apply");
   return tree.open(drive, executor, progress);
 }
 
@@ -74,9 +74,9 @@ void require_labels_of_tree(const std::filesystem::path& path, const LabelScheme
   const SemanticClass* const stated = scheme.find(other->first);
   throw Error(ErrorKind::usage,
               path.string() + ": its class " + std::to_string(other->first) + " is '" +
-                  other->second + "', but the label scheme " + scheme.name() + " has " +
-                  (stated == nullptr ? "no class of that number" : "'" + stated->name + "' there") +
-                  "; leave `labels` out, or give a file with the names that it has");
+                  other->second + "', but in the label scheme " + scheme.name() + " that class " +
+                  (stated == nullptr ? "does not exist" : "is '" + stated->name + "'") +
+                  "; omit `labels`, or give a file with the class names of the data set");
 }
 
 }  // namespace adasplats

@@ -10,37 +10,38 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 
 namespace adasplats {
 
-/// What a data set calls its classes, by their ids.
+/// The class names of a data set by their ids.
 using ClassNames = std::vector<std::pair<std::uint16_t, std::string>>;
 
-/// A kind of folder that has scans and their poses as some data set lays them out.
+/// A data set whose folders contain scans and their poses.
 struct DataTree {
   const char* name;  ///< "PandaSet sequence"
   bool (*is_one)(const std::filesystem::path& folder);
   KittiSequence (*open)(const FrameDrive& drive, const Executor& executor, ProgressSink& progress);
-  /// Empty where there are no labels.
+  /// Empty without labels.
   ClassNames (*class_names)(const std::filesystem::path& folder);
 };
 
-/// Which kind a path is; null: none.
+/// The data set that a path belongs to; null: none.
 const DataTree* data_tree_of(const std::filesystem::path& path);
 
-/// Opens one as a drive. Errors: usage for settings of other drives, those of its kind.
+/// Opens a data set as a drive. Errors: usage for settings of other drives, and those of the data
+/// set.
 KittiSequence open_data_tree(const DataTree& tree, const FrameDrive& drive,
                              const Executor& executor, ProgressSink& progress);
 
-/// The one of known_label_schemes() that has all classes of a tree by their ids and names; nothing
-/// where none has, or where the path is no tree with labels.
+/// The one of known_label_schemes() that has all classes of a data set by id and name; nothing if
+/// there is none, or if the path is not a data set with labels.
 std::optional<LabelScheme> labels_of_tree(const std::filesystem::path& path);
 
-/// Throws usage where the path is a tree with labels and `scheme` is one of known_label_schemes()
-/// that has other names for their ids. Those of users may call classes as they like.
+/// Throws usage if the path is a data set with labels and `scheme` is one of known_label_schemes()
+/// with other names for their ids. Schemes of users may rename classes.
 void require_labels_of_tree(const std::filesystem::path& path, const LabelScheme& scheme);
 
 }  // namespace adasplats

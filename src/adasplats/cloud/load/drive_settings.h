@@ -16,19 +16,19 @@
 
 namespace adasplats {
 
-/// Which frame the points of a drive's files are in.
+/// The frame of the points in a drive's files.
 enum class PointsIn : std::uint8_t {
-  found,   ///< what the points and the poses say
-  sensor,  ///< each file in the frame of the sensor (or of the vehicle) at its scan
-  world    ///< all files in one
+  found,   ///< inferred from the points and the poses
+  sensor,  ///< each file in the frame of the sensor (or vehicle) at its scan
+  world    ///< all files in one frame
 };
 inline constexpr std::pair<std::string_view, PointsIn> kPointsIn[] = {
     {"auto", PointsIn::found}, {"sensor", PointsIn::sensor}, {"world", PointsIn::world}};
 inline Words<PointsIn> words_of(PointsIn) { return kPointsIn; }
 
-/// Whether the motion of the sensor within a sweep is still in points of the sensor's frame.
+/// Whether points in the sensor frame still contain the motion of the sensor within a sweep.
 enum class SweepPoints : std::uint8_t {
-  found,       ///< what the cones of the sensor's beams say
+  found,       ///< inferred from the cones of the sensor's beams
   measured,    ///< each point in the frame of the sensor at its own time
   compensated  ///< all points of a scan in the frame of the sensor at one time
 };
@@ -38,105 +38,107 @@ inline constexpr std::pair<std::string_view, SweepPoints> kSweepPoints[] = {
     {"compensated", SweepPoints::compensated}};
 inline Words<SweepPoints> words_of(SweepPoints) { return kSweepPoints; }
 
-/// How a drive whose scans are files, given with a trajectory, is meant; for what loads points and
-/// for what casts their beams again.
+/// How to read a drive. Used to load its points and to cast its beams again.
 struct DriveSettings {
-  /// Of the vehicle or of the sensor, as read_trajectory takes it.
+  /// Of the vehicle or of the sensor, as read by read_trajectory.
   std::filesystem::path trajectory;
-  /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
+  /// Boxes of moving objects (MovingBoxes); points in them are removed from scans with times.
   std::filesystem::path boxes;
-  /// The lever arm: where the sensor sits in the frame of the trajectory's poses, m. Not given: the
-  /// poses are the sensor's own, or it is found.
+  /// Lever arm: position of the sensor in the frame of the trajectory's poses, m. Not set: the
+  /// poses are the sensor's own, or the mount is recognised.
   std::optional<Vec3d> mount;
-  /// The boresight: yaw, pitch and roll of the sensor there, degrees. Of points in world
-  /// coordinates it turns the poses of scans and moves no origin.
+  /// Boresight: yaw, pitch and roll of the sensor in that frame, degrees. For points in world
+  /// coordinates it only turns the poses of scans; origins do not change.
   Vec3d mount_rotation_deg;
-  /// What points' times lack to those of the trajectory, s. Not given: found (possible_clocks).
+  /// Added to the points' times to get those of the trajectory, s. Not set: inferred
+  /// (possible_clocks).
   std::optional<double> time_offset_s;
   PointsIn points_in = PointsIn::found;
   SweepPoints sweep_points = SweepPoints::found;
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
-  /// Of a recording: whose clouds are the scans, and what topic says the poses; empty: found.
+  /// Topics of a recording with the scans and with the poses; empty: chosen automatically.
   std::string topic, poses_topic;
-  std::string scene;  ///< of a data root of nuScenes; empty: the only one
-  /// Of a capture of packets: the sensor that sent them (load_lidar_model()).
+  std::string scene;  ///< of a nuScenes data root; empty: its only scene
+  /// The sensor that sent the packets of a capture (load_lidar_model()).
   std::string packets_of;
-  /// Beams start at their poses even where they are seen to start beside them (ScanBeams).
+  /// Start beams at the poses even if the sensor is recognised (ScanBeams).
   bool beams_from_poses = false;
 
-  /// As far as one is given; a rotation alone is one.
+  /// The mount, if a position or a rotation is set.
   std::optional<MountSettings> given_mount() const {
     if (!mount && mount_rotation_deg == Vec3d{}) return std::nullopt;
     return MountSettings{mount.value_or(Vec3d{}), mount_rotation_deg};
   }
 };
 
-/// Where the sensor sits and what its clock lacks.
+/// The mount of the sensor and the offset of its clock.
 template <class Visit>
 void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit) {
-  visit(
-      Setting{.name = "mount",
-              .help = "Lever arm: where the sensor sits in the frame of the trajectory's poses, m "
-                      "(default: they are the sensor's own)",
-              .group = group},
-      drive.mount);
-  visit(Setting{.name = "mount_rotation",
-                .help = "Boresight: its yaw, pitch and roll there, degrees. Points in world "
-                        "coordinates need none: it turns the poses of scans alone",
-                .key = "mount_rotation_deg",
+  visit(Setting{.name = "mount",
+                .help = "Lever arm: position of the sensor in the frame of the trajectory's poses, "
+                        "m (default: the poses are the sensor's own)",
                 .group = group},
-        drive.mount_rotation_deg);
+        drive.mount);
+  visit(
+      Setting{.name = "mount_rotation",
+              .help =
+                  "Boresight: yaw, pitch and roll of the sensor in that frame, degrees. Not needed "
+                  "for points in world coordinates, where it only turns the poses of scans",
+              .key = "mount_rotation_deg",
+              .group = group},
+      drive.mount_rotation_deg);
   visit(Setting{.name = "time_offset",
-                .help = "Added to the points' times they are those of the trajectory, s (default: "
-                        "found from clocks of GPS, UTC and PTP)",
+                .help = "Offset added to the points' times to get trajectory times, s (default: "
+                        "inferred from the GPS, UTC and PTP clocks)",
                 .value = "S",
                 .key = "time_offset_s",
                 .group = group},
         drive.time_offset_s);
 }
 
-/// How the scans are meant.
+/// How to read the scans.
 template <class Visit>
 void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit) {
   visit(Setting{.name = "points_in",
-                .help = "Which frame the points of a folder of scans with a trajectory are in",
+                .help = "Frame of the points in a folder of scans with a trajectory",
                 .group = group},
         drive.points_in);
   visit(Setting{.name = "sweep_points",
-                .help = "Whether points of scans in the sensor's frame with times are as measured, "
-                        "or motion-compensated",
+                .help = "State of scans in the sensor frame with point times: as measured, or "
+                        "motion-compensated",
                 .group = group},
         drive.sweep_points);
   visit(Setting{.name = "scan_times",
-                .help = "Times of the scans of a folder, s, one a line in the order of their "
+                .help = "Times of the scans of a folder, s: one per line, in the order of the file "
                         "names, in the clock of the trajectory",
                 .value = "FILE",
                 .group = group},
         drive.scan_times);
-  visit(Setting{.name = "topic",
-                .help = "Of a recording (MCAP, ROS bag): the topic of points to take (default: the "
-                        "only one)",
-                .value = "NAME",
-                .group = group},
-        drive.topic);
+  visit(
+      Setting{.name = "topic",
+              .help = "Topic of the points in a recording (MCAP, ROS bag) (default: the only one)",
+              .value = "NAME",
+              .group = group},
+      drive.topic);
   visit(Setting{.name = "poses_topic",
-                .help = "Of a recording: the topic of its poses, tf, odometry or poses (default: "
-                        "tf, else the only one)",
+                .help = "Topic of the poses in a recording: tf, odometry or poses (default: tf, "
+                        "else the only one)",
                 .value = "NAME",
                 .group = group},
         drive.poses_topic);
   visit(Setting{.name = "scene",
-                .help = "Of a data root of nuScenes: the scene to take, by its name (default: the "
-                        "only one)",
+                .help = "Name of the scene in a nuScenes data root (default: the only one)",
                 .value = "NAME",
                 .group = group},
         drive.scene);
-  visit(Setting{.name = "packets_of",
-                .help = "Of a capture (PCAP): the sensor that sent its packets, of the library or "
-                        "its maker's file (default: metadata.json or calibration*.yaml beside it)",
-                .value = "SENSOR",
-                .group = group},
-        drive.packets_of);
+  visit(
+      Setting{.name = "packets_of",
+              .help =
+                  "Sensor that sent the packets of a capture (PCAP): a name of the library or the "
+                  "maker's file (default: metadata.json or calibration*.yaml in the same folder)",
+              .value = "SENSOR",
+              .group = group},
+      drive.packets_of);
 }
 
 }  // namespace adasplats

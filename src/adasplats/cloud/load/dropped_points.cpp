@@ -31,35 +31,39 @@ std::string share_text(std::size_t part, std::size_t all) {
 void report_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
                     ProgressSink& progress) {
   const std::size_t all = report.points_read;
-  const double most = options.max_dropped * static_cast<double>(all);
-  const auto tell = [&](std::size_t points, const std::string& why, const std::string& cure) {
+  const double max_points = options.max_dropped * static_cast<double>(all);
+  const auto report_points = [&](std::size_t points, const std::string& why,
+                                 const std::string& cure) {
     if (points == 0) return;
     const std::string what = input + ": " + share_text(points, all) + " " + why;
-    if (!cure.empty() && static_cast<double>(points) > most)
+    if (!cure.empty() && static_cast<double>(points) > max_points)
       throw Error(ErrorKind::data, what + ", more than " + percent_text(options.max_dropped) +
-                                       ": " + cure + "`max_dropped` SHARE goes on without them");
-    progress.warn(what + ", dropped");
+                                       ": " + cure + "raise `max_dropped` to drop them anyway");
+    progress.warn(what + " and are dropped");
   };
-  tell(report.no_returns, "are no returns (x, y and z are NaN)", "");
-  tell(report.dropped_not_finite - report.no_returns, "have a position that is not finite",
-       "look into what wrote them; ");
-  tell(report.dropped_far,
-       "are farther than " + short_text(options.max_distance_m, 9) + " m from the median of all",
-       "are these two places, or coordinates of two systems? `max_distance` M keeps them, ");
+  report_points(report.no_returns, "are missing returns (x, y and z are NaN)", "");
+  report_points(report.dropped_not_finite - report.no_returns, "have a position that is not finite",
+                "check the program that wrote the file, or ");
+  report_points(report.dropped_far,
+                "are farther than " + short_text(options.max_distance_m, 9) +
+                    " m from the median of all points",
+                "check for two scenes or two coordinate systems in the input, raise `max_distance` "
+                "to keep them, or ");
 }
 
 void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
                      ProgressSink& progress) {
   if (report.driven_path > 0)
     progress.warn(input + ": " + share_text(report.driven_path, report.points_read) +
-                  " are where the recording vehicle drove, left out (`driven_path` 0 keeps them)");
+                  " are in the driven path of the recording vehicle and are removed (`driven_path` "
+                  "0 keeps them)");
   if (report.own_body == 0) return;
-  progress.warn(input + ": " + share_text(report.own_body, report.points_read) +
-                (options.own_body_m
-                     ? " are nearer to their sensor than " + short_text(*options.own_body_m, 9) +
-                           " m, left out"
-                     : " go along with the sensor: the recording vehicle itself, left out "
-                       "(`own_body` 0 keeps them)"));
+  progress.warn(
+      input + ": " + share_text(report.own_body, report.points_read) +
+      (options.own_body_m
+           ? " are nearer to their sensor than " + short_text(*options.own_body_m, 9) +
+                 " m and are removed"
+           : " belong to the recording vehicle and are removed (`own_body` 0 keeps them)"));
 }
 
 void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
@@ -71,17 +75,17 @@ void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& 
   const bool holds_zero = low.x <= 0 && high.x >= 0 && low.y <= 0 && high.y >= 0;
   const double width = std::max(high.x - low.x, high.y - low.y), height = high.z - low.z;
   if (!in_range || holds_zero || !(width > 0)) return;
-  const std::string seen = input + ": the points lie within " + short_text(high.x - low.x, 3) +
-                           " by " + short_text(high.y - low.y, 3) + " around x " +
-                           short_text(low.x, 6) + ", y " + short_text(low.y, 6) +
-                           " and differ by " + short_text(height, 3) + " in height";
+  const std::string seen = input + ": the points span " + short_text(high.x - low.x, 3) + " by " +
+                           short_text(high.y - low.y, 3) + " around x " + short_text(low.x, 6) +
+                           ", y " + short_text(low.y, 6) + " and " + short_text(height, 3) +
+                           " in height";
   const std::string cure =
-      "project them to metres first (UTM, say, with 'pdal translate IN OUT reprojection "
-      "--filters.reprojection.out_srs=...')";
+      "reproject them to metres, for example to UTM with 'pdal translate IN OUT reprojection "
+      "--filters.reprojection.out_srs=...'";
   if (height > kCertainSteepness * width)
-    throw Error(ErrorKind::data, seen + ": longitudes and latitudes; " + cure);
+    throw Error(ErrorKind::data, seen + ", so they are longitudes and latitudes; " + cure);
   if (crs.empty() && width < kDoubtfulWidth && height > kDoubtfulSteepness * width)
-    progress.warn(seen + ": taken as metres; if these are longitudes and latitudes, " + cure);
+    progress.warn(seen + "; assumed to be metres; if they are longitudes and latitudes, " + cure);
 }
 
 }  // namespace adasplats

@@ -9,22 +9,20 @@
 
 namespace adasplats {
 
-/// Warns of every point of `input` (as messages name it) that was dropped, with the reason and the
-/// figures. Errors: data where more than options.max_dropped of them were far or not finite; points
-/// whose three coordinates are NaN do not count, as organised clouds hold so where no beam
-/// returned.
+/// Warns of the dropped points of `input` (its name in messages), with reason and figures. Errors:
+/// data if more than options.max_dropped of them were far or not finite. Points with three NaN
+/// coordinates do not count: organised clouds have them for missing returns.
 void report_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
                     ProgressSink& progress);
 
-/// Warns of points on the vehicle that carried the sensor, which were left out.
+/// Warns of points that were removed because they are on the recording vehicle or in its path.
 void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
                      ProgressSink& progress);
 
-/// Throws data where the box of all points can only be one of degrees: within 180 and 90 without
-/// holding 0, 0, and more than a thousand times as high as it is wide. (Degrees are 111 km, so that
-/// points of a place whose heights differ by 1 % of its width look like that.) Warns where it can
-/// be one of degrees or a pole: less than 1 wide and more than ten times as high, of files that say
-/// no coordinate system.
+/// Throws data if the box of all points can only be in degrees: within 180 and 90 without (0, 0),
+/// and more than a thousand times as high as wide. (A degree is 111 km, so a scene whose heights
+/// vary by 1 % of its width looks like that.) Warns if it can be in degrees or a pole: less than 1
+/// wide, more than ten times as high, and without a coordinate system.
 void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
                     ProgressSink& progress);
 

@@ -23,7 +23,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 16;
-constexpr double kTolerance = 1e-3;  // of rotations, as read_trajectory has it
+constexpr double kTolerance = 1e-3;  // of rotations, as in read_trajectory
 
 constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
 
@@ -31,7 +31,7 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The whole lines at the beginning of a file, whatever ends them; nothing where it cannot be read.
+/// The complete lines at the start of a file, with any line ends; nothing if it cannot be read.
 std::optional<std::vector<std::string>> first_lines(const std::filesystem::path& path) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::vector<std::string> lines;
@@ -50,7 +50,7 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
       if (!line.empty()) lines.emplace_back(line);
     }
   } catch (const Error&) {
-    return std::nullopt;  // whoever reads the file says what is wrong with it
+    return std::nullopt;  // reading the file reports the error
   }
   return lines;
 }
@@ -93,8 +93,8 @@ std::vector<double> numbers_of(const std::vector<std::string>& words) {
   return numbers;
 }
 
-/// A time that ascends, a position, a quaternion in either order: normals beside a curvature of 0
-/// have its length, too, but hardly in the order of a coordinate.
+/// An ascending time, a position and a quaternion in either order. Normals with a curvature of 0
+/// have unit length too, but hardly ascend in the first column.
 bool is_timed_pose(const std::vector<double>& v, double before_s) {
   if (v.size() != 8 || !(v[0] > before_s)) return false;
   const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
@@ -109,9 +109,9 @@ bool is_matrix_pose(const std::vector<double>& v) {
 
 bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
 
-/// Whether the first line that can be a point is one: what comes before it are comments, counts (as
-/// PTS has them) and at most one line of names, as read_text_points understands them. Prose (a
-/// readme, a licence, an index of tiles) is none.
+/// Whether the first line that can be a point is one. Only comments, counts (PTS) and at most one
+/// line of names may precede it, as in read_text_points. Prose (a readme, a licence, an index of
+/// tiles) has none.
 bool has_a_point(const std::vector<std::string>& lines) {
   constexpr std::size_t kCoordinates = 3;
   bool has_names = false;
@@ -126,7 +126,7 @@ bool has_a_point(const std::vector<std::string>& lines) {
   return false;
 }
 
-/// Whether the line before the first numbers, or a comment there (as in TUM's), names a quaternion.
+/// Whether a line or comment (TUM) before the first numbers names a quaternion.
 bool has_pose_names(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
     if (pose_heading_of(line).columns) return true;
@@ -162,7 +162,7 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 FileKind kind_of_file(const std::filesystem::path& file) {
   if (is_one_of(lower_case(file.extension().string()), kMeshes)) return FileKind::mesh;
   const PointFormat* const format = format_of_extension(file);
-  // Whoever reads a format that is not understood says so.
+  // Reading a damaged file reports the error.
   if (format != nullptr && format->means == ExtensionMeans::points) return FileKind::points;
   const auto lines = first_lines(file);
   if (format != nullptr && format->means == ExtensionMeans::text)

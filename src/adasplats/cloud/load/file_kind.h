@@ -8,19 +8,19 @@
 
 namespace adasplats {
 
-/// What a file is, as far as its name and its first bytes say.
+/// The kind of a file, from its name and first bytes.
 enum class FileKind : std::uint8_t {
-  points,       ///< of a format of points, and nothing says otherwise; text with a point in it
+  points,       ///< has a point format and is none of those below; text with a point in it
   mesh,         ///< OBJ, glTF, a PLY that declares faces
   splat_model,  ///< a PLY with a radius and a normal
-  trajectory,   ///< text with columns qw, qx, qy, qz, or whose lines are poses
+  trajectory,   ///< text with columns qw, qx, qy, qz, or with poses as lines
   other,        ///< none of these, such as prose
 };
 
-/// Looks at the name and at most 64 KiB. What cannot be read is what its name says.
+/// Reads at most 64 KiB. An unreadable file is classified by its name.
 FileKind kind_of_file(const std::filesystem::path& file);
 
-/// Whether files with such a name can be anything but FileKind::other.
+/// Whether a file with this extension can be of another kind than FileKind::other.
 bool has_extension_of_a_kind(const std::filesystem::path& file);
 
 /// "points", "meshes", ...

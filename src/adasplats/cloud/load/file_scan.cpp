@@ -6,14 +6,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
+
 namespace {
 
 constexpr std::array kTimeUnits_s = {1.0, 1e-3, 1e-6, 1e-9};
-// Sensors turn 5 to 100 times a second; frames without a turn are cut to a second at most.
+// Sensors turn 5 to 100 times a second; frames of sensors that do not turn last at most a second.
 constexpr double kShortestSweep_s = 0.005, kLongestSweep_s = 1;
 
 }  // namespace
@@ -21,7 +25,7 @@ constexpr double kShortestSweep_s = 0.005, kLongestSweep_s = 1;
 TimeSpan FileScan::time_span() const {
   TimeSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < times.size(); ++i)
-    if (is_place(positions[i]) && std::isfinite(times[i]))
+    if (is_valid_position(positions[i]) && std::isfinite(times[i]))
       span = {std::min(span.first, times[i]), std::max(span.last, times[i])};
   return span.first <= span.last ? span : TimeSpan{};
 }
@@ -82,6 +86,62 @@ PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track
     return times;
   }
   return times;
+}
+
+namespace {
+
+constexpr float kMaxOfByte = 255;
+
+/// A value that is not finite is unknown and fits any scale.
+bool can_be_byte(float value) {
+  return !std::isfinite(value) || (value >= 0 && value <= kMaxOfByte && value == std::trunc(value));
+}
+
+bool is_above_share(float value) { return std::isfinite(value) && value > 1; }
+
+Error other_scale(const std::filesystem::path& file, float value, const char* others) {
+  return {ErrorKind::data, file.string() + ": has an intensity of " +
+                               exact_text(static_cast<double>(value)) +
+                               ", but the intensities of other scans are " + others +
+                               "; bring the files to one scale"};
+}
+
+}  // namespace
+
+IntensityScale::IntensityScale(std::span<const std::vector<float>> sample) {
+  bool all_bytes = true, any_above = false;
+  for (const std::vector<float>& scan : sample) {
+    all_bytes = all_bytes && std::ranges::all_of(scan, can_be_byte);
+    any_above = any_above || std::ranges::any_of(scan, is_above_share);
+  }
+  is_bytes_ = all_bytes && any_above;
+  are_shares_ = !any_above;
+}
+
+std::vector<float> IntensityScale::scaled(std::vector<float> intensities,
+                                          const std::filesystem::path& file) const {
+  if (is_bytes_) {
+    const auto wrong = std::ranges::find_if_not(intensities, can_be_byte);
+    if (wrong != intensities.end()) throw other_scale(file, *wrong, "whole numbers from 0 to 255");
+    for (float& value : intensities) value /= kMaxOfByte;
+  } else if (are_shares_) {
+    const auto wrong = std::ranges::find_if(intensities, is_above_share);
+    if (wrong != intensities.end()) throw other_scale(file, *wrong, "at most 1");
+  }
+  return intensities;
+}
+
+IntensityScale scale_of_scans(const ScanSource& source,
+                              const std::vector<std::filesystem::path>& files) {
+  const std::set<std::size_t> chosen = {0, files.size() / 2, files.size() - 1};
+  std::vector<std::vector<float>> sample;
+  sample.reserve(chosen.size());
+  for (const std::size_t k : chosen) sample.push_back(source.read(files[k]).intensities);
+  return IntensityScale(sample);
+}
+
+std::string IntensityScale::description() const {
+  return is_bytes_ ? "0 to 255 in the files, divided by 255" : "as in the files";
 }
 
 }  // namespace adasplats

@@ -4,24 +4,25 @@
 
 #include <string>
 
-#include "adasplats/cloud/load/sensor_frames.h"
+#include "adasplats/cloud/load/sensor_drive.h"
 
 namespace adasplats {
 
-/// Which frame the points of a drive's files are in, and what tells it.
+/// The frame of the points in a drive's files, and the reason for the decision.
 struct FrameVerdict {
-  PointsIn points_in = PointsIn::found;  ///< found: nothing tells
+  PointsIn points_in = PointsIn::found;  ///< found: undetermined
   std::string because;                   ///< with figures
 };
 
-/// Decides by the first of these that tells:
-/// - coordinates beyond what LiDARs reach from their sensor: world;
-/// - upright things in pairs of scans 3 to 15 m apart, which meet by the poses or without them
+/// Decides by the first conclusive test below:
+/// - coordinates beyond the range of LiDARs: world;
+/// - upright objects in pairs of scans 3 to 15 m apart: they align with the poses, or without them
 ///   (weigh_poses());
-/// - the cones of a sensor's beams, on which the points lie as they stand (sensor), or seen from
-///   the poses at their times (world);
-/// - the middles of the points, where poses are far from the origin: around it, or around them;
-/// - poses that are all the identity: both are one.
+/// - the cones of a sensor's beams: the points are on them as given (sensor), or as seen from the
+///   poses at their times (world);
+/// - the median points of scans whose poses are far from the origin: near the origin, or near the
+///   poses;
+/// - poses that are all the identity: both frames are the same.
 FrameVerdict find_frame(const SensorFrames& frames, const Executor& executor);
 
 }  // namespace adasplats

@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMaxFrames = 100;  // of a chain, and in a message; robots have ten
+constexpr std::size_t kMaxFrames = 100;  // in a chain, and in a message; robots have about ten
 
 std::string quoted_frame(const std::string& frame) { return "'" + frame + "'"; }
 
@@ -22,20 +22,19 @@ void require_usable(const FrameEdge& edge) {
   if (!edge.fault.empty()) throw Error(ErrorKind::data, edge.fault);
 }
 
-/// One transform of a chain, asked at ascending times.
+/// One transform of a chain over time.
 class EdgeAtTimes {
  public:
   explicit EdgeAtTimes(const FrameEdge& edge) : edge_(edge) {
     if (!edge.is_static) gaps_ = track_of(edge.parent_from_child).gaps;
   }
-  /// Nothing where it is not known.
+  /// Nothing outside its poses.
   std::optional<RigidTransform> at(double time_s) const {
     const Trajectory& poses = edge_.parent_from_child;
     if (edge_.is_static) return poses.front().world_from_sensor;
     if (time_s < poses.front().time_s || time_s > poses.back().time_s) return std::nullopt;
-    // The poses at either end of a gap are known, as is what is at most one distance within it.
-    const auto behind = std::ranges::lower_bound(gaps_, time_s, {}, &TimeSpan::first);
-    if (behind != gaps_.begin() && time_s < std::prev(behind)->last) return std::nullopt;
+    // Gaps begin and end one pose step inside the missing part.
+    if (is_in_gap(gaps_, {time_s, time_s})) return std::nullopt;
     return interpolate(poses, time_s);
   }
 
@@ -52,7 +51,7 @@ void FrameTree::add(FrameEdge edge) {
     throw Error(ErrorKind::data, "frame " + quoted_frame(edge.child) + " has two parents, " +
                                      quoted_frame(found->second.parent) + " and " +
                                      quoted_frame(edge.parent));
-  // What changes over time says more than a static transform of the same frames.
+  // A transform that changes over time replaces a static one of the same frames.
   if (found == edges_.end() || (found->second.is_static && !edge.is_static))
     edges_.insert_or_assign(edge.child, std::move(edge));
 }
@@ -88,7 +87,7 @@ std::vector<const FrameEdge*> FrameTree::way_up(const std::string& frame) const 
                                        std::to_string(kMaxFrames) + " transforms below its root");
     if (way.size() > edges_.size())
       throw Error(ErrorKind::data, "the transforms of frame " + quoted_frame(frame) +
-                                       " go round in a ring (frames: " + frame_names() + ")");
+                                       " form a cycle (frames: " + frame_names() + ")");
   }
   return way;
 }
@@ -135,9 +134,10 @@ RigidTransform FrameTree::fixed_between(const std::string& from, const std::stri
   if (from == to) return {};
   const auto up_from = way_up(from), up_to = way_up(to);
   if (root_of(from) != root_of(to))
-    throw Error(ErrorKind::data, "no transforms join frame " + quoted_frame(from) + " and frame " +
-                                     quoted_frame(to) + " (frames: " + frame_names() + ")");
-  // Above the lowest frame that both have, their ways are one.
+    throw Error(ErrorKind::data, "no transforms connect frame " + quoted_frame(from) +
+                                     " and frame " + quoted_frame(to) +
+                                     " (frames: " + frame_names() + ")");
+  // Above the lowest common frame the two chains are the same.
   std::size_t common = 0;
   while (common < up_from.size() && common < up_to.size() &&
          up_from[up_from.size() - 1 - common] == up_to[up_to.size() - 1 - common])
@@ -148,7 +148,7 @@ RigidTransform FrameTree::fixed_between(const std::string& from, const std::stri
       require_usable(*way[k]);
       if (!way[k]->is_static)
         throw Error(ErrorKind::data, "frame " + quoted_frame(way[k]->child) + " moves in " +
-                                         quoted_frame(way[k]->parent) + ", so that frame " +
+                                         quoted_frame(way[k]->parent) + ", so frame " +
                                          quoted_frame(to) + " is not fixed in " +
                                          quoted_frame(from));
       above_from_frame = way[k]->parent_from_child.front().world_from_sensor * above_from_frame;

@@ -10,18 +10,18 @@
 
 namespace adasplats {
 
-/// Where one frame is in another over time.
+/// The pose of one frame in another over time.
 struct FrameEdge {
   std::string parent, child;
   bool is_static = false;
   Trajectory parent_from_child;  ///< of a static one a single pose
-  std::string fault;             ///< why it cannot be used; thrown when it is
+  std::string fault;             ///< why it cannot be used; thrown on use
 };
 
-/// The frames of a recording, as ROS's transforms (tf2) name them: each has one parent at most.
+/// The frames of a recording, named as in ROS transforms (tf2): each has at most one parent.
 class FrameTree {
  public:
-  /// Errors: data where a frame has another parent already.
+  /// Errors: data if the frame already has another parent.
   void add(FrameEdge edge);
 
   bool empty() const { return edges_.empty(); }
@@ -29,22 +29,22 @@ class FrameTree {
   /// "'map', 'base_link'", for messages.
   std::string frame_names() const;
 
-  /// The frame that has no parent above `frame`.
+  /// The topmost ancestor of `frame`.
   std::string root_of(const std::string& frame) const;
   /// Whether a transform between `frame` and its root changes over time.
   bool moves(const std::string& frame) const;
 
-  /// Poses of `frame` in its root, at all times that a transform between them has and all cover:
-  /// nothing is extrapolated, and a gap of one (Track) is a gap. Errors: data (no such times, a
-  /// rotation that is none).
+  /// Poses of `frame` in its root, at all times of any transform between them that all of them
+  /// cover, without extrapolation and outside gaps (Track). Errors: data (no such times, an invalid
+  /// rotation).
   Trajectory poses_of(const std::string& frame) const;
 
-  /// Where `to` is in `from`, which are the same, or joined by transforms that do not change.
-  /// Errors: data that names the frames.
+  /// The pose of `to` in `from`, which are the same or connected by static transforms. Errors: data
+  /// with the frames.
   RigidTransform fixed_between(const std::string& from, const std::string& to) const;
 
  private:
-  /// From `frame` to its root. Errors: data where frames are in a ring.
+  /// From `frame` to its root. Errors: data if the frames form a cycle.
   std::vector<const FrameEdge*> way_up(const std::string& frame) const;
 
   std::map<std::string, FrameEdge> edges_;  ///< by the child

@@ -19,13 +19,14 @@ constexpr std::size_t kMaxValuesOfRow = 100'000;
 constexpr int kDeepest = 32;
 constexpr std::size_t kMaxTextsBytes = std::size_t{1} << 24;
 
-/// What ended the parsing. A number beyond the range of a double (1e999) is no parse_error.
+/// A number beyond the range of a double (1e999) is not a parse_error.
 Error no_json(const std::filesystem::path& file, const json::exception& problem) {
   const auto* const damage = dynamic_cast<const json::parse_error*>(&problem);
-  return {ErrorKind::data,
-          file.string() + (damage != nullptr ? ": byte " + std::to_string(damage->byte) +
-                                                   ": is no JSON there: it is damaged or cut"
-                                             : ": has a number beyond the range of real numbers")};
+  return {
+      ErrorKind::data,
+      file.string() + (damage != nullptr ? ": byte " + std::to_string(damage->byte) +
+                                               ": invalid JSON; the file is damaged or truncated"
+                                         : ": contains a number beyond the range of a double")};
 }
 
 double finite_real(const json& value, const JsonRow& row, const std::string& what) {
@@ -65,7 +66,7 @@ double JsonRow::real() const { return finite_real(*value_, *this, ""); }
 
 std::int64_t JsonRow::integer(const char* key) const {
   const json& value = member(key);
-  // Beyond 63 bits it would become a negative one.
+  // A number beyond 63 bits would become negative.
   const bool fits =
       value.is_number_integer() &&
       (!value.is_number_unsigned() || std::in_range<std::int64_t>(value.get<std::uint64_t>()));
@@ -96,7 +97,7 @@ Mat3d JsonRow::rotation(const std::array<double, 4>& wxyz, const char* key) cons
   const auto [w, x, y, z] = wxyz;
   const double norm = std::sqrt(w * w + x * x + y * y + z * z);
   if (!(std::fabs(norm - 1) <= kTolerance))
-    throw fault("the quaternion" + quoted(key) + " is no rotation: its length is " +
+    throw fault("the quaternion" + quoted(key) + " is not a rotation: its length is " +
                 exact_text(norm) + ", expected 1");
   return rotation_from_quaternion(w / norm, x / norm, y / norm, z / norm);
 }
@@ -119,18 +120,19 @@ void for_each_json_row(const std::filesystem::path& file,
     if (depth == 0 && event != Event::array_start && event != Event::array_end)
       throw Error(ErrorKind::data, file.string() + ": expected an array");
     if (depth > kDeepest || ++values > kMaxValuesOfRow)
-      throw Error(ErrorKind::data, file.string() + ": element " + std::to_string(rows) +
-                                       " (from 0) is larger than any of such a table");
+      throw Error(ErrorKind::data,
+                  file.string() + ": element " + std::to_string(rows) +
+                      " (from 0) has more than 100,000 values; this is not a table");
     if (depth != 1 || event == Event::object_start || event == Event::array_start) return true;
     visit(JsonRow(file, rows, parsed));
     ++rows;
     values = 0;
-    return false;  // it is let go
+    return false;  // discard the element
   };
   try {
     [[maybe_unused]] const json rest = json::parse(stream, look);
   } catch (const json::exception& problem_there) {
-    if (stream.bad()) throw Error(ErrorKind::io, file.string() + ": cannot be read further");
+    if (stream.bad()) throw Error(ErrorKind::io, file.string() + ": reading failed");
     throw no_json(file, problem_there);
   }
 }
@@ -139,7 +141,8 @@ void for_each_json_text(const std::filesystem::path& file,
                         const std::function<void(const std::string&, const std::string&)>& visit) {
   std::error_code ignored;
   if (std::filesystem::file_size(file, ignored) > kMaxTextsBytes && !ignored)
-    throw Error(ErrorKind::data, file.string() + ": is larger than any table of names");
+    throw Error(ErrorKind::data,
+                file.string() + ": is larger than 16 MiB; this is not a table of names");
   json texts;
   try {
     texts = json::parse(read_file(file));

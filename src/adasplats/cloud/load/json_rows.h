@@ -15,25 +15,26 @@
 
 namespace adasplats {
 
-/// An element of the array that a JSON file is. Errors of all: data with the file and the row.
+/// An element of the top-level array of a JSON file. Errors of all functions: data with the file
+/// and the row.
 class JsonRow {
  public:
   JsonRow(const std::filesystem::path& file, std::size_t number, const nlohmann::json& value)
       : file_(&file), number_(number), value_(&value) {}
 
   std::size_t number() const { return number_; }  ///< from 0
-  /// Where it is an object, a member of it.
+  /// A member, if the element is an object.
   std::string text(const char* key) const;
   double real(const char* key) const;
   std::int64_t integer(const char* key) const;
   bool boolean(const char* key) const;
   bool has(const char* key) const;
   JsonRow object(const char* key) const;
-  /// Where it is a number, that; finite.
+  /// The value, if the element is a finite number.
   double real() const;
-  /// A pose of an array of three numbers and a quaternion w, x, y, z.
+  /// A pose from an array of three numbers and a quaternion w, x, y, z.
   RigidTransform pose(const char* translation, const char* rotation) const;
-  /// A rotation of a quaternion, which has to have length 1 to a thousandth.
+  /// The rotation of a quaternion with length 1 to a thousandth.
   Mat3d rotation(const std::array<double, 4>& wxyz, const char* key) const;
 
   Error fault(const std::string& what) const;
@@ -48,13 +49,12 @@ class JsonRow {
   const nlohmann::json* value_;
 };
 
-/// Calls visit for each element of the array that a JSON file is, one after the other: memory is
-/// that of one element, whose values are at most a hundred thousand. Errors: no_input, io, data (no
-/// JSON, with the byte; no array).
+/// Calls visit for each element of the top-level array of a JSON file. Memory: one element, of at
+/// most 100,000 values. Errors: no_input, io, data (invalid JSON, with the byte; not an array).
 void for_each_json_row(const std::filesystem::path& file,
                        const std::function<void(const JsonRow&)>& visit);
 
-/// A file that is an object of texts by numbers: {"1": "Smoke", ...}.
+/// Calls visit(key, text) for a file that is an object of texts: {"1": "Smoke", ...}.
 void for_each_json_text(const std::filesystem::path& file,
                         const std::function<void(const std::string&, const std::string&)>& visit);
 

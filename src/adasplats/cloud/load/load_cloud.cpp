@@ -28,7 +28,66 @@ namespace adasplats {
 
 namespace {
 
-/// What is read, and the one coordinate system of all.
+/// If any cloud has sensor positions, gives all of them some: a point without one gets its own
+/// position and OriginKind::none. Removes the kinds if all are measured.
+void unify_origins(std::vector<PointCloud>& clouds) {
+  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
+  const auto all_measured = [](const PointCloud& c) {
+    return c.empty() ||
+           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
+             return kind == OriginKind::measured;
+           }));
+  };
+  if (std::ranges::none_of(clouds, has_sensors)) return;
+  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
+  for (PointCloud& cloud : clouds) {
+    if (!needs_kinds) {
+      cloud.origin_kinds = {};
+    } else if (cloud.sensor_positions.empty()) {
+      cloud.sensor_positions = cloud.positions;
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
+    } else if (cloud.origin_kinds.empty()) {
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
+    }
+  }
+}
+
+/// Empties an attribute that some clouds have and others lack.
+template <class Attribute>
+void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute,
+                     ProgressSink& progress) {
+  std::size_t with = 0, filled = 0;
+  for (const PointCloud& cloud : clouds) {
+    if (cloud.empty()) continue;
+    ++filled;
+    if (!attribute.of(cloud).empty()) ++with;
+  }
+  if (with == filled) return;
+  for (PointCloud& cloud : clouds) attribute.of(cloud) = {};
+  if (with != 0)
+    progress.warn(std::string(attribute.title) + " are dropped: only " + std::to_string(with) +
+                  " of " + std::to_string(filled) + " inputs have them");
+}
+
+/// Joins the clouds; `scan_poses` are those of their scans. An attribute that only some inputs have
+/// is dropped with a warning; sensor positions are kept (load_cloud).
+PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,
+                  ProgressSink& progress) {
+  unify_origins(clouds);
+  for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
+  PointCloud all;
+  all.origin = origin;
+  for (PointCloud& cloud : clouds)
+    if (!cloud.empty()) append(all, std::move(cloud));
+  all.scan_poses = std::move(scan_poses);
+  return all;
+}
+
+}  // namespace
+
+namespace {
+
+/// The parts that were read, and their common coordinate system.
 struct ReadParts {
   std::vector<CloudPart> parts;
   Crs crs;
@@ -51,18 +110,19 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
     if (source.input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
     points += parts.back().size();
     if (points > std::numeric_limits<std::uint32_t>::max())
-      throw Error(ErrorKind::data,
-                  path.string() + ": with it the cloud has more than 4294967295 points");
+      throw Error(ErrorKind::data, path.string() +
+                                       ": with this input the cloud exceeds 4,294,967,295 points; "
+                                       "load fewer inputs, or build a city (`tile`)");
   }
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
   return {std::move(parts), crs.crs()};
 }
 
-/// Tells the parts of loading apart.
+/// Measures the parts of loading.
 class LoadClock {
  public:
   explicit LoadClock(std::vector<LoadReport::PartTime>& parts) : parts_(parts) {}
-  /// What was done since the last end.
+  /// Records the time since the last end.
   void end(const char* name) {
     parts_.push_back({name, watch_.seconds()});
     watch_ = {};
@@ -88,7 +148,7 @@ struct Extents {
   }
 };
 
-/// Marks the points that are finite; gives their extents.
+/// Marks the finite points and returns their extents.
 Extents find_finite(const CloudPart& part, Kept& kept, const Executor& executor) {
   kept.resize(part.size());
   return executor.sum_chunks(
@@ -116,7 +176,7 @@ void require_all_finite(const CloudPart& part, const Kept& kept) {
                                    " (from 0) is not finite in position");
 }
 
-/// How many points have NaN in all three coordinates.
+/// Number of points with three NaN coordinates.
 std::size_t count_no_returns(const CloudPart& part, const Kept& kept) {
   std::size_t count = 0;
   if (count_dropped(kept) == 0) return count;
@@ -128,7 +188,7 @@ std::size_t count_no_returns(const CloudPart& part, const Kept& kept) {
   return count;
 }
 
-/// Makes what is not finite NaN: not known. Gives how many of the points that are kept have that.
+/// Replaces values that are not finite with NaN (unknown). Returns how many kept points have one.
 std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept,
                          const Executor& executor) {
   return executor.sum_chunks(intensities.size(), kCoarseGrain, std::size_t{0},
@@ -154,11 +214,11 @@ Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& exec
       });
 }
 
-/// The parts and what is known of their points on the way to one cloud.
+/// The parts and which of their points are kept, before they become one cloud.
 struct Gathered {
   std::vector<CloudPart> parts;
-  std::vector<Kept> kept = {};  ///< one a part
-  Extents finite = {};          ///< of the points that are
+  std::vector<Kept> kept = {};  ///< per part
+  Extents finite = {};          ///< of the finite points
 
   Extents extents(const Executor& executor) const {
     Extents all;
@@ -186,19 +246,20 @@ Vec3d median_of(const Gathered& gathered) {
   return median;
 }
 
-/// Drops what is farther from the median than allowed; gives the extents of the rest.
+/// Drops points farther from the median than allowed; returns the extents of the rest.
 Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& executor) {
   const Extents& all = gathered.finite;
   if (!(all.low.x <= all.high.x)) return all;  // no points
-  // Where the whole box is smaller than the distance no point is farther from any other.
-  if (is_place(all.low) && is_place(all.high) && length(all.high - all.low) <= max_distance_m)
+  // If the box is smaller than the distance, no point is that far from another.
+  if (is_valid_position(all.low) && is_valid_position(all.high) &&
+      length(all.high - all.low) <= max_distance_m)
     return all;
   const Vec3d median = median_of(gathered);
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     const CloudPart& part = gathered.parts[p];
     executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
       part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
-        if (!is_place(world) || !(length(world - median) <= max_distance_m))
+        if (!is_valid_position(world) || !(length(world - median) <= max_distance_m))
           gathered.kept[p][i] = 0;
       });
     });
@@ -206,13 +267,13 @@ Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& exec
   return gathered.extents(executor);
 }
 
-/// Moves the values that stay together, run by run: few are dropped of most clouds.
+/// Moves the kept values together, run by run: most clouds lose few points.
 template <class T>
 void keep_only(std::vector<T>& values, const Kept& kept) {
   if (values.empty()) return;
   const std::uint8_t* const flags = kept.data();
   const std::size_t size = values.size();
-  // The first flag of a kind from `i` on; memchr looks at many at a time.
+  // The first such flag at or after `i`; memchr compares many at a time.
   const auto find = [&](std::size_t i, int flag) {
     const void* const found = i < size ? std::memchr(flags + i, flag, size - i) : nullptr;
     return found == nullptr
@@ -234,7 +295,7 @@ void keep_only(std::vector<T>& values, const Kept& kept) {
   if (is_much_smaller) values.shrink_to_fit();
 }
 
-/// Each attribute by a thread, in place.
+/// One thread per attribute, in place.
 void keep_only(PointCloud& cloud, const Kept& kept, const Executor& executor) {
   std::vector<std::function<void()>> tasks = {[&] { keep_only(cloud.positions, kept); }};
   for_each_attribute([&](const auto& attribute) {
@@ -244,27 +305,28 @@ void keep_only(PointCloud& cloud, const Kept& kept, const Executor& executor) {
   executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
 }
 
-/// Throws data for a sensor position that is no place: a float of it would be infinite.
+/// Throws data for a sensor position out of range: as a float it would be infinite.
 void require_sensor_places(const CloudPart& part, const Kept& kept) {
   for (std::size_t i = 0; i < part.world_sensors.size(); ++i) {
-    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) || is_place(part.world_sensors[i]))
+    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) ||
+        is_valid_position(part.world_sensors[i]))
       continue;
-    throw Error(ErrorKind::data, part.runs.front().file.string() +
-                                     ": the sensor position of point " + std::to_string(i) +
-                                     " (from 0) is beyond 1e12 m; expected metres, or NaN " +
-                                     "where it is not known");
+    throw Error(ErrorKind::data,
+                part.runs.front().file.string() + ": the sensor position of point " +
+                    std::to_string(i) +
+                    " (from 0) is beyond 1e12 m; expected metres, or NaN if unknown");
   }
 }
 
-/// The part's cloud relative to `origin`, without the points that are dropped.
+/// The part's cloud relative to `origin`, without the dropped points.
 PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const PointOrigins& origins,
                      const Executor& executor) {
   const std::size_t points = part.size();
   const bool has_sensors = origins.has_any(part);
   const bool has_kinds = has_sensors && !part.is_sequence;
   PointCloud cloud = std::move(part.cloud);
-  // The part keeps the positions, since for_each() reads them there; those of sequences are
-  // transformed in place, each read once, just before it is written. Likewise the kinds.
+  // The part keeps positions and kinds, since for_each() and PointOrigins read them there. Those of
+  // sequences are transformed in place: each is read once, just before it is written.
   std::vector<Vec3f>& positions = part.cloud.positions;
   positions = std::move(cloud.positions);
   resize_large(positions, points);
@@ -288,7 +350,7 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   return cloud;
 }
 
-/// Adds flags, 1 or 0 each, to others; gives how many of the points had none. None at all: 0.
+/// Merges flags (1 or 0 each, or empty) into others; returns how many are new.
 std::size_t add_flags(const Kept& more, Kept& flags) {
   if (more.empty()) return 0;
   flags.resize(more.size());
@@ -300,28 +362,29 @@ std::size_t add_flags(const Kept& more, Kept& flags) {
   return added;
 }
 
-/// The points on the vehicle that carried the sensor, of those without a flag in `left_out`.
+/// Points on the recording vehicle, of those without a flag in `left_out`.
 Kept own_body(const PointCloud& cloud, std::optional<double> radius_m, const Kept& left_out,
               const Executor& executor) {
   if (!radius_m) return find_own_body(cloud, {}, executor, left_out);
   if (*radius_m == 0) return {};
   if (!cloud.has_beams()) {
-    throw Error(ErrorKind::usage,
-                "points near their sensor are to be left out, but no point says where it was");
+    throw Error(
+        ErrorKind::usage,
+        "`own_body` needs sensor positions, but no point has one (`own_body` 0 keeps all points)");
   }
   return points_within(cloud, *radius_m, executor);
 }
 
-/// What is known of the inputs beyond a piece of them.
+/// What a piece needs to know of the rest of the inputs.
 struct PieceContext {
   bool has_whole_scans = true;  ///< all scans have all of their points
   PathBeyond beyond;
 };
 
-/// Leaves out the points with a flag in `moving` and those of the vehicle: on it, and where it
-/// drove. The cloud is gone through once, when all of them are known.
-void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, const PathBeyond& beyond,
-               LoadReport& report, const Executor& executor) {
+/// Removes the points with a flag in `moving`, those on the vehicle and those in its driven path,
+/// in one pass over the cloud.
+void remove_points(PointCloud& cloud, Kept moving, const LoadOptions& options,
+                   const PathBeyond& beyond, LoadReport& report, const Executor& executor) {
   Kept left_out;
   report.in_boxes = add_flags(moving, left_out);
   moving = {};
@@ -331,12 +394,12 @@ void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, const
   report.driven_path =
       add_flags(find_in_driven_path(cloud, path, executor, left_out, beyond), left_out);
   if (report.in_boxes + report.own_body + report.driven_path == 0) return;
-  for (std::uint8_t& flag : left_out) flag = flag == 0 ? 1 : 0;  // now of those that stay
+  for (std::uint8_t& flag : left_out) flag = flag == 0 ? 1 : 0;  // now the points to keep
   keep_only(cloud, left_out, executor);
 }
 
-/// Of the points that are kept, in the order of the cloud, those in boxes of moving objects, 1 or 0
-/// each; empty where none is.
+/// Flags of the kept points in boxes of moving objects, 1 or 0 each, in the order of the cloud;
+/// empty: none.
 Kept in_boxes(const Gathered& gathered) {
   const auto has_boxes = [](const CloudPart& part) { return !part.in_boxes.empty(); };
   Kept flags;
@@ -349,8 +412,8 @@ Kept in_boxes(const Gathered& gathered) {
   return flags;
 }
 
-/// Finds what of the parts is finite, and counts it.
-void look_at_parts(std::span<const OpenInput> sources, const LoadOptions& options,
+/// Finds and counts the finite points of the parts.
+void inspect_parts(std::span<const OpenInput> sources, const LoadOptions& options,
                    Gathered& gathered, LoadReport& report, const Executor& executor) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     CloudPart& part = gathered.parts[p];
@@ -371,7 +434,7 @@ void look_at_parts(std::span<const OpenInput> sources, const LoadOptions& option
   }
 }
 
-/// Loads inputs that are open; `name` is what they are called in messages about all of them.
+/// Loads open inputs; `name` is their name in messages.
 std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
                                             const LoadOptions& options, const std::string& name,
                                             const PieceContext& context, const Executor& executor,
@@ -390,11 +453,11 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive = std::ranges::any_of(sources, &OpenInput::is_frame_drive);
-  require_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
+  require_options_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
   Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
   clock.end("read");
-  look_at_parts(sources, options, gathered, report, executor);
+  inspect_parts(sources, options, gathered, report, executor);
   if (placed) {
     report.timed = placed->origins;
     report.drives.push_back({sources.front().input.path, {}, placed->origins.scans});
@@ -419,11 +482,11 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
   cloud.crs = std::move(crs);
   clock.end("place");
-  // Before any point is taken away: where one was, its beam did return.
+  // Before any point is removed: where one was, its beam did return.
   if (options.empty_beams && context.has_whole_scans)
     cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
-  leave_out(cloud, std::move(moving), options, context.beyond, report, executor);
+  remove_points(cloud, std::move(moving), options, context.beyond, report, executor);
   report_own_body(name, report, options, progress);
   clock.end("leave the vehicle out");
   report.origins = count_origins(cloud);

@@ -22,56 +22,55 @@
 
 namespace adasplats {
 
-/// How files become a point cloud. `trajectory` says where the sensor was when it measured the
-/// points that have no sensor position: at their times (TimedOrigins), where they and its poses
-/// have some. Else its nearest position (in the plane): a guess, metres off, OriginKind::guessed,
-/// which turns normals alone.
+/// How files become a point cloud. `trajectory` gives the sensor position of points without one:
+/// the pose at the point's time (TimedOrigins) if both have times, else the nearest pose in the
+/// plane. The nearest pose is a guess, metres off (OriginKind::guessed), and only orients normals.
 struct LoadOptions : DriveSettings {
-  /// Column of the semantic class; empty: the first of label, class, classification, semantic,
-  /// scalar_label, scalar_Classification, sem_class that is there.
+  /// Column of the semantic class; empty: the first that exists of label, class, classification,
+  /// semantic, scalar_label, scalar_Classification, sem_class.
   std::string label_field;
-  /// Columns of the sensor position; empty: the first triple found of x_lidar_position..,
-  /// sensor_x.., x_origin.., scalar_x_lidar_position... (y and z likewise).
+  /// Columns of the sensor position; empty: the first triple that exists of x_lidar_position, ...,
+  /// sensor_x, ..., x_origin, ... and their scalar_ twins.
   std::string sensor_x_field, sensor_y_field, sensor_z_field;
-  /// The station that measured every point that has no sensor position, world coordinates. It must
-  /// be possible (station_objection()). OriginKind::stated.
+  /// Position of the station that measured all points without a sensor position, world coordinates.
+  /// It must be plausible (station_objection()). OriginKind::stated.
   std::optional<Vec3d> viewpoint;
-  /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
+  /// Scans of a sequence: at most `count`, starting at `first`, every `stride`-th.
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
   std::size_t scan_stride = 1;
-  /// Which points of files are read. No beams without a return are looked for then: that no point
-  /// is there says nothing.
+  /// Which points of files are read. A selection disables the search for empty beams, because a
+  /// missing point then proves nothing.
   PointSelection selection;
-  /// Points not finite are an error instead of being dropped and counted.
+  /// Points that are not finite are an error instead of being dropped and counted.
   bool strict = false;
   /// Read whole records of truncated LAS files.
   bool salvage = false;
   /// Points farther than this from the median of all points are dropped and counted, m.
   double max_distance_m = 100e3;
-  /// Where more than this share of all points would be dropped as far or as not finite, that is an
-  /// error: single faults are rarer, and more is a second place or another format. Of 51 small
-  /// real files none has any; no returns of organised clouds (NaN, NaN, NaN) do not count.
+  /// Dropping more than this share of all points as far or not finite is an error: single faults
+  /// are rarer, and more means a second scene or another format. None of 51 small real files has
+  /// such points. Missing returns of organised clouds (NaN, NaN, NaN) do not count.
   double max_dropped = 0.01;
-  /// Sensor positions are not judged by what lies behind what as seen from them. For files with
-  /// later returns, which do lie behind earlier ones.
+  /// Skip the check that few points are hidden behind others as seen from their sensor positions.
+  /// For files with later returns, which are behind earlier ones.
   bool trust_origins = false;
-  /// Points on the vehicle that carried the sensor are left out: where this is not given those that
-  /// find_own_body() finds, else all that are nearer to their sensor, m; with 0 none.
+  /// Removal of points on the recording vehicle. Not set: those that find_own_body() finds; else
+  /// all points nearer to their sensor than this, m; 0 removes none.
   std::optional<double> own_body_m;
-  /// Points in the volume that the carrier of the sensor passed through, so far to each side of its
-  /// path, m (find_in_driven_path()), are left out; 0 keeps them.
+  /// Half width of the volume that the recording vehicle drove through, m. Points in it are removed
+  /// (find_in_driven_path()); 0 keeps them.
   double driven_path_m = 0.6;
-  /// Also looks for the beams that returned nothing (find_empty_beams(), before points are left
-  /// out) and puts them into the cloud.
+  /// Also find the beams that returned nothing (find_empty_beams(), before points are removed) and
+  /// add them to the cloud.
   bool empty_beams = false;
 };
 
-/// What of the points is dropped, and when that is an error.
+/// Which points are dropped, and how many dropped points are an error.
 template <class Visit>
 void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
   visit(Setting{.name = "max_distance",
-                .help = "Points farther than this from the median of all are dropped, m",
+                .help = "Drop points farther than this from the median of all points, m",
                 .key = "max_distance_m",
                 .group = group,
                 .min = 0,
@@ -79,25 +78,24 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .exclusive_min = true},
         load.max_distance_m);
   visit(Setting{.name = "max_dropped",
-                .help = "Share of the points that may be dropped as far or not finite before it is "
-                        "an error",
+                .help = "Maximum share of points that may be dropped as too far or not finite; "
+                        "more is an error",
                 .value = "SHARE",
                 .group = group,
                 .min = 0,
                 .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
-                .help = "Points nearer than this to their sensor are the recording vehicle itself "
-                        "and left out, m; 0 keeps all (default: those that go along with the "
-                        "sensor)",
+                .help = "Remove points nearer than this to their sensor as part of the recording "
+                        "vehicle, m; 0 keeps all (default: points that move with the sensor)",
                 .value = "M",
                 .key = "own_body_m",
                 .group = group,
                 .min = 0},
         load.own_body_m);
   visit(Setting{.name = "driven_path",
-                .help = "Points in the volume that the vehicle passed through, so far to each side "
-                        "of its path, are left out, m; 0 keeps all",
+                .help = "Half width of the driven path, m: points in the volume that the vehicle "
+                        "drove through are removed; 0 keeps all",
                 .value = "M",
                 .key = "driven_path_m",
                 .group = group,
@@ -105,12 +103,13 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
-                .help = "Take sensor positions though points lie behind others as seen from there, "
-                        "as later returns do",
+                .help = "Accept sensor positions even if points are hidden behind others as seen "
+                        "from there (files with later returns)",
                 .group = group},
         load.trust_origins);
   visit(
-      Setting{.name = "strict", .help = "Points that are not finite are an error", .group = group},
+      Setting{
+          .name = "strict", .help = "Treat points that are not finite as an error", .group = group},
       load.strict);
   visit(Setting{.name = "salvage",
                 .help = "Read the whole records of truncated LAS files",
@@ -118,7 +117,7 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
         load.salvage);
 }
 
-/// All but which scans, and the columns of the sensor's position.
+/// All options except the choice of scans and the columns of the sensor position.
 template <class Visit>
 void visit_settings(LoadOptions& load, Visit&& visit) {
   constexpr const char* kGroup = "Input";
@@ -128,65 +127,64 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                 .group = kGroup},
         load.label_field);
   visit(Setting{.name = "viewpoint",
-                .help = "The station that measured all points that have no sensor position, world "
-                        "coordinates",
+                .help = "Position of the station that measured all points without a sensor "
+                        "position, world coordinates",
                 .group = kGroup},
         load.viewpoint);
   visit(
       Setting{.name = "trajectory",
-              .help = "Poses of the recording. Of points with times: every beam's beginning, for a "
-                      "folder of scans with the sensor and its mount as they are recognised, else "
-                      "with `mount`. Without times the nearest pose turns the normals of points "
-                      "that have no sensor position; a guess, nothing is checked with it",
+              .help =
+                  "Poses of the recording. Points with times get the start of each beam from them: "
+                  "with the recognised sensor and mount for a folder of scans, else with `mount`. "
+                  "Points without times use the nearest pose as a guess, only to orient normals",
               .group = kGroup},
       load.trajectory);
   visit_mount_settings(load, kGroup, visit);
   visit(Setting{.name = "extent",
-                .help = "Points of files that lie in this box; of COPC no more is unpacked than "
-                        "that takes",
+                .help = "Read only the points of files in this box (COPC: only the nodes that "
+                        "overlap it are unpacked)",
                 .group = kGroup},
         load.selection.extent);
   visit(Setting{.name = "level",
-                .help = "Of files with levels of detail (COPC) those from the coarsest, 0, to this",
+                .help = "Files with levels of detail (COPC): read levels 0 (coarsest) to this one",
                 .value = "N",
                 .group = kGroup,
                 .min = 0,
                 .max = 30},
         load.selection.level);
-  visit(
-      Setting{.name = "resolution",
-              .help = "Of files with levels of detail (COPC) as many as points so far apart take, "
-                      "m",
-              .value = "M",
-              .key = "resolution_m",
-              .group = kGroup,
-              .min = 0,
-              .exclusive_min = true},
-      load.selection.resolution_m);
+  visit(Setting{.name = "resolution",
+                .help = "Files with levels of detail (COPC): read as many levels as this point "
+                        "spacing needs, m",
+                .value = "M",
+                .key = "resolution_m",
+                .group = kGroup,
+                .min = 0,
+                .exclusive_min = true},
+        load.selection.resolution_m);
   visit(Setting{.name = "boxes",
                 .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
-                        "size_z,yaw): what those that move hold is left out of scans with times",
+                        "size_z,yaw): points in boxes that move are removed from scans with times",
                 .value = "FILE",
                 .group = kGroup},
         load.boxes);
   visit_scan_settings(load, kGroup, visit);
-  visit(Setting{.name = "beams_from_poses",
-                .help = "Beams of sequences start at their poses, even where the sensor is "
-                        "recognised",
-                .group = kGroup},
-        load.beams_from_poses);
+  visit(
+      Setting{.name = "beams_from_poses",
+              .help = "Start the beams of sequences at the poses, even if the sensor is recognised",
+              .group = kGroup},
+      load.beams_from_poses);
   visit_drop_settings(load, kGroup, visit);
 }
 
-/// A sequence, or a folder of scans with times, among the inputs.
+/// A sequence among the inputs, or a folder of scans with times.
 struct LoadedDrive {
   std::filesystem::path folder;
   std::string sensor;     ///< of the library (ScanBeams::sensor)
-  std::size_t scans = 0;  ///< that were chosen
+  std::size_t scans = 0;  ///< number of chosen scans
   DriveFacts facts;       ///< of a folder of scans with a trajectory
 };
 
-/// What was understood of points with times and the trajectory of their sensor.
+/// How points with times were combined with the trajectory of their sensor.
 struct TimedOrigins {
   std::size_t points = 0;
   TimeSpan times_s, trajectory_s;  ///< of the points and the poses, both in the trajectory's clock
@@ -194,83 +192,87 @@ struct TimedOrigins {
   double offset_s = 0;
   bool is_mounted = false;  ///< a lever arm was given, else the poses are the sensor's own
   Vec3d mount_m;
-  std::size_t scans = 0;  ///< the points cut by their times...
-  double scan_s = 0;      ///< ...into pieces so long
+  std::size_t scans = 0;  ///< the points are cut by their times
+  double scan_s = 0;      ///< into scans of this length
   double median_range_m = 0;
   double share_behind = 0;  ///< SweepView's
   std::string description() const;
 };
 
-/// What was dropped on the way, and what was understood.
+/// What was dropped while loading, and what was recognised.
 struct LoadReport {
   std::size_t points_read = 0;
-  /// Where the beams of the sequences started (ScanBeams::description), one each.
+  /// Start of the beams of each sequence (ScanBeams::description).
   std::vector<std::string> beams;
-  /// One each, in the order of PointCloud::scan_poses.
+  /// In the order of PointCloud::scan_poses.
   std::vector<LoadedDrive> drives;
-  /// How many points of the cloud have an origin of each kind, by OriginKind.
+  /// Number of points per OriginKind.
   OriginCounts origins{};
   std::optional<TimedOrigins> timed;
-  /// Position not finite.
+  /// Points with a position that is not finite.
   std::size_t dropped_not_finite = 0;
-  /// Of these, points whose three coordinates are NaN.
+  /// Those of them with three NaN coordinates.
   std::size_t no_returns = 0;
-  /// Points kept whose intensity was not finite: NaN in the cloud, not known.
+  /// Kept points with an intensity that was not finite: NaN (unknown) in the cloud.
   std::size_t unknown_intensities = 0;
   /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
   /// longer hold 0.1 mm.
   std::size_t dropped_far = 0;
   /// In boxes of moving objects, of scans with times.
   std::size_t in_boxes = 0;
-  /// On the vehicle that carried the sensor.
+  /// On the recording vehicle.
   std::size_t own_body = 0;
-  /// In the volume that it passed through.
+  /// In the volume that it drove through.
   std::size_t driven_path = 0;
   struct PartTime {
     std::string name;
     double seconds;
   };
-  std::vector<PartTime> seconds;  ///< what the parts of loading took
+  std::vector<PartTime> seconds;  ///< time of each part of loading
 };
 
-/// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and
-/// open_kitti_sequence); what a folder means and which files are no points: cloud_inputs,
-/// require_points. World coordinates; the origin depends on the extents alone. Inputs with and
-/// without an attribute together lose it, with a warning; but sensor positions stay, and points
-/// without one (not finite, or of an input that has none) have OriginKind::none. Scans are numbered
-/// from 0 over all sequences, which must not begin at the very same pose (require_one_world). The
-/// cloud's coordinate system is the one that the inputs say; one that says none, or none of
-/// heights, beside others that do is taken to be in theirs, with a warning. Files (names in any
-/// case): intensity from the first of intensity, reflectance, remission, reflectivity, luma and
-/// their scalar_ twins; classes are the low 16 bits of the label column, instances its high 16 bits
-/// or the column `instance`; `scan_index` as save_cloud_ply writes it. Points with times and a
-/// trajectory with times: TimedOrigins; their scans are pieces of 0.1 s, numbered behind those of
-/// sequences. Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point, with
-/// times and a trajectory 60. Whichever scans of a sequence are chosen, up to five are read to
-/// recognise its sensor and up to eight to check its poses (require_poses_that_fit), without
-/// labels; there one that cannot be read is skipped. What is dropped is reported as warnings.
-/// Errors: those of the readers; data for sensor positions that are impossible (usage for options
-/// that state one); data for inputs of different coordinate systems, with both files and both
-/// systems, and where nothing lies in the extent; data for too much dropped (max_dropped) and for
-/// longitudes and latitudes instead of
-/// metres (require_metres); usage for options that fit nothing and for named columns that are not
-/// there; data for labels that are no whole numbers from 0 to 2^32 - 1.
+/// Loads and joins point files and SemanticKITTI sequence folders (read_points,
+/// open_kitti_sequence). cloud_inputs decides what a folder means, require_points which files are
+/// not points. The cloud is in world coordinates; its origin depends on the extents alone.
+/// - Attributes: if only some inputs have one, it is dropped with a warning. Sensor positions are
+///   kept; points without one get OriginKind::none.
+/// - Scans are numbered from 0 over all sequences, which must not start at the same pose
+///   (require_distinct_starts).
+/// - Coordinate system: that of the inputs. An input without one, or without one for heights, is
+///   assumed to share the others', with a warning.
+/// - Columns of files (names in any case): intensity is the first of intensity, reflectance,
+///   remission, reflectivity, luma and their scalar_ twins. Classes are the low 16 bits of the
+///   label column, instances its high 16 bits or the column `instance`; `scan_index` is as
+///   save_cloud_ply writes it.
+/// - Points with times and a trajectory with times: TimedOrigins. Their scans are 0.1 s long and
+///   numbered after those of sequences.
+/// - Memory: sequences 1.1 times the cloud; files the reader's plus 24 bytes a point, 60 with times
+///   and a trajectory.
+/// - Regardless of the chosen scans, up to five scans of a sequence are read to recognise its
+///   sensor and up to eight to check its poses (verify_poses), without labels; unreadable ones are
+///   skipped.
+/// Dropped points are reported as warnings.
+/// Errors: those of the readers; data for impossible sensor positions (usage if an option states
+/// them); data for inputs in different coordinate systems, with both files and systems, and for an
+/// extent without points; data for too many dropped points (max_dropped) and for degrees instead of
+/// metres (require_metres); usage for options that apply to no input and for named columns that do
+/// not exist; data for labels that are not whole numbers from 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
-/// z_lidar_position, origin_kind (OriginKind; where not all are measured), intensity, label,
-/// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D), and `more`, a value
-/// a point. Doubles where the origin is not zero. The coordinate system as crs_comments().
+/// z_lidar_position, origin_kind (OriginKind; if not all are measured), intensity, label, instance,
+/// scan_index, if the cloud has them (the layout of Paris-CARLA-3D), and `more`, one value per
+/// point. Doubles if the origin is not zero. The coordinate system as crs_comments().
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 
-/// Writes a cloud as LAS 1.4, or LAZ where the name ends in .laz: point format 6, in millimetres
+/// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, in millimetres
 /// from the cloud's origin; classification (the class; 0, never classified, for numbers above 255),
-/// intensity (0 to 1 becomes 0 to 65535, numbers beyond 1 are rounded); extra bytes: what the PLY
-/// has, the intensity as `intensity_value`, and `more`. The coordinate system along. Errors: those
-/// of write_las.
+/// intensity (0 to 1 becomes 0 to 65535; larger numbers are rounded). Extra bytes: the columns of
+/// the PLY, the intensity as `intensity_value`, and `more`. The coordinate system is included.
+/// Errors: those of write_las.
 void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 

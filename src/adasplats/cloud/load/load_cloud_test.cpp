@@ -142,8 +142,10 @@ TEST(LoadCloud, SequencesNamedOneByOneAreOneWorldToo) {
   write_sequence(folder, 2, 0, "a/");
   write_sequence(folder, 2, 0, "b/");
   const auto a = folder.path() / "a", b = folder.path() / "b";
-  expect_error(ErrorKind::usage, {a.string(), b.string(), "very same pose"}, [&] { load({a, b}); });
-  expect_error(ErrorKind::usage, {a.string(), "very same pose"}, [&] { load({a, a}); });
+  expect_error(ErrorKind::usage, {a.string(), b.string(), "start at the same pose"}, [&] {
+    load({a, b});
+  });
+  expect_error(ErrorKind::usage, {a.string(), "start at the same pose"}, [&] { load({a, a}); });
 }
 
 // Oracle: analytic; float steps at 1 km are 0.06 mm.
@@ -231,7 +233,8 @@ TEST(LoadCloud, NoReturnsAreSaid) {
   EXPECT_EQ(cloud.size(), 1U);
   EXPECT_EQ(report.no_returns, 2U);
   ASSERT_EQ(listener.warnings.size(), 1U);
-  EXPECT_NE(listener.warnings[0].find("2 of 3 points (66.7 %) are no returns"), std::string::npos)
+  EXPECT_NE(listener.warnings[0].find("2 of 3 points (66.7 %) are missing returns"),
+            std::string::npos)
       << listener.warnings[0];
 }
 
@@ -282,7 +285,7 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   const std::string kilometre = "2.34 48.84 35\n2.35 48.84 36\n2.34 48.85 38\n2.35 48.85 37\n";
   ASSERT_EQ(warnings_of(kilometre).size(), 1U);
   EXPECT_NE(
-      warnings_of(kilometre)[0].find("taken as metres; if these are longitudes and latitudes"),
+      warnings_of(kilometre)[0].find("assumed to be metres; if they are longitudes and latitudes"),
       std::string::npos);
   EXPECT_EQ(warnings_of("5 6 0\n5.1 6.1 30\n").size(), 1U);
   EXPECT_TRUE(warnings_of("5 6 0\n5.5 6.5 4\n").empty());  // a statue

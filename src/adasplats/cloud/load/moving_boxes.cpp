@@ -65,7 +65,7 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
                                                   : std::optional<double>();
       if (!value || !std::isfinite(*value))
         throw Error(ErrorKind::data, path.string() + ":" + std::to_string(row) + ": column '" +
-                                         std::string(kBoxColumns[k]) + "' is no number");
+                                         std::string(kBoxColumns[k]) + "' is not a finite number");
       v[k] = *value;
     }
     const bool is_first = end_s_ < begin_s_;
@@ -80,7 +80,7 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
   }
 }
 
-bool MovingBoxes::hold(double time_s, Vec3d point) const {
+bool MovingBoxes::contains(double time_s, Vec3d point) const {
   for (const Track& track : tracks_) {
     const double apart_s = track.size() > 1 ? track[1].time_s - track[0].time_s : 0.1;
     if (time_s < track.front().time_s - apart_s || time_s > track.back().time_s + apart_s) continue;

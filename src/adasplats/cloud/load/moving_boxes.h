@@ -10,23 +10,23 @@
 
 namespace adasplats {
 
-/// Where objects that move were, as somebody annotated them.
+/// Annotated boxes of moving objects over time.
 class MovingBoxes {
  public:
   MovingBoxes() = default;
-  /// Reads a CSV with the columns time, id, stationary (0: it moves), x, y, z (of the middle, world
-  /// coordinates, m), size_x, size_y, size_z (m), yaw (rad); others are skipped, and so are boxes
-  /// that stand still. Errors: data with the line.
+  /// Reads a CSV with the columns time, id, stationary (0: it moves), x, y, z (of the centre, world
+  /// coordinates, m), size_x, size_y, size_z (m), yaw (rad). Other columns and stationary boxes are
+  /// skipped. Errors: data with the line.
   explicit MovingBoxes(const std::filesystem::path& path);
 
   bool empty() const { return tracks_.empty(); }
-  /// Whether any box, moving or not, has a time between these.
-  bool cover(double begin_s, double end_s) const {
+  /// Whether the times of all boxes, moving or not, overlap a time span.
+  bool overlaps(double begin_s, double end_s) const {
     return begin_s_ <= end_s_ && begin_s <= end_s_ && end_s >= begin_s_;
   }
-  /// Whether one holds a world point at a time, with a margin of 0.2 m. Between two times an object
-  /// moves evenly; before its first and after its last one it stays for as long as they are apart.
-  bool hold(double time_s, Vec3d point) const;
+  /// Whether a box contains a world point at a time, with a margin of 0.2 m. Boxes are interpolated
+  /// between two times; before the first and after the last they are held for one step.
+  bool contains(double time_s, Vec3d point) const;
 
  private:
   struct Box {

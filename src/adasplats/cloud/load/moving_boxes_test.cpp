@@ -19,14 +19,14 @@ TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
                                                         "0,1.0,7,Car,0,0,0,1,4,2,1.5,0\n"
                                                         "0,1.0,8,Car,1,0,20,1,4,2,1.5,0\n"
                                                         "1,1.1,7,Car,0,1,0,1,4,2,1.5,0\n"));
-  EXPECT_TRUE(boxes.hold(1.0, {2.1, 0, 1}));
-  EXPECT_FALSE(boxes.hold(1.0, {2.6, 0, 1}));
-  EXPECT_TRUE(boxes.hold(1.05, {2.6, 0, 1}));  // half way
-  EXPECT_FALSE(boxes.hold(1.05, {-1.8, 0, 1}));
-  EXPECT_TRUE(boxes.hold(1.15, {3.1, 0, 1}));  // stays for 0.1 s after the last
-  EXPECT_FALSE(boxes.hold(1.25, {1, 0, 1}));
-  EXPECT_FALSE(boxes.hold(1.0, {0, 20, 1}));  // parked
-  EXPECT_FALSE(boxes.hold(1.0, {0, 0, 2.1}));
+  EXPECT_TRUE(boxes.contains(1.0, {2.1, 0, 1}));
+  EXPECT_FALSE(boxes.contains(1.0, {2.6, 0, 1}));
+  EXPECT_TRUE(boxes.contains(1.05, {2.6, 0, 1}));  // half way
+  EXPECT_FALSE(boxes.contains(1.05, {-1.8, 0, 1}));
+  EXPECT_TRUE(boxes.contains(1.15, {3.1, 0, 1}));  // stays for 0.1 s after the last
+  EXPECT_FALSE(boxes.contains(1.25, {1, 0, 1}));
+  EXPECT_FALSE(boxes.contains(1.0, {0, 20, 1}));  // parked
+  EXPECT_FALSE(boxes.contains(1.0, {0, 0, 2.1}));
 }
 
 TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
@@ -34,11 +34,11 @@ TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
   const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
                                                         "0,-2,8,Car,1,0,20,1,4,2,1.5,0\n"
                                                         "0,-1.5,7,Car,0,0,0,1,4,2,1.5,0\n"));
-  EXPECT_TRUE(boxes.cover(-3, -2));
-  EXPECT_TRUE(boxes.cover(-1.9, -1.8));
-  EXPECT_FALSE(boxes.cover(-1.4, 5));
-  EXPECT_FALSE(boxes.cover(-9, -2.1));
-  EXPECT_FALSE(MovingBoxes().cover(-1e9, 1e9));
+  EXPECT_TRUE(boxes.overlaps(-3, -2));
+  EXPECT_TRUE(boxes.overlaps(-1.9, -1.8));
+  EXPECT_FALSE(boxes.overlaps(-1.4, 5));
+  EXPECT_FALSE(boxes.overlaps(-9, -2.1));
+  EXPECT_FALSE(MovingBoxes().overlaps(-1e9, 1e9));
 }
 
 TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
@@ -46,8 +46,8 @@ TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
   const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
                                                         "0,0,1,Car,0,0,0,0,4,1,1,3.1\n"
                                                         "1,1,1,Car,0,0,0,0,4,1,1,-3.1\n"));
-  EXPECT_TRUE(boxes.hold(0.5, {1.9, 0, 0}));  // at pi, not at 0 turned the long way round
-  EXPECT_FALSE(boxes.hold(0.25, {0, 1.9, 0}));
+  EXPECT_TRUE(boxes.contains(0.5, {1.9, 0, 0}));  // at pi, not at 0 turned the long way round
+  EXPECT_FALSE(boxes.contains(0.25, {0, 1.9, 0}));
 }
 
 TEST(MovingBoxes, WhatIsWrongIsNamed) {

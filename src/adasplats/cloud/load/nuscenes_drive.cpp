@@ -4,18 +4,217 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
-#include "adasplats/cloud/load/intensity_scale.h"
+#include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/json_rows.h"
-#include "adasplats/cloud/load/nuscenes_scene.h"
 #include "adasplats/cloud/load/sensor_drive.h"
-#include "adasplats/cloud/poses/sensor_axes.h"
+#include "adasplats/cloud/poses/quaternion_order.h"
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLidarChannel = "LIDAR_TOP";
+constexpr double kMicrosecond_s = 1e-6;
+
+/// A scene by its table.
+struct SceneRow {
+  fs::path tables;
+  std::string token, name;
+};
+
+std::vector<SceneRow> scenes_of(const fs::path& root) {
+  std::vector<SceneRow> scenes;
+  for (const fs::path& tables : nuscenes_tables(root))
+    for_each_json_row(tables / "scene.json", [&](const JsonRow& row) {
+      scenes.push_back({tables, row.text("token"), row.text("name")});
+    });
+  return scenes;
+}
+
+std::string list_of_scenes(const std::vector<SceneRow>& scenes) {
+  constexpr std::size_t kMaxListed = 20;
+  std::set<std::string> names;
+  for (const SceneRow& scene : scenes) names.insert(scene.name);
+  std::string list;
+  std::size_t listed = 0;
+  for (const std::string& name : names) {
+    if (++listed > kMaxListed) break;
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  if (names.size() > kMaxListed)
+    list += ", ... (" + std::to_string(names.size() - kMaxListed) + " more)";
+  return list;
+}
+
+SceneRow scene_by_name(const fs::path& root, const std::string& name) {
+  const std::vector<SceneRow> scenes = scenes_of(root);
+  if (scenes.empty()) throw Error(ErrorKind::data, root.string() + ": its tables contain no scene");
+  const auto found = std::ranges::find(scenes, name, &SceneRow::name);
+  if (found != scenes.end()) return *found;
+  const bool is_one = std::ranges::all_of(
+      scenes, [&](const SceneRow& scene) { return scene.name == scenes.front().name; });
+  if (name.empty() && is_one) return scenes.front();
+  throw Error(ErrorKind::usage,
+              root.string() +
+                  (name.empty() ? ": has several scenes; choose one with `scene`: "
+                                : ": has no scene '" + name + "'; it has ") +
+                  list_of_scenes(scenes));
+}
+
+/// Reads the tables of one scene, in the order of their references.
+class SceneReader {
+ public:
+  SceneReader(fs::path root, SceneRow scene) : root_(std::move(root)), row_(std::move(scene)) {}
+
+  NuscenesScene read() {
+    scene_.name = row_.name;
+    read_sensor();
+    read_samples();
+    read_scans();
+    read_ego_poses();
+    read_labels();
+    std::ranges::sort(scene_.scans, {}, [](const NuscenesScan& s) { return s.pose.time_s; });
+    require_sound();
+    return std::move(scene_);
+  }
+
+ private:
+  fs::path table(const char* name) const { return row_.tables / name; }
+
+  /// Mount of LIDAR_TOP by the tokens of its calibrations.
+  void read_sensor() {
+    std::set<std::string> lidars;
+    for_each_json_row(table("sensor.json"), [&](const JsonRow& row) {
+      if (row.text("channel") == kLidarChannel) lidars.insert(row.text("token"));
+    });
+    for_each_json_row(table("calibrated_sensor.json"), [&](const JsonRow& row) {
+      if (lidars.contains(row.text("sensor_token")))
+        ego_from_sensor_[row.text("token")] = row.pose("translation", "rotation");
+    });
+  }
+
+  void read_samples() {
+    for_each_json_row(table("sample.json"), [&](const JsonRow& row) {
+      if (row.text("scene_token") == row_.token) samples_.insert(row.text("token"));
+    });
+  }
+
+  void read_scans() {
+    for_each_json_row(table("sample_data.json"), [&](const JsonRow& row) {
+      if (!samples_.contains(row.text("sample_token"))) return;
+      const auto sensor = ego_from_sensor_.find(row.text("calibrated_sensor_token"));
+      if (sensor == ego_from_sensor_.end()) return;
+      NuscenesScan scan;
+      scan.file = file_in_root(row);
+      scan.is_key = row.boolean("is_key_frame");
+      scan.pose.time_s = kMicrosecond_s * static_cast<double>(row.integer("timestamp"));
+      scan.pose.world_from_sensor = sensor->second;  // read_ego_poses() multiplies the ego pose
+      scans_of_ego_pose_[row.text("ego_pose_token")].push_back(scene_.scans.size());
+      const std::string token = row.text("token");
+      if (!scan_of_token_.emplace(token, scene_.scans.size()).second)
+        throw row.fault("its token " + token + " is also that of another row");
+      scene_.scans.push_back(std::move(scan));
+    });
+  }
+
+  void read_ego_poses() {
+    for_each_json_row(table("ego_pose.json"), [&](const JsonRow& row) {
+      const auto scans = scans_of_ego_pose_.find(row.text("token"));
+      if (scans == scans_of_ego_pose_.end()) return;
+      const RigidTransform world_from_ego = row.pose("translation", "rotation");
+      for (const std::size_t k : scans->second) {
+        RigidTransform& pose = scene_.scans[k].pose.world_from_sensor;
+        pose = world_from_ego * pose;
+      }
+      scans_of_ego_pose_.erase(scans);
+    });
+    if (scans_of_ego_pose_.empty()) return;
+    const std::size_t lost = scans_of_ego_pose_.begin()->second.front();
+    throw Error(ErrorKind::data, table("ego_pose.json").string() + ": has no pose with the token " +
+                                     scans_of_ego_pose_.begin()->first + ", referenced by " +
+                                     scene_.scans[lost].file.string());
+  }
+
+  void read_labels() {
+    std::error_code ignored;
+    scene_.has_labels = fs::exists(table("lidarseg.json"), ignored);
+    if (!scene_.has_labels) return;
+    for_each_json_row(table("lidarseg.json"), [&](const JsonRow& row) {
+      const auto scan = scan_of_token_.find(row.text("sample_data_token"));
+      if (scan != scan_of_token_.end()) scene_.scans[scan->second].labels = file_in_root(row);
+    });
+  }
+
+  fs::path file_in_root(const JsonRow& row) const {
+    const fs::path name = row.text("filename");
+    const bool leads_out = std::ranges::any_of(name, [](const fs::path& p) { return p == ".."; });
+    if (name.empty() || name.is_absolute() || leads_out)
+      throw row.fault("'filename' is not a path within the data root");
+    return root_ / name;
+  }
+
+  void require_sound() const {
+    const std::vector<NuscenesScan>& scans = scene_.scans;
+    if (scans.empty())
+      throw Error(ErrorKind::data, table("sample_data.json").string() + ": has no scan of " +
+                                       kLidarChannel + " in " + scene_.name);
+    std::vector<PlacedQuaternion> placed;
+    for (std::size_t k = 0; k < scans.size(); ++k) {
+      const RigidTransform& pose = scans[k].pose.world_from_sensor;
+      placed.push_back({pose.translation, quaternion_from_rotation(pose.rotation)});
+      if (k > 0 && !(scans[k].pose.time_s > scans[k - 1].pose.time_s))
+        throw Error(ErrorKind::data, table("sample_data.json").string() + ": " +
+                                         scans[k - 1].file.string() + " and " +
+                                         scans[k].file.string() + " have the same time");
+    }
+    const std::string objection = quaternion_order_problem(placed);
+    if (!objection.empty())
+      throw Error(ErrorKind::data, table("ego_pose.json").string() + ": " + objection);
+  }
+
+  fs::path root_;
+  SceneRow row_;
+  NuscenesScene scene_;
+  std::unordered_map<std::string, RigidTransform> ego_from_sensor_;
+  std::unordered_set<std::string> samples_;
+  std::unordered_map<std::string, std::vector<std::size_t>> scans_of_ego_pose_;
+  std::unordered_map<std::string, std::size_t> scan_of_token_;
+};
+
+}  // namespace
+
+std::vector<fs::path> nuscenes_tables(const fs::path& root) {
+  std::vector<fs::path> folders;
+  std::error_code problem;
+  fs::directory_iterator entry(root, problem);
+  for (; !problem && entry != fs::directory_iterator(); entry.increment(problem)) {
+    std::error_code ignored;
+    const fs::path& folder = entry->path();
+    if (folder.filename().string().starts_with("v1.0-") &&
+        (fs::is_regular_file(folder / "scene.json", ignored) ||
+         fs::is_regular_file(folder / "sample_data.json", ignored)))
+      folders.push_back(folder);
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
+NuscenesScene read_nuscenes_scene(const fs::path& root, const std::string& name) {
+  return SceneReader(root, scene_by_name(root, name)).read();
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +241,7 @@ class NuscenesFrames final : public ScanSource {
     const std::string bytes = read_file(labels->second);
     if (bytes.size() != points)
       throw Error(ErrorKind::data, labels->second.string() + ": " + std::to_string(bytes.size()) +
-                                       " labels (a byte each), " + std::to_string(points) +
+                                       " labels (one byte each) for " + std::to_string(points) +
                                        " points");
     std::vector<std::uint16_t> classes;
     for (const char byte : bytes) classes.push_back(static_cast<std::uint8_t>(byte));
@@ -54,8 +253,8 @@ class NuscenesFrames final : public ScanSource {
   std::optional<IntensityScale> scale_;
 };
 
-/// Takes the scans whose files are there: all, or the keyframes where no sweep is, as who has
-/// fetched those alone. Errors: data that names a file that is missing.
+/// The scans whose files exist: all, or only the keyframes if no sweep exists (a partial download).
+/// Errors: data with a missing file.
 std::vector<NuscenesScan> scans_on_disk(const NuscenesScene& scene, const fs::path& root,
                                         ProgressSink& progress) {
   const auto is_there = [](const NuscenesScan& scan) {
@@ -67,15 +266,15 @@ std::vector<NuscenesScan> scans_on_disk(const NuscenesScene& scene, const fs::pa
   std::ranges::copy_if(scene.scans, std::back_inserter(keys), is_key);
   const bool has_sweeps = std::ranges::any_of(
       scene.scans, [&](const NuscenesScan& scan) { return !scan.is_key && is_there(scan); });
-  const bool takes_keys = !has_sweeps && !keys.empty() && keys.size() < scene.scans.size();
-  const std::vector<NuscenesScan>& taken = takes_keys ? keys : scene.scans;
+  const bool uses_keys = !has_sweeps && !keys.empty() && keys.size() < scene.scans.size();
+  const std::vector<NuscenesScan>& taken = uses_keys ? keys : scene.scans;
   const auto lost = std::ranges::find_if_not(taken, is_there);
   if (lost != taken.end())
-    throw Error(ErrorKind::data, lost->file.string() + ": this frame of " + scene.name +
-                                     " is missing, or is no file");
-  if (takes_keys)
+    throw Error(ErrorKind::data,
+                lost->file.string() + ": this frame of " + scene.name + " is missing");
+  if (uses_keys)
     progress.warn(root.string() + ": the sweeps of " + scene.name +
-                  " are not there, so its scans are the keyframes alone");
+                  " are missing; only the keyframes are used");
   return taken;
 }
 
@@ -97,9 +296,9 @@ ClassNames nuscenes_class_names(const fs::path& folder) {
     std::error_code ignored;
     if (!fs::exists(tables / "lidarseg.json", ignored)) continue;
     for_each_json_row(tables / "category.json", [&](const JsonRow& row) {
-      if (!row.has("index")) return;  // of the release without lidarseg
+      if (!row.has("index")) return;  // the release without lidarseg
       const std::int64_t id = row.integer("index");
-      if (id < 0 || id > 0xff) throw row.fault("'index' is no number of a class (a byte)");
+      if (id < 0 || id > 0xff) throw row.fault("'index' is not a class number from 0 to 255");
       names.emplace_back(static_cast<std::uint16_t>(id), row.text("name"));
     });
     break;
@@ -109,11 +308,10 @@ ClassNames nuscenes_class_names(const fs::path& folder) {
 
 KittiSequence open_nuscenes_drive(const FrameDrive& drive, const Executor& executor,
                                   ProgressSink& progress) {
-  if (drive.mount || drive.time_offset_s)
+  if (drive.given_mount() || drive.time_offset_s)
     throw Error(ErrorKind::usage, drive.folder.string() +
-                                      ": is a data root of nuScenes, whose tables say where the "
-                                      "LiDAR sits and when; `mount` and `time_offset` are for "
-                                      "other drives");
+                                      ": is a nuScenes data root, whose tables define mount and "
+                                      "times; `mount` and `time_offset` do not apply");
   const NuscenesScene scene = read_nuscenes_scene(drive.folder, drive.scene);
   const std::vector<NuscenesScan> scans = scans_on_disk(scene, drive.folder, progress);
   SensorFrames frames;

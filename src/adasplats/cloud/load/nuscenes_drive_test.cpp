@@ -10,9 +10,7 @@
 
 #include "adasplats/cloud/load/court_test.h"
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/cloud/load/nuscenes_scene.h"
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/poses/sensor_axes.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
@@ -233,10 +231,10 @@ TEST(NuscenesDrive, DamagedTreesNameTheFile) {
     const fs::path file = c.path() / "v1.0-mini/sample_data.json";
     fs::resize_file(file, fs::file_size(file) - 20);
   });
-  expect_broken({"sample.json", "larger than any"}, [](auto& c) {
+  expect_broken({"sample.json", "more than 100,000 values"}, [](auto& c) {
     c.folder().write("v1.0-mini/sample.json", "[" + std::string(100'000, '['));
   });
-  // Most scans tell that intensities are bytes.
+  // Most scans show that intensities are bytes.
   expect_broken({"1.pcd.bin", "intensity of 0.5", "0 to 255"}, [](auto& c) {
     c.folder().write("sweeps/LIDAR_TOP/1.pcd.bin", std::vector<float>{1, 2, 3, 0.5F, 4});
   });

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
@@ -27,11 +32,11 @@ std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths
     inputs.insert(inputs.end(), found.begin(), found.end());
   }
   std::ranges::copy_if(inputs, std::back_inserter(sequences), &CloudInput::is_sequence);
-  if (sequences.size() > 1) require_one_world(sequences);
+  if (sequences.size() > 1) require_distinct_starts(sequences);
   return inputs;
 }
 
-/// The inputs, folders of scans with a trajectory as one drive each.
+/// Opens the inputs; a folder of scans with a trajectory is one drive.
 std::vector<OpenInput> opened(std::span<const std::filesystem::path> paths,
                               const LoadOptions& options, const Executor& executor,
                               ProgressSink& progress) {
@@ -53,22 +58,23 @@ std::vector<OpenInput> opened(std::span<const std::filesystem::path> paths,
 
 Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
 
-/// What is wrong with options whatever the inputs are.
+/// Checks the options that are invalid for any input.
 void require_sound(const LoadOptions& options) {
-  if (options.scan_stride == 0) throw usage("a scan stride of 0");
-  if (options.scan_count == 0) throw usage("a scan count of 0");
+  if (options.scan_stride == 0) throw usage("the scan stride is 0; expected 1 or more");
+  if (options.scan_count == 0) throw usage("the scan count is 0; expected 1 or more");
   const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
                             !options.sensor_z_field.empty();
   if (sensor_fields != 0 && sensor_fields != 3)
-    throw usage("the columns of the sensor position are three or none");
+    throw usage("the sensor position needs all three columns (x, y and z) or none");
   if (options.viewpoint && !options.trajectory.empty())
-    throw usage("a viewpoint and a trajectory both give the sensor position");
-  if (options.viewpoint && !is_place(*options.viewpoint))
-    throw usage("the viewpoint is not finite, or beyond 1e12 m");
+    throw usage(
+        "`viewpoint` and `trajectory` both give the sensor position; give only one of them");
+  if (options.viewpoint && !is_valid_position(*options.viewpoint))
+    throw usage("`viewpoint` is not finite, or beyond 1e12 m");
   check_settings(options);
 }
 
-void require_options_that_fit(const LoadOptions& options, std::span<const OpenInput> inputs) {
+void require_applicable_options(const LoadOptions& options, std::span<const OpenInput> inputs) {
   const auto is_sequence = [](const OpenInput& input) { return input.input.is_sequence; };
   const bool any_drive = std::ranges::any_of(inputs, &OpenInput::is_frame_drive);
   const bool any_sequence = std::ranges::any_of(inputs, is_sequence);
@@ -78,47 +84,49 @@ void require_options_that_fit(const LoadOptions& options, std::span<const OpenIn
                              options.scan_count != defaults.scan_count ||
                              options.scan_stride != defaults.scan_stride;
   if (chooses_scans && !any_sequence)
-    throw usage("scans are chosen, but no input is a sequence folder");
+    throw usage("a choice of scans needs a sequence folder; no input is one");
   if ((!options.sensor_x_field.empty() || !options.label_field.empty()) && !any_file)
-    throw usage("columns are named, but no input is a file of points");
+    throw usage("names of columns need a point file; no input is one");
   if (!options.selection.is_all() && any_sequence)
     throw usage(
-        "`extent`, `level` and `resolution` choose points of files, and an input is a drive");
+        "`extent`, `level` and `resolution` select points of files; they do not apply to drives");
   if (options.beams_from_poses && !any_sequence)
-    throw usage("beams are to start at poses, but no input is a sequence folder");
+    throw usage("`beams_from_poses` needs a sequence folder; no input is one");
   if (!options.boxes.empty() && !any_drive)
-    throw usage("boxes are given, but no input is a folder of scans with times and a trajectory");
+    throw usage("`boxes` needs a folder of scans with times and a `trajectory`; no input is one");
   const bool states_frames = options.points_in == PointsIn::sensor ||
                              options.sweep_points != SweepPoints::found ||
                              !options.scan_times.empty();
   if (states_frames && !any_drive)
     throw usage(
-        "`points_in`, `sweep_points` and `scan_times` are for a folder of scans, one a file, with "
-        "a `trajectory`; no input is one in the frame of its sensor");
+        "`points_in`, `sweep_points` and `scan_times` need a folder of scans (one per file) in the "
+        "sensor frame with a `trajectory`; no input is one");
   const bool any_recording = std::ranges::any_of(
       inputs, [](const OpenInput& input) { return is_recording(input.input.path); });
   if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
-    throw usage("`topic` and `poses_topic` are for a recording (MCAP, ROS bag); no input is one");
+    throw usage("`topic` and `poses_topic` need a recording (MCAP, ROS bag); no input is one");
   const bool any_tree = std::ranges::any_of(
       inputs, [](const OpenInput& input) { return data_tree_of(input.input.path) != nullptr; });
   if (!options.scene.empty() && !any_tree)
-    throw usage("`scene` is for a data root of nuScenes; no input is one");
+    throw usage("`scene` needs a nuScenes data root; no input is one");
   const auto is_of_packets = [](const OpenInput& input) { return is_capture(input.input.path); };
   if (!options.packets_of.empty() && std::ranges::none_of(inputs, is_of_packets))
-    throw usage("`packets_of` is for a capture of packets (.pcap, .pcapng); no input is one");
+    throw usage("`packets_of` needs a packet capture (.pcap, .pcapng); no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
-    throw usage("a sensor position is given, but every input has its own");
+    throw usage(
+        "`viewpoint` and `trajectory` need a point file; all inputs have their own sensor "
+        "positions");
 }
 
-/// In whole steps of a file's coordinates, as its points are: headers may hold more digits.
+/// Rounded to the steps of a file's coordinates, as its points are: headers may have more digits.
 Vec3d in_steps(Vec3d place, Vec3d step) {
   for (int axis = 0; axis < 3; ++axis)
     if (step[axis] > 0) place[axis] = std::round(place[axis] / step[axis]) * step[axis];
   return place;
 }
 
-/// What the inputs are called in a message about all of them.
+/// The name of the inputs in messages about all of them.
 std::string name_of(std::span<const std::filesystem::path> inputs) {
   return inputs.front().string() +
          (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
@@ -132,7 +140,7 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   require_sound(options);
   inputs_ = opened(inputs, options, executor, progress);
   name_ = name_of(inputs);
-  require_options_that_fit(options, inputs_);
+  require_applicable_options(options, inputs_);
   for (OpenInput& input : inputs_)
     if (input.input.is_sequence && !input.sequence)
       input.sequence = open_sequence(input.input.path, options, executor);
@@ -150,7 +158,7 @@ std::size_t OpenInputs::chosen_scans(std::size_t input) const {
                   (scans - options_.first_scan - 1) / options_.scan_stride + 1);
 }
 
-/// Of a piece of a drive: where all other scans of all drives were.
+/// Sensor positions of all scans of all drives outside the piece.
 PathBeyond OpenInputs::path_beyond(const InputPiece& piece) const {
   PathBeyond beyond;
   for (std::size_t k = 0; k < inputs_.size(); ++k) {
@@ -172,15 +180,148 @@ Error OpenInputs::nothing_within_extent() const {
   const std::filesystem::path& first = inputs_.front().input.path;
   std::string message = "no point of " + first.string();
   if (inputs_.size() > 1) message += " and " + std::to_string(inputs_.size() - 1) + " more inputs";
-  message += " lies in the extent " +
+  message += " is in the extent " +
              box_text(options_.selection.extent->low, options_.selection.extent->high);
   if (is_las(first)) {
     const LasFacts las = read_las_facts(first);
-    message += "; " + first.string() + " has " +
-               box_text(in_steps(las.box_min, las.scale), in_steps(las.box_max, las.scale)) +
-               " by its header";
+    message += "; the header of " + first.string() + " has the box " +
+               box_text(in_steps(las.box_min, las.scale), in_steps(las.box_max, las.scale));
   }
   return {ErrorKind::data, message};
+}
+
+namespace {
+
+/// One scan of a file.
+struct ScanPart {
+  std::uint64_t begin = 0;  ///< its first record
+  Vec3d sensor_sum;         ///< of the sensor positions, world coordinates
+  std::size_t sensors = 0;  ///< that were measured
+};
+
+/// The scans of a file, in the order of its records.
+class ScansOfFile {
+ public:
+  /// Adds the next records; false if they have no scan numbers, or these do not ascend.
+  bool add(const CloudPart& part) {
+    const std::vector<std::uint32_t>& numbers = part.cloud.scan_indices;
+    if (numbers.size() != part.size() || part.world_sensors.size() != part.size()) return false;
+    for (std::size_t i = 0; i < numbers.size(); ++i, ++records_) {
+      if (scans_.empty() || numbers[i] != last_) {
+        if (!scans_.empty() && numbers[i] < last_) {
+          is_shuffled_ = true;
+          return false;
+        }
+        scans_.push_back({records_, {}, 0});
+        last_ = numbers[i];
+      }
+      if (!is_measured(part, i)) continue;
+      scans_.back().sensor_sum = scans_.back().sensor_sum + part.world_sensors[i];
+      ++scans_.back().sensors;
+    }
+    return true;
+  }
+
+  bool is_shuffled() const { return is_shuffled_; }
+  /// Records of the longest scan.
+  std::uint64_t longest() const {
+    std::uint64_t longest = 0;
+    for (std::size_t scan = 0; scan < scans_.size(); ++scan)
+      longest = std::max(longest, end_of(scan) - scans_[scan].begin);
+    return longest;
+  }
+
+  /// Pieces of whole scans, each with the path beyond.
+  std::vector<InputPiece> pieces(std::size_t input, std::uint64_t max_records) const {
+    std::vector<InputPiece> pieces;
+    for (std::size_t scan = 0; scan < scans_.size();) {
+      const std::size_t first = scan++;
+      while (scan < scans_.size() && end_of(scan) - scans_[first].begin <= max_records) ++scan;
+      InputPiece piece = {
+          input, scans_[first].begin, end_of(scan - 1) - scans_[first].begin, true, {}};
+      add_places(0, first, piece.beyond.before);
+      add_places(scan, scans_.size(), piece.beyond.after);
+      pieces.push_back(std::move(piece));
+    }
+    return pieces;
+  }
+
+ private:
+  static bool is_measured(const CloudPart& part, std::size_t i) {
+    const std::vector<OriginKind>& kinds = part.cloud.origin_kinds;
+    return is_valid_position(part.world_sensors[i]) &&
+           (kinds.empty() || kinds[i] == OriginKind::measured);
+  }
+  std::uint64_t end_of(std::size_t scan) const {
+    return scan + 1 < scans_.size() ? scans_[scan + 1].begin : records_;
+  }
+  void add_places(std::size_t begin, std::size_t end, std::vector<Vec3d>& places) const {
+    for (std::size_t k = begin; k < end; ++k)
+      if (scans_[k].sensors > 0)
+        places.push_back(scans_[k].sensor_sum / static_cast<double>(scans_[k].sensors));
+  }
+
+  std::vector<ScanPart> scans_;
+  std::uint32_t last_ = 0;
+  std::uint64_t records_ = 0;
+  bool is_shuffled_ = false;
+};
+
+/// Warns that pieces of a file do not have whole scans.
+void warn_of_cut_scans(const std::filesystem::path& file, const std::string& why,
+                       ProgressSink& progress) {
+  progress.warn(file.string() + ": " + why +
+                "; since it is read in pieces, empty beams are not found, and traffic in the "
+                "driven path is removed only along the path of its own piece");
+}
+
+/// Pieces of whole scans; none if the file has no scans.
+std::vector<InputPiece> pieces_by_scans(const std::filesystem::path& file, std::size_t input,
+                                        std::uint64_t all, std::uint64_t records,
+                                        const LoadOptions& options, const Executor& executor,
+                                        ProgressSink& progress) {
+  ScansOfFile scans;
+  ProgressSink quiet;  // warnings about the file follow when its points are loaded
+  for (std::uint64_t first = 0; first < all; first += records) {
+    LoadOptions part = options;
+    part.selection.records = RecordSpan{first, records};
+    if (scans.add(read_file_part(file, part, quiet, &executor))) continue;
+    if (scans.is_shuffled())
+      warn_of_cut_scans(file, "its points are not ordered by scan", progress);
+    return {};
+  }
+  if (scans.longest() > 2 * records) {
+    warn_of_cut_scans(file,
+                      "one of its scans has " + std::to_string(scans.longest()) +
+                          " points, more than twice the size of a piece",
+                      progress);
+    return {};
+  }
+  return scans.pieces(input, records);
+}
+
+}  // namespace
+
+std::vector<InputPiece> file_pieces(const OpenInputs& inputs, std::uint64_t records,
+                                    const Executor& executor, ProgressSink& progress) {
+  std::vector<InputPiece> pieces;
+  for (std::size_t k = 0; k < inputs.inputs().size(); ++k) {
+    const CloudInput& input = inputs.inputs()[k].input;
+    if (input.is_sequence) throw std::logic_error("file_pieces: a drive");
+    const LoadOptions& options = inputs.options();
+    const std::optional<std::uint64_t> all = records_at_random(input.path, options.salvage);
+    if (!all || *all <= records) {
+      pieces.push_back({.input = k});
+      continue;
+    }
+    std::vector<InputPiece> own;
+    if (options.selection.is_all())
+      own = pieces_by_scans(input.path, k, *all, records, options, executor, progress);
+    for (std::uint64_t first = 0; own.empty() && first < *all; first += records)
+      pieces.push_back({k, first, records, false, {}});
+    std::ranges::move(own, std::back_inserter(pieces));
+  }
+  return pieces;
 }
 
 }  // namespace adasplats

@@ -22,29 +22,29 @@
 
 namespace adasplats {
 
-/// One input that is open.
+/// An opened input.
 struct OpenInput {
   CloudInput input;
   std::optional<KittiSequence> sequence;  ///< of a drive, with recognised beams
-  bool is_frame_drive = false;            ///< a drive by open_frame_drive()
+  bool is_frame_drive = false;            ///< opened by open_frame_drive()
 };
 
 /// A part of one input that is loaded at once.
 struct InputPiece {
-  std::size_t input = 0;    ///< its number
-  std::uint64_t first = 0;  ///< scan of a drive, of those that are chosen; record of a file
+  std::size_t input = 0;    ///< its index
+  std::uint64_t first = 0;  ///< scan of a drive (of the chosen ones), or record of a file
   std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
-  /// Of a file whose scans all have all of their points in one piece: beams that returned nothing
-  /// are looked for, which other pieces of files say nothing of.
+  /// Every scan of the file is in one piece, with all its points. Only then can empty beams be
+  /// found.
   bool has_whole_scans = false;
-  PathBeyond beyond;  ///< of such a file; of a drive the poses say it
+  PathBeyond beyond;  ///< of such a file; a drive has its poses
 };
 
 /// Inputs of load_cloud() before their points are read, to be loaded at once or piece by piece.
 class OpenInputs {
  public:
-  /// Opens drives, whose sensors are recognised and whose poses are checked once for all pieces.
-  /// Errors: those of load_cloud() that come before points are read.
+  /// Opens drives; recognises their sensors and checks their poses once for all pieces. Errors:
+  /// those of load_cloud() that precede reading points.
   OpenInputs(std::span<const std::filesystem::path> inputs, const LoadOptions& options,
              const Executor& executor, ProgressSink& progress);
 
@@ -52,18 +52,18 @@ class OpenInputs {
   const LoadOptions& options() const { return options_; }
   /// Whether all of them are drives.
   bool are_drives() const;
-  /// The scans of a drive that the options choose; 0 where they begin behind its end.
+  /// Number of scans of a drive that the options choose; 0 if the first is after its end.
   std::size_t chosen_scans(std::size_t input) const;
 
-  /// What load_cloud() gives.
+  /// Same as load_cloud().
   std::pair<PointCloud, LoadReport> load(const Executor& executor, ProgressSink& progress) const;
-  /// The same of a part of one input, as if there was no more, but that the carrier of the sensor
-  /// drove on: the cloud has an origin of its own, and scans of drives are numbered from 0. Records
-  /// are those of a file that has them at random (records_at_random()) or all.
+  /// The same for a part of one input. The cloud has its own origin, and scans of drives are
+  /// numbered from 0; only the driven path includes the rest of the drive. Records are those of a
+  /// file with random access (records_at_random()), or all.
   std::pair<PointCloud, LoadReport> load(const InputPiece& piece, const Executor& executor,
                                          ProgressSink& progress) const;
 
-  /// What is wrong where no point is in the extent of the options. Errors: as read_las_facts().
+  /// The error for an extent without points. Errors: as read_las_facts().
   Error nothing_within_extent() const;
 
  private:
@@ -73,5 +73,13 @@ class OpenInputs {
   LoadOptions options_;
   std::vector<OpenInput> inputs_;
 };
+
+/// Cuts files with random access (records_at_random()) into pieces of at most `records`; other
+/// files are one piece. Files with sensor positions and ascending scan numbers are cut between
+/// scans, which takes another pass; scans of up to twice `records` are not cut. Such pieces have
+/// whole scans and the path beyond. Warns if the numbers do not ascend or a scan is longer. Errors:
+/// those of read_points(); std::logic_error for a drive.
+std::vector<InputPiece> file_pieces(const OpenInputs& inputs, std::uint64_t records,
+                                    const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

@@ -6,15 +6,196 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <utility>
 
-#include "adasplats/cloud/load/covered_scans.h"
 #include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/core/error.h"
+#include "adasplats/sensors/packet_layout.h"
 
 namespace adasplats {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kHour_ns = 3600 * kSecond_ns;
+constexpr std::int64_t kOwnClock_ns = 60 * kSecond_ns;  // PTP and UTC differ by less
+constexpr std::size_t kMaxSources = 256;
+
+/// The nearest multiple of an hour.
+std::int64_t whole_hours_ns(std::int64_t time_ns) {
+  const std::int64_t half = time_ns >= 0 ? kHour_ns / 2 : -kHour_ns / 2;
+  return (time_ns + half) / kHour_ns * kHour_ns;
+}
+
+/// Cuts the columns of one source into revolutions.
+class RevolutionFinder {
+ public:
+  RevolutionFinder(const PacketDecoder& decoder, PacketSource& source)
+      : decoder_(decoder),
+        source_(source),
+        clock_(!is_ouster(decoder.sensor().format)),
+        column_ns_(std::llround(decoder.column_s() * static_cast<double>(kSecond_ns))) {}
+
+  void add(const Datagram& datagram, const std::string& what) {
+    const std::vector<MeasuredColumn> columns = decoder_.columns(datagram.payload);
+    const std::int64_t first_ns = columns.front().time_ns;
+    const std::int64_t begin_ns = clock_.time_ns(first_ns, datagram.time_ns, what);
+    if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
+    if (source_.packets == 0)
+      source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
+                         (is_ouster(decoder_.sensor().format) ? clock_.shift_ns() : 0);
+    ++source_.packets;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (!columns[k].is_valid) continue;
+      const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
+      const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
+      if (begins_anew) cut_step_ = cut_before(columns[k]);
+      if (begins_anew || begins_revolution(columns[k])) {
+        source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
+        first_step_ = since_cut(columns[k]);
+      }
+      count_gap(time_ns);
+      Revolution& now = source_.revolutions.back();
+      ++now.columns;
+      now.share = share_of_turn(columns[k]);
+      now.end_ns = time_ns + column_ns_;
+      now.has_points = now.has_points || decoder_.has_returns(datagram.payload, k);
+      last_ = columns[k];
+      last_ns_ = time_ns;
+    }
+  }
+
+ private:
+  std::int64_t turn_ns() const {
+    return static_cast<std::int64_t>(static_cast<double>(kSecond_ns) /
+                                     decoder_.sensor().model.rotation_hz);
+  }
+  /// The step at which revolutions begin, if this column is the first.
+  std::uint32_t cut_before(const MeasuredColumn& column) const {
+    const LidarModel& model = decoder_.sensor().model;
+    if (is_ouster(decoder_.sensor().format) || model.first_azimuth_rad != 0) return 0;
+    // A quarter of a column earlier: azimuths are rounded.
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    return (column.step + turn - turn / (4 * model.columns)) % turn;
+  }
+  std::uint32_t since_cut(const MeasuredColumn& column) const {
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    return (column.step + turn - cut_step_) % turn;
+  }
+  /// The head passed the end of a turn, or went back (packets are missing).
+  bool begins_revolution(const MeasuredColumn& column) const {
+    if (is_ouster(decoder_.sensor().format) && column.frame != last_.frame) return true;
+    const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
+    return since_cut(column) + back < since_cut(last_);
+  }
+  double share_of_turn(const MeasuredColumn& last) const {
+    const double turn = decoder_.steps_per_turn();
+    const double steps = static_cast<double>(since_cut(last)) - first_step_;
+    return steps / turn + 1.0 / decoder_.sensor().model.columns;
+  }
+  void count_gap(std::int64_t time_ns) {
+    if (source_.packets == 1 || time_ns - last_ns_ < 3 * column_ns_ / 2) return;
+    ++source_.gaps;
+    source_.lost_columns +=
+        static_cast<std::uint64_t>((time_ns - last_ns_ + column_ns_ / 2) / column_ns_ - 1);
+  }
+
+  const PacketDecoder& decoder_;
+  PacketSource& source_;
+  SensorClock clock_;
+  std::int64_t column_ns_, last_ns_ = 0;
+  std::uint32_t cut_step_ = 0, first_step_ = 0;
+  MeasuredColumn last_;
+};
+
+}  // namespace
+
+std::int64_t SensorClock::time_ns(std::int64_t sensor_ns, std::uint64_t captured_ns,
+                                  const std::string& what) {
+  constexpr std::uint64_t kLatest_ns = std::uint64_t{1} << 62U;  // in the year 2116
+  if (captured_ns > kLatest_ns)
+    throw Error(ErrorKind::data, what + ": its capture time is after the year 2116");
+  const auto captured = static_cast<std::int64_t>(captured_ns);
+  if (!has_begun_) {
+    const std::int64_t ahead_ns = captured - sensor_ns;
+    if (is_hourly_) shift_ns_ = whole_hours_ns(ahead_ns);
+    if (!is_hourly_ && std::abs(ahead_ns) > kOwnClock_ns) shift_ns_ = ahead_ns;
+  }
+  std::int64_t time_ns = sensor_ns + shift_ns_;
+  if (has_begun_) {
+    const std::int64_t expected_ns =
+        last_ns_ + captured - static_cast<std::int64_t>(last_captured_ns_);
+    if (is_hourly_) {
+      shift_ns_ += whole_hours_ns(expected_ns - time_ns);
+      time_ns = sensor_ns + shift_ns_;
+    }
+    if (std::abs(time_ns - expected_ns) > kSecond_ns)
+      throw Error(ErrorKind::data,
+                  what + ": the sensor's clock jumps by " +
+                      std::to_string(static_cast<double>(time_ns - expected_ns) /
+                                     static_cast<double>(kSecond_ns)) +
+                      " s relative to the capture (was it set?); split the capture there");
+  }
+  has_begun_ = true;
+  last_ns_ = time_ns;
+  last_captured_ns_ = captured_ns;
+  return time_ns;
+}
+
+PacketSurvey survey_packets(const std::filesystem::path& path,
+                            std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress) {
+  PacketSurvey survey{path, std::move(decoder), {}, {}};
+  std::map<std::string, RevolutionFinder> finders;
+  DatagramReader reader(path);
+  progress.begin_step("read " + path.filename().string(), 0);
+  while (const auto datagram = reader.next()) {
+    progress.advance(reader.counts().datagrams);
+    const std::string name = address_text(datagram->from) + ":" + std::to_string(datagram->to_port);
+    PacketSource& source = survey.sources[name];
+    if (survey.sources.size() > kMaxSources)
+      throw Error(ErrorKind::data, path.string() + ": datagrams from more than " +
+                                       std::to_string(kMaxSources) +
+                                       " sources; this is not the capture of a sensor");
+    ++source.datagrams;
+    if (!survey.decoder || !survey.decoder->has_size(datagram->payload)) continue;
+    if (const auto objection = survey.decoder->objection(datagram->payload)) {
+      if (source.objection.empty()) source.objection = *objection;
+      continue;
+    }
+    const auto [finder, is_new] =
+        finders.try_emplace(name, RevolutionFinder(*survey.decoder, source));
+    finder->second.add(*datagram, path.string() + ": packet " + std::to_string(source.packets + 1) +
+                                      " of " + name);
+  }
+  progress.end_step();
+  survey.counts = reader.counts();
+  return survey;
+}
+
+std::string sensor_of_capture(const std::filesystem::path& capture, const std::string& stated) {
+  namespace fs = std::filesystem;
+  if (!stated.empty()) return stated;
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(capture, ignored).parent_path();
+  const fs::path own = folder / (capture.stem().string() + ".json");
+  if (fs::is_regular_file(own, ignored)) return own.string();
+  std::vector<std::string> found;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")))
+      found.push_back(entry->path().string());
+  }
+  std::ranges::sort(found);
+  if (found.size() > 1)
+    throw Error(ErrorKind::usage, capture.string() + ": its folder contains " + found[0] + " and " +
+                                      found[1] + "; choose one with `packets_of`");
+  return found.empty() ? "" : found.front();
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,7 +210,7 @@ double middle_of(const Revolution& turn) {
   return as_seconds(turn.begin_ns) + 0.5 * as_seconds(turn.end_ns - turn.begin_ns);
 }
 
-/// Reads revolutions by names that are made up for them.
+/// Reads revolutions by generated names.
 class PacketScans final : public ScanSource {
  public:
   PacketScans(fs::path capture, std::shared_ptr<const PacketDecoder> decoder, std::string source,
@@ -56,7 +237,7 @@ class PacketScans final : public ScanSource {
         if (!columns[k].is_valid) continue;
         std::int64_t time_ns = columns[k].time_ns;
         if (std::exchange(is_first, false)) shift_ns = turn.begin_ns - time_ns;
-        // A revolution may last beyond the full hour.
+        // A revolution may pass the full hour.
         if (time_ns + shift_ns < last_ns - kFullHour_ns / 2) shift_ns += kFullHour_ns;
         last_ns = time_ns += shift_ns;
         add_column(*datagram, k, columns[k], as_seconds(time_ns), scan);
@@ -100,7 +281,7 @@ std::string list_of_sources(const PacketSurvey& survey) {
   return list.empty() ? "none" : list;
 }
 
-/// The stated source, else the only one.
+/// The given source, else the only one.
 const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& survey,
                                                             const std::string& stated) {
   const std::pair<const std::string, PacketSource>* chosen = nullptr;
@@ -118,45 +299,44 @@ const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& 
                     std::to_string(survey.decoder->sensor().payload_bytes()) + " bytes)" +
                     (stated.empty() ? "" : " from " + stated) + sources);
   if (count > 1)
-    throw Error(ErrorKind::usage, survey.path.string() +
-                                      ": several sensors sent packets; `topic` " + "states which" +
-                                      sources);
+    throw Error(ErrorKind::usage,
+                survey.path.string() +
+                    ": contains packets of several sensors; choose one with `topic`" + sources);
   return *chosen;
 }
 
-/// What is left out and what is missing.
-void tell_of_packets(const PacketSurvey& survey, const std::string& name,
+/// Warns of missing and skipped packets.
+void warn_of_packets(const PacketSurvey& survey, const std::string& name,
                      const PacketSource& source, ProgressSink& progress) {
-  const auto tell = [&](std::uint64_t count, const std::string& what) {
+  const auto warn = [&](std::uint64_t count, const std::string& what) {
     if (count > 0) progress.warn(survey.path.string() + ": " + std::to_string(count) + " " + what);
   };
-  tell(source.lost_columns,
+  warn(source.lost_columns,
        "columns of " + name + " are missing, in " + std::to_string(source.gaps) + " gaps");
-  tell(survey.counts.torn, "datagrams lack some of their parts, left out");
-  tell(survey.counts.cut, "frames hold less than was sent, left out");
-  tell(survey.counts.timeless, "frames have no time, left out");
+  warn(survey.counts.torn, "datagrams lack fragments and are skipped");
+  warn(survey.counts.cut, "frames are truncated and are skipped");
+  warn(survey.counts.timeless, "frames have no time and are skipped");
   if (!source.objection.empty())
     progress.warn(survey.path.string() + ": some packets of " + name + " " + source.objection +
-                  ", left out");
+                  " and are skipped");
 }
 
-/// Of revolutions that a capture begins or ends within.
-void tell_of_parts(const PacketSurvey& survey, const std::string& name, const PacketSource& source,
-                   ProgressSink& progress) {
+/// Warns of revolutions cut by the start or end of the capture.
+void warn_of_partial_turns(const PacketSurvey& survey, const std::string& name,
+                           const PacketSource& source, ProgressSink& progress) {
   constexpr double kWhole = 0.95;
   const std::vector<Revolution>& turns = source.revolutions;
-  // Sensors that are set to a part of the view have no more of any.
+  // Sensors set to part of the view never have full turns.
   double usual = turns.size() < 3 ? 1 : 0;
   for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
-  const auto tell = [&](const Revolution& turn, const std::string& what) {
+  const auto warn = [&](const Revolution& turn, const std::string& what) {
     if (!turn.has_points || turn.share >= kWhole * usual) return;
     progress.warn(survey.path.string() + ": " + what + " revolution of " + name + " is " +
                   std::to_string(std::lround(100 * turn.share)) +
-                  " % of a turn, since the capture does not hold all of it; it is a scan all the "
-                  "same");
+                  " % of a turn, cut by the capture; it is still used as a scan");
   };
-  tell(turns.front(), "the first");
-  if (turns.size() > 1) tell(turns.back(), "the last");
+  warn(turns.front(), "the first");
+  if (turns.size() > 1) warn(turns.back(), "the last");
 }
 
 struct PacketDrive {
@@ -164,7 +344,7 @@ struct PacketDrive {
   std::vector<double> middles_s;
 };
 
-/// Scans of the revolutions with points.
+/// The revolutions with points as scans.
 PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name,
                              const PacketSource& source, double offset_s, ProgressSink& progress) {
   PacketDrive drive;
@@ -182,12 +362,12 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
         {as_seconds(turn.begin_ns) + offset_s, as_seconds(turn.end_ns) + offset_s});
   }
   if (turns.empty())
-    throw Error(ErrorKind::data, survey.path.string() + ": in the packets of " + name +
-                                     " nothing came back: no points");
+    throw Error(ErrorKind::data,
+                survey.path.string() + ": the packets of " + name + " contain no returns");
   const std::size_t empty = source.revolutions.size() - turns.size();
   if (empty > 0)
     progress.warn(survey.path.string() + ": " + std::to_string(empty) + " revolutions of " + name +
-                  " have no points, left out");
+                  " have no points and are skipped");
   drive.frames.source =
       std::make_shared<PacketScans>(survey.path, survey.decoder, name, std::move(turns));
   drive.frames.times = {PointTimes::Kind::absolute, 1, offset_s, true};
@@ -197,18 +377,16 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
 void require_options_of_captures(const FrameDrive& drive) {
   const std::string path = drive.folder.string();
   if (!drive.poses_topic.empty() || !drive.scan_times.empty())
-    throw Error(ErrorKind::usage,
-                path +
-                    ": packets have times of their own and no poses; `poses_topic` and "
-                    "`scan_times` are for recordings and folders");
+    throw Error(ErrorKind::usage, path +
+                                      ": packets have times and no poses; `poses_topic` and "
+                                      "`scan_times` apply to recordings and folders");
   if (drive.points_in == PointsIn::world)
-    throw Error(ErrorKind::usage,
-                path +
-                    ": packets are in the frame of their sensor; `points_in` world is for "
-                    "folders of files");
+    throw Error(
+        ErrorKind::usage,
+        path + ": packets are in the sensor frame; `points_in` world applies to folders of files");
   if (drive.trajectory.empty())
     throw Error(ErrorKind::usage,
-                path + ": packets do not say where the sensor was; `trajectory` gives its poses");
+                path + ": packets contain no poses; give the poses of the sensor as `trajectory`");
 }
 
 }  // namespace
@@ -226,12 +404,12 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   if (!survey.decoder)
     throw Error(ErrorKind::usage,
                 survey.path.string() +
-                    ": which sensor sent its packets is not said: `packets_of` names one of the "
-                    "library or the maker's file (none is beside it)");
+                    ": the sensor of its packets is unknown; give `packets_of`, a sensor of the "
+                    "library or the maker's file (its folder contains none)");
   require_options_of_captures(drive);
   const auto& [name, source] = source_of(survey, drive.topic);
-  tell_of_packets(survey, name, source, progress);
-  tell_of_parts(survey, name, source, progress);
+  warn_of_packets(survey, name, source, progress);
+  warn_of_partial_turns(survey, name, source, progress);
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;
@@ -255,7 +433,7 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   if (drive.sweep_points == SweepPoints::found) drive.sweep_points = SweepPoints::measured;
   return open_sensor_frames(drive, frames,
                             "packets of " + survey.decoder->sensor().model.name + " from " + name +
-                                (source.dual_packets > 0 ? ", two returns a firing" : ""),
+                                (source.dual_packets > 0 ? ", two returns per firing" : ""),
                             executor, progress);
 }
 

@@ -180,12 +180,12 @@ class OpenedCapture : public testing::Test {
   };
   KittiSequence open(const SentDrive& sent, const std::string& topic = "",
                      std::vector<std::string>* warnings = nullptr) const {
-    FrameDrive drive{
-        .folder = folder_.path() / "sent.pcap",
-        .trajectory = folder_.write(
-            "poses.csv", "time,x,y,z,qw,qx,qy,qz\n" + std::to_string(kDriveBegin_ns / 1e9 - 1) +
-                             ",0,0,0,1,0,0,0\n" + std::to_string(kDriveBegin_ns / 1e9 + 1) +
-                             ",0,0,0,1,0,0,0\n")};
+    FrameDrive drive;
+    drive.folder = folder_.path() / "sent.pcap";
+    drive.trajectory = folder_.write(
+        "poses.csv", "time,x,y,z,qw,qx,qy,qz\n" + std::to_string(kDriveBegin_ns / 1e9 - 1) +
+                         ",0,0,0,1,0,0,0\n" + std::to_string(kDriveBegin_ns / 1e9 + 1) +
+                         ",0,0,0,1,0,0,0\n");
     drive.topic = topic;
     drive.points_in = PointsIn::sensor;
     Listener listener;

@@ -9,13 +9,13 @@
 #include <string_view>
 #include <utility>
 
-#include "adasplats/cloud/load/intensity_scale.h"
+#include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/json_rows.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/load/world_drive.h"
-#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/pickle/data_frame.h"
@@ -46,13 +46,13 @@ std::map<std::size_t, fs::path> numbered_frames(const fs::path& folder) {
       const auto number = number_in_name(is_packed ? file.stem() : file.filename());
       if (!number) continue;
       const auto [twin, is_new] = frames.emplace(*number, file);
-      if (!is_new) throw panda_fault(file, "is of the same frame as " + twin->second.string());
+      if (!is_new) throw panda_fault(file, "has the same frame number as " + twin->second.string());
     }
   }
   return frames;
 }
 
-/// One frame a pose. Errors: data where one is missing, or has no pose.
+/// One frame per pose. Errors: data if one is missing or has no pose.
 std::vector<fs::path> frames_of_poses(const fs::path& folder, std::size_t poses,
                                       const fs::path& poses_file) {
   const std::map<std::size_t, fs::path> frames = numbered_frames(folder);
@@ -78,7 +78,7 @@ Trajectory read_panda_poses(const fs::path& lidar) {
   std::vector<double> times_s;
   for_each_json_row(times_file, [&](const JsonRow& row) {
     if (!times_s.empty() && !(row.real() > times_s.back()))
-      throw row.fault("its time does not come after the one before");
+      throw row.fault("the time is not after the previous one");
     times_s.push_back(row.real());
   });
   Trajectory poses;
@@ -97,15 +97,15 @@ Trajectory read_panda_poses(const fs::path& lidar) {
     throw panda_fault(times_file, std::to_string(times_s.size()) + " times, but " +
                                       poses_file.string() + " has " + std::to_string(poses.size()) +
                                       " poses");
-  const std::string objection = objection_to_quaternion_order(placed);
+  const std::string objection = quaternion_order_problem(placed);
   if (!objection.empty()) throw panda_fault(poses_file, objection);
   return poses;
 }
 
-/// The points of the LiDAR that turns.
+/// Reads the points of the spinning LiDAR.
 class PandaFrames final : public ScanSource {
  public:
-  /// `classes`: the file of labels of each frame; empty: there are none.
+  /// `classes`: the label file of each frame; empty: no labels.
   explicit PandaFrames(std::map<fs::path, fs::path> classes) : classes_(std::move(classes)) {}
   PandaFrames(std::map<fs::path, fs::path> classes, const IntensityScale& scale)
       : classes_(std::move(classes)), scale_(scale) {}
@@ -150,7 +150,7 @@ class PandaFrames final : public ScanSource {
     const Table table = read_data_frame(file);
     if (table.rows != points)
       throw panda_fault(
-          file, std::to_string(table.rows) + " labels, " + std::to_string(points) + " points");
+          file, std::to_string(table.rows) + " labels for " + std::to_string(points) + " points");
     const Column& labels = panda_column(file, table, "class");
     std::vector<std::uint16_t> classes;
     for (const std::size_t row : rows) {
@@ -177,7 +177,7 @@ std::map<fs::path, fs::path> class_files_of(const FrameDrive& drive,
     const auto found = labels.find(k);
     if (found == labels.end())
       throw panda_fault(folder / files[k].filename(),
-                        "the labels of this frame are missing, those of others are there");
+                        "the labels of this frame are missing; other frames have labels");
     classes.emplace(files[k], found->second);
   }
   return classes;
@@ -186,7 +186,7 @@ std::map<fs::path, fs::path> class_files_of(const FrameDrive& drive,
 }  // namespace
 
 bool is_pandaset_sequence(const fs::path& folder) {
-  std::error_code ignored;  // what cannot be looked into is none
+  std::error_code ignored;  // an unreadable folder is not a sequence
   return std::ranges::any_of(
       std::initializer_list<const char*>{"poses.json", "timestamps.json", "00.pkl.gz"},
       [&](const char* name) { return fs::is_regular_file(folder / "lidar" / name, ignored); });
@@ -199,7 +199,7 @@ ClassNames pandaset_class_names(const fs::path& folder) {
   if (!fs::exists(file, ignored)) return names;
   for_each_json_text(file, [&](const std::string& key, const std::string& name) {
     const auto id = parse_number<std::uint16_t>(key);
-    if (!id) throw panda_fault(file, "'" + key + "' is no number of a class");
+    if (!id) throw panda_fault(file, "'" + key + "' is not a class number");
     names.emplace_back(*id, name);
   });
   return names;
@@ -212,13 +212,13 @@ KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& execu
   frames.poses_file = lidar / "poses.json";
   frames.vehicle = read_panda_poses(lidar);
   frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
-  // The poses are those at one end of the sweeps.
+  // The poses are at one end of the sweeps.
   constexpr double kSweep_s = 0.1;
-  frames.vehicle = with_motion_continued(std::move(frames.vehicle), kSweep_s);
+  frames.vehicle = with_extrapolated_ends(std::move(frames.vehicle), kSweep_s);
   for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
-  frames.is_stated = drive.mount.has_value();
+  frames.is_stated = drive.given_mount().has_value();
   frames.others = "points of the PandarGT (d = 1)";
-  frames.own_mount = drive.mount.value_or(MountSettings{}).transform();
+  frames.own_mount = drive.given_mount().value_or(MountSettings{}).transform();
 
   std::map<fs::path, fs::path> classes = class_files_of(drive, frames.files);
   const bool has_classes = !classes.empty();
@@ -228,7 +228,7 @@ KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& execu
   sequence->facts.points_in = "world (as PandaSet has them)";
   sequence->facts.intensities = scale.description();
   sequence->facts.labels = has_classes ? "of all scans" : "none";
-  tell_of_drive(*sequence, progress);
+  report_drive(*sequence, progress);
   return std::move(*sequence);
 }
 

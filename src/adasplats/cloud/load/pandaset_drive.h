@@ -8,22 +8,22 @@
 
 namespace adasplats {
 
-/// True for a folder `lidar` with poses.json, timestamps.json or 00.pkl.gz in it.
+/// True for a folder that contains lidar/poses.json, lidar/timestamps.json or lidar/00.pkl.gz.
 bool is_pandaset_sequence(const std::filesystem::path& folder);
 
 /// Opens a sequence of PandaSet (Xiao et al., "PandaSet: Advanced Sensor Suite Dataset for
 /// Autonomous Driving", 2021, and its devkit): lidar/{NN.pkl.gz,poses.json,timestamps.json}, and
-/// annotations/semseg/NN.pkl.gz where there are labels. Scans are the points of the LiDAR that
-/// turns (d is 0, the Pandar64); those of the PandarGT (d is 1) are left out and counted, since
-/// nothing tells where it sits. Points are in world coordinates, each with its time (t), so the
-/// drive is one of open_world_frames(): the poses are those of the vehicle, or of the LiDAR, which
-/// the cones of its beams tell; where these are not recognised they are taken as the LiDAR's, with
-/// the mount that is stated. Errors: data that names the file (a frame that is missing or has no
-/// pose, or other labels than points; times of another count; a heading that is none).
+/// annotations/semseg/NN.pkl.gz if it has labels. Scans are the points of the spinning LiDAR (d =
+/// 0, the Pandar64). Points of the PandarGT (d = 1) are skipped and counted, since its mount is
+/// unknown. Points are in world coordinates with times (t), so open_world_frames() opens the drive:
+/// the cones of the beams show whether the poses are those of the vehicle or of the LiDAR. If they
+/// are not recognised, the poses are assumed to be the LiDAR's, with the stated mount. Errors: data
+/// with the file (a frame that is missing, has no pose, or has fewer or more labels than points; a
+/// wrong number of times; an invalid heading).
 KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& executor,
                                   ProgressSink& progress);
 
-/// annotations/semseg/classes.json; empty where there are no labels.
+/// annotations/semseg/classes.json; empty without labels.
 ClassNames pandaset_class_names(const std::filesystem::path& folder);
 
 }  // namespace adasplats

@@ -192,12 +192,13 @@ TEST(PandaSetDrive, LabelSchemeIsThatOfTheNames) {
 // nlohmann throws another exception for a number beyond double's range than for what is no JSON.
 TEST(PandaSetDrive, DamagedClassNamesAreErrors) {
   const PandaCourt court(1, false);
-  const auto expect_broken = [&](const std::string& text, const std::string& said) {
+  const auto expect_broken = [&](const std::string& text, const std::string& expected) {
     court.put("annotations/semseg/classes.json", text);
-    expect_error(ErrorKind::data, {"classes.json", said}, [&] { labels_of_tree(court.path()); });
+    expect_error(ErrorKind::data, {"classes.json", expected},
+                 [&] { labels_of_tree(court.path()); });
   };
-  expect_broken("[[5555555555555e5555555", "beyond the range of real numbers");
-  expect_broken(R"({"7": -1e400})", "beyond the range of real numbers");
+  expect_broken("[[5555555555555e5555555", "beyond the range of a double");
+  expect_broken(R"({"7": -1e400})", "beyond the range of a double");
   expect_broken(R"({"7": "Road")", "byte");
   expect_broken(R"({"7": 1})", "expected a text");
   expect_broken("[]", "expected an object");

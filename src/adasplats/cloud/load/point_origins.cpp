@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/origins/path_check.h"
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
 namespace {
 
-/// Where the beam that measured point `i` of a sequence started, world coordinates.
+/// Start of the beam that measured point `i` of a sequence, world coordinates.
 Vec3d beam_origin(const CloudPart& part, std::size_t i, const PartRun& run, Vec3d world) {
   const RigidTransform& pose = run.world_from_local;
   if (!part.scan_origins.empty()) return pose * vec_cast<double>(part.scan_origins[i]);
@@ -25,33 +24,33 @@ std::string place_text(Vec3d place) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     std::string number = std::to_string(place[axis]);
-    number.erase(number.find('.') + 3);  // centimetres distinguish places
+    number.erase(number.find('.') + 3);  // to centimetres
     text += (axis == 0 ? "" : ",") + number;
   }
   return text;
 }
 
-/// A file can say itself that origins are stated or guessed: what the options did not give is no
-/// advice.
+/// A file can contain stated or guessed origins itself: only blame an option that was given.
 Error origin_error(const std::filesystem::path& file, const PointCloud& cloud, std::size_t point,
                    const LoadOptions& options, const std::string& objection) {
   const OriginKind kind = cloud.origin_kind(point);
   const std::string place =
       place_text(cloud.origin + vec_cast<double>(cloud.sensor_positions[point]));
   if (kind == OriginKind::stated && options.viewpoint)
-    return Error(ErrorKind::usage, "the viewpoint " + place + " cannot be where " + file.string() +
-                                       " was measured: " + objection +
-                                       "; leave it out, or give the trajectory of the recording");
+    return Error(ErrorKind::usage,
+                 file.string() + ": was not measured from `viewpoint` " + place + ": " + objection +
+                     "; omit `viewpoint`, or give the trajectory of the recording");
   if (kind == OriginKind::guessed && !options.trajectory.empty())
-    return Error(ErrorKind::usage, "the trajectory cannot be that of " + file.string() +
-                                       ": its pose nearest to point " + std::to_string(point) +
-                                       " (from 0) is at " + place + ", " + objection);
+    return Error(ErrorKind::usage,
+                 file.string() +
+                     ": was not measured from `trajectory`: its pose nearest to point " +
+                     std::to_string(point) + " (from 0) is at " + place + ": " + objection);
   return Error(ErrorKind::data, file.string() + ": the sensor position " + place + " of point " +
                                     std::to_string(point) +
                                     " (from 0) is impossible: " + objection);
 }
 
-/// The first point whose origin is farther away than LiDARs measure; the number of points: none.
+/// The first point with an origin beyond the range of LiDARs; cloud.size(): none.
 std::size_t first_too_far(const PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!is_known(cloud.origin_kind(i))) continue;
@@ -61,7 +60,7 @@ std::size_t first_too_far(const PointCloud& cloud) {
   return cloud.size();
 }
 
-/// The points with beams and where these start.
+/// The points with beams, and the starts of the beams.
 struct MeasuredPoints {
   std::vector<Vec3f> positions, origins;
 
@@ -86,8 +85,9 @@ PointOrigins::PointOrigins(const LoadOptions& options) : viewpoint_(options.view
   if (options.trajectory.empty()) return;
   trajectory_ = read_trajectory(options.trajectory);
   for (const TimedPose& pose : trajectory_)
-    if (!is_place(pose.world_from_sensor.translation))
-      throw Error(ErrorKind::data, options.trajectory.string() + ": a position is beyond 1e12 m");
+    if (!is_valid_position(pose.world_from_sensor.translation))
+      throw Error(ErrorKind::data,
+                  options.trajectory.string() + ": a position is beyond 1e12 m; expected metres");
   nearest_.emplace(trajectory_);
 }
 
@@ -116,7 +116,7 @@ void check_origins(const PointCloud& cloud, const std::filesystem::path& file,
     const long distance_km = std::lround(static_cast<double>(length(along)) / 1000);
     throw origin_error(
         file, cloud, far, options,
-        "it is " + std::to_string(distance_km) + " km from the point, farther than LiDARs measure");
+        "it is " + std::to_string(distance_km) + " km from the point, beyond the range of LiDARs");
   }
   if (options.trust_origins) return;
   std::size_t first = 0;
@@ -135,7 +135,7 @@ void check_origins(const PointCloud& cloud, const std::filesystem::path& file,
   if (!objection.empty())
     throw Error(ErrorKind::data, file.string() + ": the sensor positions" +
                                      (options.trajectory.empty() ? "" : " of the trajectory") +
-                                     " are not those of the points: " + objection);
+                                     " do not fit the points: " + objection);
 }
 
 }  // namespace adasplats

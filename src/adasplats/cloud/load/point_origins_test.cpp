@@ -9,8 +9,7 @@
 #include <numbers>
 #include <span>
 
-#include "adasplats/cloud/origins/path_check.h"
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/e57/e57_file_test.h"
 

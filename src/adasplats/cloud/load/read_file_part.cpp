@@ -20,8 +20,8 @@ namespace {
 
 using Triple = std::array<std::string, 3>;
 
-// Names, in lower case, that programs and data sets give to what we read; the commonest first.
-// CloudCompare puts scalar_ before the names of what it writes.
+// Column names of programs and data sets, in lower case, most common first. CloudCompare adds the
+// prefix scalar_.
 const Triple kPositionNames = {"x", "y", "z"};
 const std::array<Triple, 6> kSensorNames = {
     {{"x_lidar_position", "y_lidar_position", "z_lidar_position"},
@@ -128,14 +128,14 @@ std::vector<std::uint32_t> read_whole_numbers(const PointFile& file, const Colum
     else if constexpr (sizeof(value) > sizeof(std::uint32_t))
       fits = fits && value <= decltype(value){0xffffffff};
     if (!fits) throw file.value_error(column, i, "a whole number from 0 to 4294967295");
-    // By way of 64 bits: a signed char is not negative here, but the checker cannot know.
+    // Through 64 bits: clang-tidy cannot see that a signed char is not negative here.
     numbers[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
   });
   return numbers;
 }
 
-/// Classes from the low 16 bits, as SemanticKITTI packs them; instances from the high 16 bits
-/// where any are set and from their own column where there is one.
+/// Classes from the low 16 bits, as SemanticKITTI packs them; instances from the high 16 bits if
+/// any are set.
 void read_labels(const PointFile& file, const Column& column, PointCloud& cloud) {
   const std::vector<std::uint32_t> labels = read_whole_numbers(file, column);
   const bool has_instances =
@@ -158,13 +158,13 @@ void read_instances(const PointFile& file, const Column& column, PointCloud& clo
   }
 }
 
-/// As save_cloud_ply() writes them.
+/// In the encoding of save_cloud_ply().
 void read_origin_kinds(const PointFile& file, const Column& column, PointCloud& cloud) {
   const std::vector<std::uint32_t> numbers = read_whole_numbers(file, column);
   cloud.origin_kinds.resize(file.table.rows);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] > static_cast<std::uint32_t>(OriginKind::measured))
-      throw file.value_error(column, i, "0 (not known), 1 (guessed), 2 (stated) or 3 (measured)");
+      throw file.value_error(column, i, "0 (unknown), 1 (guessed), 2 (stated) or 3 (measured)");
     cloud.origin_kinds[i] = static_cast<OriginKind>(numbers[i]);
   }
 }
@@ -219,13 +219,13 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
   }
 }
 
-/// Only LAS states its clock: adjusted GPS time if a note reports it, else seconds of the week.
-SaidClock said_clock_of(const PointFile& file) {
+/// Only LAS declares its clock: adjusted GPS time if a note reports it, else seconds of the week.
+DeclaredClock declared_clock_of(const PointFile& file) {
   const std::string extension = lower_case(file.path.extension().string());
-  if (extension != ".las" && extension != ".laz") return SaidClock::nothing;
+  if (extension != ".las" && extension != ".laz") return DeclaredClock::none;
   const bool is_adjusted = std::ranges::find(file.table.notes, NoteKind::adjusted_gps,
                                              &ReaderNote::kind) != file.table.notes.end();
-  return is_adjusted ? SaidClock::adjusted_gps : SaidClock::gps_week;
+  return is_adjusted ? DeclaredClock::adjusted_gps : DeclaredClock::gps_week;
 }
 
 }  // namespace
@@ -248,14 +248,14 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);
   const Column* time = file.first_of(kTimeNames);
-  // As drivers of Ouster's sensors call it; beside an s it is a coordinate of a texture.
+  // The name in Ouster's drivers; with a column s it is a texture coordinate.
   if (time == nullptr && file.find("s") == nullptr) time = file.find("t");
   if (time != nullptr) {
     part.times_s.resize(table.rows);
     for_each_value(*time, [&part](std::size_t i, auto value) {
       part.times_s[i] = static_cast<double>(value);
     });
-    part.said_clock = said_clock_of(file);
+    part.declared_clock = declared_clock_of(file);
   }
   PointCloud& cloud = part.cloud;
   if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())

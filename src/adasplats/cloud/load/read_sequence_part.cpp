@@ -17,16 +17,16 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kPointBytes = 16;  // of a KITTI scan
+constexpr std::size_t kPointBytes = 16;  // in a KITTI scan
 
 std::vector<std::size_t> chosen_scans(const KittiSequence& sequence, const LoadOptions& options) {
   const std::size_t count = sequence.scans.size();
   if (options.first_scan >= count)
     throw Error(ErrorKind::usage, sequence.folder.string() + ": has " + std::to_string(count) +
-                                      " scans, the first asked for is number " +
+                                      " scans (numbered from 0), but the first scan is set to " +
                                       std::to_string(options.first_scan));
   std::vector<std::size_t> chosen;
-  // Not `i += stride` up to the end: a huge stride would wrap.
+  // Not `i += stride`: a huge stride would wrap.
   for (std::size_t i = 0; i < count - options.first_scan && chosen.size() < options.scan_count; ++i)
     if (i % options.scan_stride == 0) chosen.push_back(options.first_scan + i);
   return chosen;
@@ -75,7 +75,7 @@ KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptio
 
 namespace {
 
-/// Calls body(k) for every run, in parallel, and tells how far it is.
+/// Calls body(k) for every run, in parallel, and reports progress.
 template <class Body>
 void for_each_scan(std::size_t count, const Executor& executor, ProgressSink& progress,
                    const Body& body) {
@@ -100,8 +100,8 @@ void number_scans(CloudPart& part, std::uint32_t first_scan_index, const Executo
   });
 }
 
-/// One attribute of all scans, one after the other; each scan's own goes as it is taken over. Empty
-/// where `points` is not how many there are.
+/// Moves one attribute of all scans into `all`, freeing each scan's copy on the way. Leaves `all`
+/// empty unless all `points` points have the attribute.
 template <class T>
 void join(std::vector<KittiScan>& scans, std::vector<T> KittiScan::*attribute, std::size_t points,
           std::vector<T>& all) {
@@ -115,9 +115,9 @@ void join(std::vector<KittiScan>& scans, std::vector<T> KittiScan::*attribute, s
   }
 }
 
-/// Tells the lasers of a scan's points; where the sensor moved, brings the points to the scan's
-/// frame and says where their beams began.
-void recognise_lasers(const PartRun& run, CloudPart& part) {
+/// Identifies the lasers of a scan's points. If the sensor moved, also brings the points to the
+/// scan's frame and sets the origins of their beams.
+void identify_lasers(const PartRun& run, CloudPart& part) {
   PointCloud& cloud = part.cloud;
   for (std::size_t i = run.begin; i < run.end; ++i) {
     const Vec3d point = vec_cast<double>(cloud.positions[i]);
@@ -132,7 +132,7 @@ void recognise_lasers(const PartRun& run, CloudPart& part) {
   }
 }
 
-/// Scans of a reader: how many points they have is known when they are read.
+/// Reads scans of a reader, whose point counts are unknown until they are read.
 void read_with_reader(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
                       CloudPart& part, const Executor& executor, ProgressSink& progress) {
   std::vector<KittiScan> scans(chosen.size());
@@ -162,14 +162,14 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
     cloud.lasers.resize(points);
     part.scan_origins.resize(part.beams.raw_motions.empty() ? 0 : points);
     executor.for_chunks(part.runs.size(), 1,
-                        [&](std::size_t k, std::size_t) { recognise_lasers(part.runs[k], part); });
+                        [&](std::size_t k, std::size_t) { identify_lasers(part.runs[k], part); });
   }
   const auto unknown = [](std::uint16_t laser) { return laser == kNoLaser; };
   if (std::ranges::all_of(cloud.lasers, unknown)) cloud.lasers.clear();
 }
 
-/// Sizes the arrays of a part whose runs are known, each by a thread: what takes long is that the
-/// system gives their memory.
+/// Sizes the arrays of a part, one thread each: most of the time is spent by the system on
+/// providing the memory.
 void size_arrays(bool has_labels, CloudPart& part, const Executor& executor) {
   const std::size_t points = part.size();
   PointCloud& cloud = part.cloud;
@@ -198,16 +198,16 @@ void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& c
   for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
     const PartRun& run = part.runs[k];
     store_scan(run, read_kitti_scan(sequence, chosen[k]), cloud);
-    if (!cloud.lasers.empty()) recognise_lasers(run, part);
+    if (!cloud.lasers.empty()) identify_lasers(run, part);
   });
 }
 
-std::string unknown_motion_text(const KittiSequence& sequence) {
+std::string undetermined_motion_text(const KittiSequence& sequence) {
   std::array<char, 300> text{};
   std::snprintf(text.data(), text.size(),
-                ": scans are as they were measured, of a sensor that moves %.2f m within each, and "
-                "nothing tells how (poses half a second and more apart, or points of other scans "
-                "that are met no better): taken as if it stood still",
+                ": scans are not motion-compensated; the sensor moves %.2f m within each, and the "
+                "motion cannot be determined (poses at least 0.5 s apart, or scans that do not "
+                "align better with it): assumed to be at rest",
                 sequence.beams.unknown_sweep_m);
   return sequence.folder.string() + text.data();
 }
@@ -222,7 +222,7 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
   part.is_sequence = true;
   part.beams = sequence.beams;
   constexpr double kStill_m = 0.02;
-  if (part.beams.unknown_sweep_m > kStill_m) progress.warn(unknown_motion_text(sequence));
+  if (part.beams.unknown_sweep_m > kStill_m) progress.warn(undetermined_motion_text(sequence));
   part.cloud.crs = sequence.facts.crs;
   if (sequence.reader)
     read_with_reader(sequence, chosen, part, executor, progress);

@@ -11,7 +11,6 @@
 #include <map>
 #include <utility>
 
-#include "adasplats/cloud/load/covered_scans.h"
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/frame_evidence.h"
 #include "adasplats/cloud/load/recording_poses.h"
@@ -21,11 +20,106 @@
 #include "adasplats/io/bags/ros_values.h"
 
 namespace adasplats {
+
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kUnitTolerance = 1e-3;  // of quaternions, as in files of poses
+
+double seconds_of(std::int64_t time_ns) {
+  return static_cast<double>(time_ns) / kNanosecondsPerSecond;
+}
+
+std::string name_of_message(const Recording& recording, const TopicSurvey& topic) {
+  return recording.path().string() + ": message " + std::to_string(topic.messages) +
+         " (from 1) of " + topic.topic.name;
+}
+
+void add_cloud(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
+  const RosCloudHead head = ros_cloud_head(message.bytes, message.topic.encoding, what);
+  if (topic.clouds.empty()) topic.frame = head.header.frame;
+  if (head.header.frame != topic.frame && topic.fault.empty())
+    topic.fault = what + " is in frame '" + head.header.frame + "', earlier ones in '" +
+                  topic.frame + "'; expected one frame per topic";
+  topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.points, message.place});
+}
+
+void add_pose(const RosPose& pose, bool is_static, const std::string& what, TopicSurvey& topic) {
+  const auto [found, is_new] = topic.edges.try_emplace({pose.header.frame, pose.child_frame});
+  FrameEdge& edge = found->second;
+  if (is_new) edge = {pose.header.frame, pose.child_frame, is_static, {}, {}};
+  const double norm =
+      std::sqrt(pose.qw * pose.qw + pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz);
+  if (!(std::fabs(norm - 1) <= kUnitTolerance) || !is_finite(pose.position)) {
+    if (edge.fault.empty())
+      edge.fault = what + ": the pose of '" + pose.child_frame + "' in '" + pose.header.frame +
+                   "' is invalid: its quaternion has norm " + std::to_string(norm) +
+                   ", expected 1 and a finite position";
+    return;
+  }
+  if (is_static) edge.parent_from_child.clear();  // the last one counts
+  edge.parent_from_child.push_back(
+      {seconds_of(pose.header.stamp_ns),
+       {rotation_from_quaternion(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm),
+        pose.position}});
+}
+
+/// Sorts by time and removes repeated times: publishers repeat unchanged poses.
+void put_in_order(FrameEdge& edge) {
+  std::ranges::stable_sort(edge.parent_from_child, {}, &TimedPose::time_s);
+  const auto same_time = [](const TimedPose& a, const TimedPose& b) {
+    return a.time_s == b.time_s;
+  };
+  Trajectory& poses = edge.parent_from_child;
+  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
+}
+
+}  // namespace
+
+bool TopicSurvey::holds_clouds() const { return topic.type == kRosCloud; }
+
+bool TopicSurvey::is_transforms() const {
+  return topic.type == kRosTransforms || topic.type == kOldRosTransforms;
+}
+
+RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink& progress) {
+  RecordingSurvey survey{std::make_shared<const Recording>(path), {}};
+  progress.begin_step("read " + path.filename().string(), 0);
+  std::uint64_t done = 0;
+  survey.recording->for_each_message([&](const RecordedMessage& message) {
+    progress.advance(++done);
+    TopicSurvey& topic = survey.topics[message.topic.name];
+    if (topic.messages == 0) topic.topic = message.topic;
+    if (topic.topic.type != message.topic.type || topic.topic.encoding != message.topic.encoding)
+      throw Error(ErrorKind::data, path.string() + ": topic " + message.topic.name +
+                                       " has messages of two types, " + topic.topic.type + " and " +
+                                       message.topic.type);
+    topic.first_ns =
+        topic.messages == 0 ? message.time_ns : std::min(topic.first_ns, message.time_ns);
+    topic.last_ns = std::max(topic.last_ns, message.time_ns);
+    ++topic.messages;
+    const bool has_points = topic.holds_clouds(), has_poses = holds_poses(topic.topic.type);
+    if ((!has_points && !has_poses) || topic.topic.encoding == MessageEncoding::other) return;
+    const std::string what = name_of_message(*survey.recording, topic);
+    if (has_points) return add_cloud(message, what, topic);
+    const bool is_static = topic.topic.name.ends_with("tf_static");
+    for (const RosPose& pose :
+         ros_poses(message.bytes, topic.topic.type, topic.topic.encoding, what))
+      add_pose(pose, is_static, what, topic);
+  });
+  progress.end_step();
+  for (auto& [name, topic] : survey.topics) {
+    std::ranges::stable_sort(topic.clouds, {}, &CloudMessage::stamp_s);
+    for (auto& [frames, edge] : topic.edges) put_in_order(edge);
+  }
+  return survey;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads scans that are messages by names that are made up for them.
+/// Reads scans that are messages, by generated names.
 class RecordedScans final : public ScanSource {
  public:
   RecordedScans(std::shared_ptr<const Recording> recording, MessageEncoding encoding,
@@ -49,23 +143,23 @@ fs::path scan_name(const fs::path& recording, std::size_t number) {
   return recording / text.data();
 }
 
-/// A scan with times of its points, which tell what those of all mean.
+/// A sample scan to determine the meaning of point times.
 struct TimedScan {
   TimeSpan times;
   double stamp_s = 0;
 };
 
-constexpr double kMaxFromStamp_s = 1;  // a sweep is at most that long
+constexpr double kMaxFromStamp_s = 1;  // maximum length of a sweep
 
-/// What the times of points are, by two scans: offsets from the stamp, or near it in its clock, in
-/// the one unit in which a sweep takes 5 ms to a second. Errors: data where they are neither.
+/// The meaning of point times, from two scans: offsets from the stamp, or times near it in its
+/// clock, in the unit in which a sweep takes 5 ms to a second. Errors: data if they are neither.
 PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, double offset_s,
                              const fs::path& recording) {
   constexpr double kShortest_s = 0.005, kLongest_s = 1;
   const double length =
       std::max(first.times.last - first.times.first, last.times.last - last.times.first);
   PointTimes times;
-  if (!(length > 0)) return times;  // none, or one a scan, which says nothing more than the stamp
+  if (!(length > 0)) return times;  // no times, or one per scan, which adds nothing to the stamp
   for (const double unit_s : {1.0, 1e-3, 1e-6, 1e-9}) {
     if (unit_s * length < kShortest_s || unit_s * length > kLongest_s) continue;
     times.unit_s = unit_s;
@@ -86,14 +180,15 @@ PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, doub
     }
   }
   std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(),
-                ": the times of its points, %.9g to %.9g in the cloud of %.3f s, are neither "
-                "offsets within a sweep (5 ms to 1 s) nor near that time, in s, ms, us or ns",
-                first.times.first, first.times.last, first.stamp_s);
+  std::snprintf(
+      text.data(), text.size(),
+      ": the times of its points (%.9g to %.9g in the cloud at %.3f s) are neither offsets within "
+      "a sweep (5 ms to 1 s) nor near the time of the cloud, in s, ms, us or ns",
+      first.times.first, first.times.last, first.stamp_s);
   throw Error(ErrorKind::data, recording.string() + text.data());
 }
 
-/// Scans with points, and what of them is known.
+/// The scans with points.
 struct RecordedDrive {
   SensorFrames frames;
   std::vector<double> stamps_s;  ///< in the recording's clock
@@ -111,7 +206,7 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
       throw Error(ErrorKind::data, path.string() + ": two clouds of " + topic.topic.name +
                                        " have the same time in their headers, " +
                                        std::to_string(cloud.stamp_s) +
-                                       " s; expected one of its own each");
+                                       " s; expected distinct times");
     const fs::path name = scan_name(path, k);
     places.emplace(name, cloud.place);
     scans.frames.files.push_back(name);
@@ -123,16 +218,16 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
                 path.string() + ": the clouds of " + topic.topic.name + " have no points");
   if (empty > 0)
     progress.warn(path.string() + ": " + std::to_string(empty) + " clouds of " + topic.topic.name +
-                  " have no points, left out");
+                  " have no points and are skipped");
   scans.frames.source =
       std::make_shared<RecordedScans>(survey.recording, topic.topic.encoding, std::move(places));
   return scans;
 }
 
-/// Leaves out the scans of which not all times have poses. `within_s`: when points of a scan were
-/// measured, from its stamp.
-void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan within_s,
-                         const fs::path& path, ProgressSink& progress) {
+/// Drops the scans that the track does not cover. `within_s`: time span of a scan's points,
+/// relative to its stamp.
+void drop_uncovered_scans(RecordedDrive& scans, const Track& track, TimeSpan within_s,
+                          const fs::path& path, ProgressSink& progress) {
   std::vector<TimeSpan> spans_s;
   for (const double stamp_s : scans.stamps_s)
     spans_s.push_back({stamp_s + within_s.first, stamp_s + within_s.last});
@@ -145,7 +240,7 @@ void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan with
   scans.frames.files.resize(kept);
 }
 
-/// Sets what the times of the points mean; gives when points of a scan were measured, from its
+/// Sets the meaning of point times; returns the time span of a scan's points, relative to its
 /// stamp.
 TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path& path) {
   const auto look_at = [&](std::size_t k) {
@@ -166,18 +261,17 @@ TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path&
 
 void require_options_of_recordings(const FrameDrive& drive) {
   if (!drive.scan_times.empty())
-    throw Error(ErrorKind::usage,
-                drive.folder.string() +
-                    ": the clouds of a recording have times in their headers; `scan_times` is for "
-                    "folders of files");
+    throw Error(ErrorKind::usage, drive.folder.string() +
+                                      ": the clouds of a recording have times in their headers; "
+                                      "`scan_times` applies to folders of files");
   if (drive.points_in == PointsIn::world)
-    throw Error(ErrorKind::usage,
-                drive.folder.string() +
-                    ": clouds of a recording are taken in the frame of their sensor; `points_in` "
-                    "world is for folders of files");
+    throw Error(ErrorKind::usage, drive.folder.string() +
+                                      ": clouds of a recording are read in the sensor frame; "
+                                      "`points_in` world applies to folders of files");
   if (!drive.trajectory.empty() && !drive.poses_topic.empty())
     throw Error(ErrorKind::usage,
-                drive.folder.string() + ": `trajectory` and `poses_topic` both give the poses");
+                drive.folder.string() +
+                    ": `trajectory` and `poses_topic` both give the poses; give only one of them");
 }
 
 }  // namespace
@@ -193,7 +287,7 @@ KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurve
   const TimeSpan within_s = understand_times(scans, offset_s, drive.folder);
   for (double& stamp_s : scans.stamps_s) stamp_s += offset_s;
   const Track track = track_of(found.poses);
-  leave_out_uncovered(scans, track, within_s, drive.folder, progress);
+  drop_uncovered_scans(scans, track, within_s, drive.folder, progress);
   SensorFrames& frames = scans.frames;
   frames.poses = {{}, track.poses, found.by, true};
   for (const double stamp_s : scans.stamps_s)
@@ -208,11 +302,12 @@ KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurve
     progress.end_step();
     because = verdict.because;
     if (verdict.points_in != PointsIn::sensor)
-      throw Error(ErrorKind::data,
-                  drive.folder.string() + ": that the points of " + topic.topic.name + " (frame '" +
-                      topic.frame + "') are in the frame of the sensor " +
-                      (verdict.points_in == PointsIn::world ? "is wrong" : "is not clear") + " (" +
-                      because + "); `points_in` states it");
+      throw Error(ErrorKind::data, drive.folder.string() + ": the points of " + topic.topic.name +
+                                       " (frame '" + topic.frame +
+                                       (verdict.points_in == PointsIn::world
+                                            ? "') are not in the sensor frame"
+                                            : "') cannot be shown to be in the sensor frame") +
+                                       " (" + because + "); give `points_in` if they are");
   }
   if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks
   KittiSequence sequence = open_sensor_frames(drive, frames, because, executor, progress);

@@ -2,20 +2,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/cloud/load/frame_drive.h"
-#include "adasplats/cloud/load/recording_survey.h"
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/load/frame_tree.h"
+#include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/io/bags/recording.h"
 
 namespace adasplats {
 
+/// A message with points.
+struct CloudMessage {
+  double stamp_s = 0;  ///< of its header
+  std::uint64_t points = 0;
+  MessagePlace place;
+};
+
+/// The contents of one topic of a recording.
+struct TopicSurvey {
+  RecordedTopic topic;
+  std::uint64_t messages = 0;
+  std::uint64_t first_ns = 0, last_ns = 0;  ///< time of recording
+  std::vector<CloudMessage> clouds;         ///< if the topic has points
+  std::string frame;                        ///< of the clouds
+  std::string fault;                        ///< why its clouds cannot be used; empty: usable
+  /// If the topic has poses, by parent and child; an empty child: not given.
+  std::map<std::pair<std::string, std::string>, FrameEdge> edges;
+  bool holds_clouds() const;
+  bool is_transforms() const;
+};
+
+/// The index of a recording: its topics by name, all poses, and the positions of its clouds.
+struct RecordingSurvey {
+  std::shared_ptr<const Recording> recording;
+  std::map<std::string, TopicSurvey> topics;
+};
+
+/// Reads a recording from front to back. Memory: 112 bytes per pose and 56 per cloud. Errors: those
+/// of Recording; data for invalid messages of clouds and poses.
+RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink& progress);
+
 /// Opens the clouds of one topic of a recording as the scans of a drive, each in the frame of its
-/// sensor. Poses at the times of their headers are, in this order: those of the stated trajectory;
-/// of the stated topic of poses; of the transforms (tf) between the clouds' frame and the one that
-/// has no parent; of the one topic of odometry or poses that there is, with fixed transforms from
-/// its child frame to the clouds' (or the stated mount). Scans that poses do not cover are left out
-/// and counted, more than half of them are an error; so are clouds without points. Times of points
-/// are offsets from the header's time, or of its clock, in s, ms, us or ns: where neither, an
-/// error. Errors: usage (topics that are not clear, options of folders), data (frames that nothing
-/// joins, clocks that differ), those of survey_recording() and open_sensor_frames().
+/// sensor. The poses at the times of their headers come from the first of these: the given
+/// trajectory; the given topic of poses; the transforms (tf) between the clouds' frame and its
+/// root; the only topic of odometry or poses, with fixed transforms from its child frame to the
+/// clouds' (or the given mount). Scans without poses and clouds without points are skipped with a
+/// warning; more than half of the scans without poses are an error. Times of points are offsets
+/// from the header's time or in its clock, in s, ms, us or ns; else an error. Errors: usage
+/// (ambiguous topics, options of folders), data (frames that no transforms connect, different
+/// clocks), those of survey_recording() and open_sensor_frames().
 KittiSequence open_recording_drive(const FrameDrive& drive, const RecordingSurvey& survey,
                                    const Executor& executor, ProgressSink& progress);
 

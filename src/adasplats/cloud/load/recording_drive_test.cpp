@@ -64,7 +64,7 @@ class RecordedCourt {
     const std::vector<Firing> firings = firings_of(sensor);
     add_poses();
     for (int scan = 0; scan < kRecordedScans; ++scan) add_scan(sensor, firings, scan);
-    path_ = folder_.write("drive.mcap", bags_test::mcap_of(said_));
+    path_ = folder_.write("drive.mcap", bags_test::mcap_of(declared_));
   }
 
   const TemporaryFolder& folder() const { return folder_; }
@@ -82,21 +82,21 @@ class RecordedCourt {
  private:
   void add_poses() {
     if (words_.has_static)
-      said_.push_back(
+      declared_.push_back(
           {"/tf_static", kTransformsType, 0,
            bags_test::transforms_message(0, "car", "lidar", numbers_of(kVehicleFromLidar))});
     for (double s = words_.first_pose_s; s <= words_.last_pose_s; s += kPoseStep_s) {
       const PoseNumbers car = numbers_of(sensor_at(s) * kVehicleFromLidar.inverse());
       const std::int64_t stamp = stamp_of(s);
       if (words_.poses == PoseWay::tf)
-        said_.push_back(
+        declared_.push_back(
             {"/tf", kTransformsType, 0, bags_test::transforms_message(stamp, "map", "car", car)});
       if (words_.poses == PoseWay::odometry)
-        said_.push_back({"/odom", "nav_msgs/msg/Odometry", 0,
-                         bags_test::odometry_message(stamp, "map", "car", car)});
+        declared_.push_back({"/odom", "nav_msgs/msg/Odometry", 0,
+                             bags_test::odometry_message(stamp, "map", "car", car)});
       if (words_.poses == PoseWay::pose)
-        said_.push_back({"/pose", "geometry_msgs/msg/PoseStamped", 0,
-                         bags_test::pose_message(stamp, "map", car)});
+        declared_.push_back({"/pose", "geometry_msgs/msg/PoseStamped", 0,
+                             bags_test::pose_message(stamp, "map", car)});
     }
   }
 
@@ -137,15 +137,15 @@ class RecordedCourt {
     }
     cloud.step = static_cast<std::uint32_t>(cloud.points.size() / cloud.width);
     cloud.row_step = cloud.step * cloud.width;
-    said_.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+    declared_.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
     if (!words_.second_topic.empty())
-      said_.push_back({words_.second_topic, kCloudType, 0, said_.back().bytes});
+      declared_.push_back({words_.second_topic, kCloudType, 0, declared_.back().bytes});
   }
 
   RecordingWords words_;
   TemporaryFolder folder_;
   std::filesystem::path path_;
-  std::vector<Said> said_;
+  std::vector<Said> declared_;
 };
 
 /// Oracle: what the beams were cast from, and where they ended. Between poses the path is taken for
@@ -215,7 +215,7 @@ TEST(RecordingDrive, ScansWithoutPosesAreLeftOutAndNothingIsExtrapolated) {
   const auto [cloud, report] = court.load();
   EXPECT_EQ(report.drives.at(0).scans, 5U);
   const RecordedCourt late({.first_pose_s = 0.45});
-  expect_error(ErrorKind::data, {"5 of 7", "nothing is extrapolated"}, [&] { late.load(); });
+  expect_error(ErrorKind::data, {"5 of 7", "have no pose"}, [&] { late.load(); });
 }
 
 TEST(RecordingDrive, WhatIsNotClearIsAnErrorThatNamesIt) {
@@ -250,12 +250,12 @@ TEST(RecordingDrive, WhatIsNotClearIsAnErrorThatNamesIt) {
 
 /// Clouds of two points at 0.5, 1.5, ... s, and poses each 0.1 s but between 2.05 and 4.05 s.
 std::vector<Said> clouds_with_a_gap_of_poses() {
-  std::vector<Said> said;
+  std::vector<Said> messages;
   for (int k = 0; k <= 60; ++k)
     if (k <= 20 || k >= 41)
-      said.push_back({"/tf", kTransformsType, 0,
-                      bags_test::transforms_message(stamp_of(0.1 * k), "map", "lidar",
-                                                    {0.1 * k, 0, 0, 0, 0, 0, 1})});
+      messages.push_back({"/tf", kTransformsType, 0,
+                          bags_test::transforms_message(stamp_of(0.1 * k), "map", "lidar",
+                                                        {0.1 * k, 0, 0, 0, 0, 0, 1})});
   for (int k = 0; k < 6; ++k) {
     CloudWords cloud{.stamp_ns = stamp_of(k + 0.5)};
     cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
@@ -263,14 +263,14 @@ std::vector<Said> clouds_with_a_gap_of_poses() {
     cloud.step = 12;
     cloud.row_step = 24;
     for (const float value : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}) cloud.points += bytes_of(value);
-    said.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+    messages.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
   }
-  return said;
+  return messages;
 }
 
-std::pair<PointCloud, LoadReport> load_said(const TemporaryFolder& folder,
-                                            const std::vector<Said>& said) {
-  const std::filesystem::path path = folder.write("drive.mcap", bags_test::mcap_of(said));
+std::pair<PointCloud, LoadReport> load_messages(const TemporaryFolder& folder,
+                                                const std::vector<Said>& messages) {
+  const std::filesystem::path path = folder.write("drive.mcap", bags_test::mcap_of(messages));
   LoadOptions options;
   options.own_body_m = 0;
   options.driven_path_m = 0;
@@ -281,7 +281,7 @@ std::pair<PointCloud, LoadReport> load_said(const TemporaryFolder& folder,
 // Oracle: where the poses, which move by 1 m/s along x, have the points.
 TEST(RecordingDrive, ScansInGapsOfPosesAreLeftOut) {
   const TemporaryFolder folder;
-  const auto [cloud, report] = load_said(folder, clouds_with_a_gap_of_poses());
+  const auto [cloud, report] = load_messages(folder, clouds_with_a_gap_of_poses());
   ASSERT_EQ(cloud.size(), 8U);  // not those at 2.5 and 3.5 s
   const double at_s[] = {0.5, 1.5, 4.5, 5.5};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -293,23 +293,23 @@ TEST(RecordingDrive, ScansInGapsOfPosesAreLeftOut) {
 TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::vector<std::string>& parts, CloudWords cloud) {
-    std::vector<Said> said = clouds_with_a_gap_of_poses();
+    std::vector<Said> messages = clouds_with_a_gap_of_poses();
     cloud.fields = {{"x", 0, 7}};
     cloud.width = 1;
     cloud.step = cloud.row_step = 4;
     cloud.points = "1234";
-    said.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
-    expect_error(ErrorKind::data, parts, [&] { load_said(folder, said); });
+    messages.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+    expect_error(ErrorKind::data, parts, [&] { load_messages(folder, messages); });
   };
   refuse({"message 7", "'rear'", "'lidar'"}, {.stamp_ns = stamp_of(5.6), .frame = "rear"});
   refuse({"the same time"}, {.stamp_ns = stamp_of(4.5)});
   refuse({"000006", "no columns x, y and z"}, {.stamp_ns = stamp_of(5.8)});
   // A rotation that is none, of a transform that is needed.
-  std::vector<Said> said = clouds_with_a_gap_of_poses();
-  said.push_back(
+  std::vector<Said> messages = clouds_with_a_gap_of_poses();
+  messages.push_back(
       {"/tf", kTransformsType, 0,
        bags_test::transforms_message(stamp_of(7), "map", "lidar", {0, 0, 0, 0, 0, 0, 0})});
-  expect_error(ErrorKind::data, {"/tf", "norm is 0"}, [&] { load_said(folder, said); });
+  expect_error(ErrorKind::data, {"/tf", "norm is 0"}, [&] { load_messages(folder, messages); });
 }
 
 }  // namespace

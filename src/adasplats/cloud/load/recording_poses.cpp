@@ -6,10 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "adasplats/cloud/origins/track.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/ros_values.h"
 
 namespace adasplats {
+
 namespace {
 
 std::string count_and_type(const TopicSurvey& topic) {
@@ -17,7 +19,7 @@ std::string count_and_type(const TopicSurvey& topic) {
          " messages)";
 }
 
-/// "/a (TYPE, 3 messages), /b (...)" of the topics that `chosen` takes.
+/// "/a (TYPE, 3 messages), /b (...)" of the topics for which `chosen` is true.
 template <class Chosen>
 std::string list_of_topics(const RecordingSurvey& survey, Chosen&& chosen) {
   std::string list;
@@ -26,11 +28,11 @@ std::string list_of_topics(const RecordingSurvey& survey, Chosen&& chosen) {
   return list.empty() ? "none" : list;
 }
 
-bool tells_one_pose(const TopicSurvey& topic) {
+bool is_pose_topic(const TopicSurvey& topic) {
   return !topic.edges.empty() && !topic.is_transforms();
 }
 
-/// All transforms of topics of tf. Errors: data where they contradict each other.
+/// All transforms of tf topics. Errors: data if they contradict each other.
 FrameTree tree_of(const RecordingSurvey& survey) {
   FrameTree tree;
   for (const auto& [name, topic] : survey.topics) {
@@ -46,12 +48,12 @@ FrameTree tree_of(const RecordingSurvey& survey) {
   return tree;
 }
 
-/// What a topic says that tells where one frame is in another.
+/// The pair of frames of a topic of poses.
 const FrameEdge& edge_of_topic(const TopicSurvey& topic) {
   if (topic.edges.size() != 1)
     throw Error(ErrorKind::data, topic.topic.name + " has poses of " +
                                      std::to_string(topic.edges.size()) +
-                                     " pairs of frames, expected one");
+                                     " pairs of frames; expected one pair");
   const FrameEdge& edge = topic.edges.begin()->second;
   if (!edge.fault.empty()) throw Error(ErrorKind::data, edge.fault);
   return edge;
@@ -63,15 +65,15 @@ std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
          topic;
 }
 
-/// The poses of a topic that says where one frame is in another.
+/// The poses of a topic with one pair of frames.
 RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
                              const TopicSurvey& topic, const TopicSurvey& clouds) {
   const std::string& name = topic.topic.name;
   const FrameEdge& edge = edge_of_topic(topic);
   RecordedPoses found;
   found.by = words_of_edge(edge, name);
-  if (drive.mount) {
-    found.poses = mounted(edge.parent_from_child, drive.mount->transform());
+  if (const auto mount = drive.given_mount()) {
+    found.poses = mounted(edge.parent_from_child, mount->transform());
   } else if (edge.child.empty()) {
     found.poses = edge.parent_from_child;
   } else {
@@ -79,10 +81,10 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
       throw Error(ErrorKind::data,
                   "the clouds of " + clouds.topic.name + " are in frame '" + clouds.frame +
                       "', the poses of " + name + " are those of '" + edge.child +
-                      "', and no transforms join them (frames: " + tree.frame_names() +
-                      "); `mount` states where the sensor sits");
+                      "', and no transforms connect the two (frames: " + tree.frame_names() +
+                      "); give `mount`, the position of the sensor in '" + edge.child + "'");
     found.poses = mounted(edge.parent_from_child, tree.fixed_between(edge.child, clouds.frame));
-    if (edge.child != clouds.frame) found.by += ", brought to '" + clouds.frame + "' by tf";
+    if (edge.child != clouds.frame) found.by += ", transformed to '" + clouds.frame + "' by tf";
   }
   if (!edge.child.empty())
     found.because = "frame '" + clouds.frame + "' of a vehicle that moves in '" + edge.parent + "'";
@@ -91,49 +93,49 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
 
 RecordedPoses poses_of_tree(const FrameDrive& drive, const FrameTree& tree,
                             const std::string& frame) {
-  if (drive.mount)
+  if (drive.given_mount())
     throw Error(ErrorKind::usage,
-                "`mount` is for poses of a trajectory or of a topic of them; the transforms of the "
-                "recording say where '" +
-                    frame + "' sits");
+                "`mount` needs poses from a `trajectory` or a `poses_topic`; here the transforms "
+                "of the recording define the pose of '" +
+                    frame + "'");
   const std::string root = tree.root_of(frame);
   return {tree.poses_of(frame), "of '" + frame + "' in '" + root + "' by tf",
           "frame '" + frame + "', which moves in '" + root + "'"};
 }
 
 Error no_poses(const RecordingSurvey& survey, const FrameTree& tree, const TopicSurvey& clouds) {
-  const auto holds_points = [](const TopicSurvey& topic) { return tells_one_pose(topic); };
-  std::string found = "its transforms know frames " + tree.frame_names();
+  const auto holds_points = [](const TopicSurvey& topic) { return is_pose_topic(topic); };
+  std::string found = "its transforms have the frames " + tree.frame_names();
   if (tree.has(clouds.frame))
     found = "'" + clouds.frame + "' does not move in '" + tree.root_of(clouds.frame) + "' (" +
             found + ")";
   return Error(ErrorKind::data,
                "the clouds of " + clouds.topic.name + " are in frame '" + clouds.frame +
-                   "', and where that was is not said: " + found +
+                   "', whose poses are unknown: " + found +
                    "; topics of poses: " + list_of_topics(survey, holds_points) +
-                   "; expected tf from a fixed frame to it, `poses_topic` or a `trajectory`");
+                   "; record tf from a fixed frame to it, or give `poses_topic` or `trajectory`");
 }
 
-/// The topic of that name. Errors: usage where it has no poses.
+/// The topic with that name. Errors: usage if it has no poses.
 const TopicSurvey& stated_topic_of_poses(const RecordingSurvey& survey, const std::string& name) {
   const auto topic = survey.topics.find(name);
   if (topic == survey.topics.end() || topic->second.edges.empty())
-    throw Error(ErrorKind::usage, name + " is no topic with poses; there are " +
+    throw Error(ErrorKind::usage, name + " is not a topic with poses; topics with poses: " +
                                       list_of_topics(survey, [](const TopicSurvey& one) {
                                         return !one.edges.empty();
                                       }));
   return topic->second;
 }
 
-/// The only topic of odometry or poses; null: none. Errors: usage where there are several.
+/// The only topic of odometry or poses; null: none. Errors: usage if there are several.
 const TopicSurvey* only_topic_of_poses(const RecordingSurvey& survey) {
   const TopicSurvey* only = nullptr;
   for (const auto& [name, topic] : survey.topics) {
-    if (!tells_one_pose(topic)) continue;
+    if (!is_pose_topic(topic)) continue;
     if (only != nullptr)
       throw Error(ErrorKind::usage,
-                  "has several topics of poses: " + list_of_topics(survey, &tells_one_pose) +
-                      "; `poses_topic` states which");
+                  "has several topics of poses: " + list_of_topics(survey, &is_pose_topic) +
+                      "; choose one with `poses_topic`");
     only = &topic;
   }
   return only;
@@ -153,7 +155,7 @@ RecordedPoses poses_within(const FrameDrive& drive, const RecordingSurvey& surve
   return poses_of_topic(drive, tree, *only, clouds);
 }
 
-/// The only frame that moves in the one above it.
+/// The only frame that moves in its parent.
 std::string only_moving_frame(const RecordingSurvey& survey) {
   std::set<std::string> moving;
   for (const auto& [name, topic] : survey.topics)
@@ -162,16 +164,16 @@ std::string only_moving_frame(const RecordingSurvey& survey) {
         moving.insert(edge.child);
   if (moving.empty())
     throw Error(ErrorKind::data,
-                "has no poses: neither transforms that change nor topics of odometry or poses");
+                "has no poses: neither changing transforms nor topics of odometry or poses");
   if (moving.size() == 1) return *moving.begin();
   std::string all;
   for (const std::string& frame : moving) all += (all.empty() ? "'" : ", '") + frame + "'";
   throw Error(ErrorKind::usage, "several frames move by tf (" + all +
-                                    ") and no clouds tell which is the sensor's; `poses_topic` "
-                                    "states a topic of odometry or poses");
+                                    "), and without clouds the frame of the sensor is unknown; "
+                                    "choose a topic of odometry or poses with `poses_topic`");
 }
 
-/// Of a recording without clouds.
+/// The poses of a recording without clouds.
 RecordedPoses poses_without_clouds(const RecordingSurvey& survey, const std::string& poses_topic) {
   const TopicSurvey* const topic = poses_topic.empty()
                                        ? only_topic_of_poses(survey)
@@ -182,7 +184,7 @@ RecordedPoses poses_without_clouds(const RecordingSurvey& survey, const std::str
   return {edge.parent_from_child, words_of_edge(edge, topic->topic.name), ""};
 }
 
-/// poses_within(), but for a vehicle that nothing joins to the clouds.
+/// poses_within(), or those of a vehicle that no transforms connect to the clouds.
 RecordedPoses poses_of_clouds_or_vehicle(const RecordingSurvey& survey, const TopicSurvey& clouds,
                                          const std::string& poses_topic) {
   FrameDrive drive;
@@ -201,12 +203,12 @@ RecordedPoses poses_of_clouds_or_vehicle(const RecordingSurvey& survey, const To
                          (tree.has(edge.child) && tree.has(clouds.frame));
   if (is_joined) return poses_within(drive, survey, clouds);
   return {edge.parent_from_child,
-          words_of_edge(edge, topic->topic.name) + ", which nothing joins to '" + clouds.frame +
-              "' of the clouds",
+          words_of_edge(edge, topic->topic.name) + ", which no transforms connect to '" +
+              clouds.frame + "' of the clouds",
           ""};
 }
 
-/// Calls find(), and puts the recording before what is wrong with it.
+/// Calls find() and prefixes its errors with the recording.
 template <class Find>
 RecordedPoses named_errors(const RecordingSurvey& survey, const Find& find) {
   try {
@@ -233,14 +235,14 @@ const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::str
   }
   if (count == 0 && stated.empty())
     throw Error(ErrorKind::data,
-                path + ": has no topic of points (" + std::string(kRosCloud) + "), but " +
+                path + ": has no topic of points (" + std::string(kRosCloud) + "); its topics: " +
                     list_of_topics(survey, [](const TopicSurvey&) { return true; }));
   if (count == 0)
-    throw Error(ErrorKind::usage, path + ": has no topic of points " + stated + "; there are " +
-                                      list_of_topics(survey, is_one));
+    throw Error(ErrorKind::usage, path + ": has no topic of points " + stated +
+                                      "; topics of points: " + list_of_topics(survey, is_one));
   if (count > 1)
     throw Error(ErrorKind::usage, path + ": has several topics of points: " +
-                                      list_of_topics(survey, is_one) + "; `topic` states which");
+                                      list_of_topics(survey, is_one) + "; choose one with `topic`");
   if (!chosen->fault.empty()) throw Error(ErrorKind::data, chosen->fault);
   return *chosen;
 }
@@ -254,12 +256,13 @@ RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<dou
     if (found.poses.size() != stamps_s.size())
       throw Error(ErrorKind::data,
                   drive.trajectory.string() + ": " + std::to_string(found.poses.size()) +
-                      " poses without times, " + std::to_string(stamps_s.size()) + " " + scans +
+                      " poses without times for " + std::to_string(stamps_s.size()) + " " + scans +
                       "; expected one pose each, or poses with times");
     for (std::size_t k = 0; k < stamps_s.size(); ++k) found.poses[k].time_s = stamps_s[k];
     found.by = "one each, " + when;
   }
-  if (drive.mount) found.poses = mounted(std::move(found.poses), drive.mount->transform());
+  if (const auto mount = drive.given_mount())
+    found.poses = mounted(std::move(found.poses), mount->transform());
   return found;
 }
 
@@ -276,6 +279,55 @@ RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey*
     return clouds == nullptr ? poses_without_clouds(survey, poses_topic)
                              : poses_of_clouds_or_vehicle(survey, *clouds, poses_topic);
   });
+}
+
+namespace {
+
+/// The poses at the times of clouds, if covered.
+Trajectory poses_at_clouds(const Trajectory& poses, const TopicSurvey& clouds,
+                           const std::string& path, ProgressSink& progress) {
+  const Track track = track_of(poses);
+  Trajectory at;
+  std::size_t left_out = 0;
+  for (const CloudMessage& cloud : clouds.clouds) {
+    const double time_s = cloud.stamp_s;
+    const bool is_new = at.empty() || time_s > at.back().time_s;
+    if (track.covers(time_s) && is_new)
+      at.push_back({time_s, interpolate(track.poses, time_s)});
+    else
+      ++left_out;
+  }
+  const std::string figures = std::to_string(left_out) + " of " +
+                              std::to_string(clouds.clouds.size()) + " clouds of " +
+                              clouds.topic.name + " have no pose, or repeat a time";
+  if (at.size() < left_out)
+    throw Error(ErrorKind::data, path + ": " + figures + "; the clocks of clouds and poses differ");
+  if (left_out > 0) progress.warn(path + ": " + figures + " and are skipped");
+  return at;
+}
+
+}  // namespace
+
+RecordedTrajectory trajectory_of_recording(const std::filesystem::path& recording,
+                                           const std::string& topic, const std::string& poses_topic,
+                                           ProgressSink& progress) {
+  const RecordingSurvey survey = survey_recording(recording, progress);
+  const std::string path = recording.string();
+  const bool has_clouds = std::ranges::any_of(
+      survey.topics, [](const auto& named) { return named.second.holds_clouds(); });
+  const TopicSurvey* const clouds =
+      has_clouds || !topic.empty() ? &topic_of_clouds(survey, topic) : nullptr;
+  RecordedPoses found = poses_of_carrier(survey, clouds, poses_topic);
+  RecordedTrajectory result;
+  result.by = found.by;
+  if (clouds != nullptr) {
+    result.poses = poses_at_clouds(found.poses, *clouds, path, progress);
+    result.by += ", at the times of the clouds of " + clouds->topic.name;
+  } else {
+    result.poses = found.poses;
+  }
+  result.motion = std::move(found.poses);
+  return result;
 }
 
 }  // namespace adasplats

@@ -2,39 +2,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load/frame_drive.h"
-#include "adasplats/cloud/load/recording_survey.h"
+#include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/recording_drive.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/progress.h"
 
 namespace adasplats {
 
-/// The topic whose clouds are the scans: the stated one, else the only one. Errors: usage with a
-/// list of those that there are.
+/// The topic of the scans: the given one, else the only one with clouds. Errors: usage with a list
+/// of the candidates.
 const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::string& stated);
 
-/// Poses over time of what carries the clouds' frame.
+/// Poses of the clouds' frame over time.
 struct RecordedPoses {
   Trajectory poses;     ///< of the frame of the clouds
   std::string by;       ///< how they were found, for messages
-  std::string because;  ///< what says that the clouds are in a frame that moves; empty: nothing
+  std::string because;  ///< evidence that the clouds are in a moving frame; empty: none
 };
 
-/// Those of the stated trajectory; where it has no times, one pose each of the `scans` ("clouds")
-/// at their times. `when` says which those are. Errors: data.
+/// Poses of the given trajectory; without times, one pose for each of the `scans` ("clouds") at
+/// their times. `when` describes those times. Errors: data.
 RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<double>& stamps_s,
                                   const std::string& scans, const std::string& when);
 
-/// As open_recording_drive() chooses them; `stamps_s` are the times of the clouds, which poses of a
-/// trajectory without times get. Errors: usage, data.
+/// Poses as open_recording_drive() chooses them. `stamps_s`: times of the clouds, for a trajectory
+/// without times. Errors: usage, data.
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s);
 
-/// The poses of what carried the sensor, for who drives that way again: those of the clouds' frame,
-/// or of a vehicle that nothing joins to it; without `clouds` (null) those of `poses_topic`, of the
-/// only topic of poses, or of the only frame that moves by tf. Errors: usage, data.
+/// Poses to drive the same route again: those of the clouds' frame, or of a vehicle that no
+/// transforms connect to it. Without `clouds` (null): those of `poses_topic`, of the only topic of
+/// poses, or of the only frame that moves by tf. Errors: usage, data.
 RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey* clouds,
                                const std::string& poses_topic);
+
+/// The trajectory of a recording's vehicle.
+struct RecordedTrajectory {
+  Trajectory poses;   ///< one per cloud, or all without clouds
+  Trajectory motion;  ///< all
+  std::string by;     ///< how they were found, for messages
+};
+
+/// The poses of a recording, to drive along them. They are chosen as in open_recording_drive() for
+/// the clouds of `topic` (empty: the only one) and interpolated at the times of their headers;
+/// clouds without poses are skipped with a warning. Poses of a vehicle that no transforms connect
+/// to the clouds stay its own. Without clouds: those of `poses_topic`, of the only topic of
+/// odometry or poses, or of the only frame that moves by tf. Errors: usage (ambiguous topics), data
+/// (no poses, different clocks), those of survey_recording().
+RecordedTrajectory trajectory_of_recording(const std::filesystem::path& recording,
+                                           const std::string& topic, const std::string& poses_topic,
+                                           ProgressSink& progress);
 
 }  // namespace adasplats

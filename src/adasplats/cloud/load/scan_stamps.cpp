@@ -11,7 +11,7 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/origins/track.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/line_reader.h"
@@ -22,15 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Scans of sensors that turn 200 times a second, and what is left of a drive of which every
-// hundredth scan was kept.
+// From sensors that turn 200 times a second to drives of which every hundredth scan was kept.
 constexpr double kMinStep_s = 0.005, kMaxStep_s = 10;
 constexpr std::array kStampUnits_s = {1.0, 1e-3, 1e-6, 1e-9};
 constexpr std::size_t kStampDigits = 9;  // seconds since 1973
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The last number in a name: digits, and what is behind a point.
+/// The last number in a name, with its fraction.
 std::string last_number(const std::string& stem) {
   const std::size_t end = stem.find_last_of("0123456789");
   if (end == std::string::npos) return {};
@@ -46,7 +45,7 @@ std::string last_number(const std::string& stem) {
   return stem.substr(begin, end + 1 - begin);
 }
 
-/// "1583836591_182590976" are seconds and nanoseconds: with a point between them.
+/// "1583836591_182590976" (seconds and nanoseconds) becomes "1583836591.182590976".
 std::string stamp_text(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::string number = last_number(stem);
@@ -78,34 +77,30 @@ std::string seconds_text(double first_s, double last_s) {
   return text.data();
 }
 
-/// The poses at given times. Errors: data where these are beyond the track or in its gaps.
+/// The poses at given times. Errors: data for times outside the track or in its gaps.
 PosesOfFiles poses_at(const std::vector<double>& times_s, const Track& track,
                       const std::string& from, const fs::path& trajectory) {
   const TimeSpan covered = track.covered_s();
-  const auto in_gap = [&](double time_s) {
-    return std::ranges::any_of(
-        track.gaps, [time_s](TimeSpan gap) { return time_s > gap.first && time_s < gap.last; });
-  };
   PosesOfFiles poses{{}, track.poses, "interpolated at " + from, true};
   for (const double time_s : times_s) {
     if (time_s < covered.first || time_s > covered.last)
-      throw Error(ErrorKind::data,
-                  trajectory.string() + ": its poses are of " +
-                      seconds_text(track.measured_s.first, track.measured_s.last) +
-                      ", the scans by " + from + " of " +
-                      seconds_text(times_s.front(), times_s.back()) +
-                      ": the clocks differ (`time_offset` states by how much), or the trajectory "
-                      "is of another drive; nothing is extrapolated");
-    if (in_gap(time_s))
-      throw Error(ErrorKind::data, trajectory.string() + ": has no poses around " +
-                                       seconds_text(time_s, time_s) + ", when a scan was made (" +
-                                       from + "): nothing is guessed there");
+      throw Error(ErrorKind::data, trajectory.string() + ": its poses cover " +
+                                       seconds_text(track.measured_s.first, track.measured_s.last) +
+                                       ", but the scans (by " + from + ") " +
+                                       seconds_text(times_s.front(), times_s.back()) +
+                                       "; the clocks differ (give `time_offset`), or the "
+                                       "trajectory belongs to another drive");
+    if (is_in_gap(track.gaps, {time_s, time_s}))
+      throw Error(ErrorKind::data, trajectory.string() + ": has a gap around " +
+                                       seconds_text(time_s, time_s) + ", the time of a scan (by " +
+                                       from +
+                                       "); remove the scan, or give a trajectory without the gap");
     poses.of_scans.push_back({time_s, interpolate(track.poses, time_s)});
   }
   return poses;
 }
 
-/// Stamps of another clock, and as many poses as scans: whether both run alike.
+/// For stamps of another clock and as many poses as scans: both must have the same steps.
 void require_same_steps(const std::vector<double>& times_s, const Trajectory& poses,
                         const std::string& from, const fs::path& trajectory) {
   const double step_s = median_step(times_s);
@@ -113,11 +108,11 @@ void require_same_steps(const std::vector<double>& times_s, const Trajectory& po
   for (std::size_t k = 0; k < times_s.size(); ++k) ahead_s.push_back(times_s[k] - poses[k].time_s);
   const auto [least, most] = std::ranges::minmax(ahead_s);
   if (most - least <= 0.5 * step_s) return;
-  throw Error(ErrorKind::data,
-              trajectory.string() + ": as many poses as scans, but " + from +
-                  " are ahead of the times of the poses by " + seconds_text(least, most) +
-                  ", so that they do not belong together one by one; `time_offset` or "
-                  "`scan_times` states the times");
+  throw Error(
+      ErrorKind::data,
+      trajectory.string() + ": has one pose per scan, but " + from +
+          " are ahead of the times of the poses by " + seconds_text(least, most) +
+          ", so poses and scans do not match one by one; give `time_offset` or `scan_times`");
 }
 
 PosesOfFiles poses_in_order(Trajectory given, const Track* track, std::string by, bool timed) {
@@ -129,7 +124,7 @@ PosesOfFiles poses_in_order(Trajectory given, const Track* track, std::string by
   return poses;
 }
 
-/// By the numbers in the names, as in KITTI's sequences; nothing where they are none of poses.
+/// By the numbers in the names, as in KITTI's sequences; nothing if a number is beyond the poses.
 std::optional<Trajectory> poses_by_number(const std::vector<fs::path>& files,
                                           const Trajectory& given) {
   Trajectory matched;
@@ -150,12 +145,13 @@ std::optional<PosesOfFiles> poses_by_stamps(std::vector<double> times_s, const s
   if (!timed) {  // the stamps are the times of the poses
     if (!one_each)
       throw Error(ErrorKind::data, trajectory.string() + ": " + std::to_string(given.size()) +
-                                       " poses without times, " + std::to_string(times_s.size()) +
-                                       " scans; expected one pose a scan, or poses with times");
+                                       " poses without times for " +
+                                       std::to_string(times_s.size()) +
+                                       " scans; expected one pose per scan, or poses with times");
     Trajectory poses = given;
     for (std::size_t k = 0; k < poses.size(); ++k) poses[k].time_s = times_s[k];
     const Track track = track_of(poses);
-    return poses_in_order(poses, &track, "one a scan, at " + from, true);
+    return poses_in_order(poses, &track, "one per scan, at " + from, true);
   }
   const Track track = track_of(given);
   const bool covered =
@@ -164,7 +160,7 @@ std::optional<PosesOfFiles> poses_by_stamps(std::vector<double> times_s, const s
     return poses_at(times_s, track, from, trajectory);
   require_same_steps(times_s, given, from, trajectory);
   std::array<char, 100> text{};
-  std::snprintf(text.data(), text.size(), "one a scan in their order (%s are %.3f s ahead)",
+  std::snprintf(text.data(), text.size(), "one per scan in order (%s are %.3f s ahead)",
                 from.c_str(), times_s.front() - given.front().time_s);
   return poses_in_order(given, &track, text.data(), true);
 }
@@ -231,13 +227,14 @@ std::vector<double> read_scan_times(const fs::path& file, std::size_t count) {
   }
   if (times_s.size() != count)
     throw Error(ErrorKind::data, file.string() + ": " + std::to_string(times_s.size()) +
-                                     " times, " + std::to_string(count) + " scans");
+                                     " times for " + std::to_string(count) +
+                                     " scans; expected one per scan");
   const double step_s = median_step(times_s);
   if (ascend(times_s) && (count < 2 || (step_s >= kMinStep_s && step_s <= kMaxStep_s)))
     return times_s;
-  throw Error(ErrorKind::data, file.string() + ": its times do not ascend as those of scans in " +
-                                   "seconds do: their median distance is " + exact_text(step_s) +
-                                   ", expected 0.005 to 10 s");
+  throw Error(ErrorKind::data, file.string() +
+                                   ": its times are not ascending seconds: their median step is " +
+                                   exact_text(step_s) + ", expected 0.005 to 10 s");
 }
 
 std::optional<PosesOfFiles> poses_of_files(const std::vector<fs::path>& files,
@@ -258,7 +255,7 @@ std::optional<PosesOfFiles> poses_of_files(const std::vector<fs::path>& files,
     return poses_in_order(std::move(*matched), known, "by the numbers in the names of the scans",
                           timed);
   if (given.size() == files.size())
-    return poses_in_order(given, known, "one a scan in their order", timed);
+    return poses_in_order(given, known, "one per scan in order", timed);
   return std::nullopt;
 }
 

@@ -11,34 +11,33 @@
 
 namespace adasplats {
 
-/// The files of points of one extension in a folder, one a scan: by the numbers in their names
-/// where all have one of their own, else by name. Trajectories and what holds no points do not
-/// count; none where points of several extensions, meshes or models are there, or sequences.
+/// The point files of a folder, one per scan: sorted by the numbers in their names if all differ,
+/// else by name. Trajectories and files without points are ignored; empty if the folder contains
+/// point files of several extensions, meshes, models or sequences.
 std::vector<std::filesystem::path> scan_files(const std::filesystem::path& folder);
 
-/// When scans were made by their names, s: a number with a fraction or with nine digits and more
-/// (seconds, milli-, micro- or nanoseconds; 1583836591_182590976 are seconds and nanoseconds).
-/// Shorter whole numbers are numbers of scans, and no times. None where a name has no such number,
-/// or they do not ascend by 5 ms to 10 s in the median.
+/// Times of scans from their names, s: a number with a fraction or with at least nine digits
+/// (seconds, milli-, micro- or nanoseconds; 1583836591_182590976 is seconds and nanoseconds).
+/// Shorter whole numbers are scan numbers, not times. Empty if a name has no such number, or if
+/// they do not ascend by 5 ms to 10 s (median).
 std::vector<double> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Times of scans from a file, s, one a line. Errors: data where it has not `count`, one does not
-/// come after the one before, or their median distance is none of scans in seconds (5 ms to 10 s).
+/// Times of scans from a file, s, one per line. Errors: data if their number is not `count`, they
+/// do not ascend, or their median step is not 5 ms to 10 s.
 std::vector<double> read_scan_times(const std::filesystem::path& file, std::size_t count);
 
 /// The poses of scans.
 struct PosesOfFiles {
-  Trajectory of_scans;     ///< one a scan
-  Trajectory track;        ///< between which it is interpolated; empty where times are not known
+  Trajectory of_scans;     ///< one per scan
+  Trajectory track;        ///< interpolated between scans; empty without times
   std::string by;          ///< how they were found, for messages
-  bool has_times = false;  ///< else of_scans has made-up ones, 0.1 s apart
+  bool has_times = false;  ///< else of_scans has placeholder times, 0.1 s apart
 };
 
-/// Finds the pose of each scan: at its time (by `times_file`, else by the stamps in the names,
-/// which `time_offset_s` brings to the trajectory's clock), by the number in its name as in KITTI's
-/// sequences, or one pose a scan in their order. Nothing where none of these fits. Errors: data
-/// where the stated times are not those of the poses, or stamps run otherwise than the poses'
-/// times.
+/// Finds the pose of each scan: at its time (from `times_file`, else from the stamps in the names,
+/// plus `time_offset_s`), by the number in its name as in KITTI's sequences, or one pose per scan
+/// in order. Nothing if none of these fits. Errors: data if the given times are outside the poses',
+/// or if the steps of stamps and poses differ.
 std::optional<PosesOfFiles> poses_of_files(const std::vector<std::filesystem::path>& files,
                                            const std::filesystem::path& trajectory,
                                            const std::filesystem::path& times_file,

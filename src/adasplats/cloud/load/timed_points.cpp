@@ -16,16 +16,16 @@ namespace adasplats {
 namespace {
 
 constexpr double kScan_s = 0.1;
-constexpr std::size_t kMaxScans = 10'000;  // poses of their own that a calibration can hold
+constexpr std::size_t kMaxScans = 10'000;  // separate poses that a calibration supports
 
 bool has_own_times(const CloudPart& part) {
   return !part.is_sequence && part.size() > 0 && part.times_s.size() == part.size() &&
          part.world_sensors.empty();
 }
 
-/// Cuts times into scans: where nothing was measured for half a scan, and what is between such
-/// pauses into equal pieces of about 0.1 s. Pieces by the clock alone would cut the scans of a
-/// recording that pauses between them, and a sliver of a scan holds no pose.
+/// Cuts times into scans: at pauses of half a scan, and between pauses into equal parts of about
+/// 0.1 s. Parts of a fixed clock would cut the scans of a recording with pauses, and a sliver of a
+/// scan cannot constrain a pose.
 class ScanCut {
  public:
   explicit ScanCut(TimeSpan times_s) : begin_s_(times_s.first) {
@@ -36,7 +36,7 @@ class ScanCut {
   }
   void add(double time_s) { is_used_[bin_of(time_s)] = 1; }
 
-  /// When all times are added.
+  /// Call after all times are added.
   void cut() {
     const auto pause = static_cast<std::size_t>(std::ceil(0.5 * kScan_s / bin_s_));
     std::vector<TimeSpan> runs;
@@ -68,7 +68,7 @@ class ScanCut {
     const auto behind = std::ranges::upper_bound(begins_s_, time_s) - begins_s_.begin();
     return static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(1, behind) - 1);
   }
-  /// The poses in the middles of the scans.
+  /// The poses at the middles of the scans.
   Trajectory poses(const Trajectory& track) const {
     Trajectory poses;
     for (const double middle_s : middles_s_)
@@ -94,7 +94,8 @@ void place(CloudPart& part, const ClockPair& clock, const Trajectory& poses, con
   part.cloud.scan_indices.resize(part.size());
   executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (!std::isfinite(part.times_s[i])) continue;  // a point without a place, dropped later
+      if (!std::isfinite(part.times_s[i]))
+        continue;  // a point without a valid position, dropped later
       const double time_s = clock.in_trajectory(part.times_s[i]);
       part.world_sensors[i] = interpolate(poses, time_s).translation;
       part.cloud.scan_indices[i] = first_scan + scans.scan_of(time_s);
@@ -106,8 +107,9 @@ void place(CloudPart& part, const ClockPair& clock, const Trajectory& poses, con
 Trajectory sensor_track(const LoadOptions& options) {
   const Trajectory given = read_trajectory(options.trajectory);
   for (const TimedPose& pose : given)
-    if (!is_place(pose.world_from_sensor.translation))
-      throw Error(ErrorKind::data, options.trajectory.string() + ": a position is beyond 1e12 m");
+    if (!is_valid_position(pose.world_from_sensor.translation))
+      throw Error(ErrorKind::data,
+                  options.trajectory.string() + ": a position is beyond 1e12 m; expected metres");
   const MountSettings mount{options.mount.value_or(Vec3d{}), options.mount_rotation_deg};
   return mounted(given, mount.transform());
 }
@@ -117,7 +119,7 @@ TimedRecording recording_of(std::span<const CloudPart> parts) {
   for (const CloudPart& part : parts)
     if (has_own_times(part))
       recording.add(part.runs.front().file.string(), part.world_positions, part.times_s,
-                    part.said_clock);
+                    part.declared_clock);
   return recording;
 }
 
@@ -145,13 +147,13 @@ std::string TimedOrigins::description() const {
   return text.data();
 }
 
-void require_used(const LoadOptions& options, bool takes_mount, bool takes_offset) {
+void require_options_used(const LoadOptions& options, bool uses_mount, bool uses_offset) {
   const bool mounts = options.mount || !(options.mount_rotation_deg == Vec3d{});
-  if ((!mounts || takes_mount) && (!options.time_offset_s || takes_offset)) return;
+  if ((!mounts || uses_mount) && (!options.time_offset_s || uses_offset)) return;
   throw Error(ErrorKind::usage,
-              "`mount`, `mount_rotation` and `time_offset` are for points with times (a column "
-              "time, timestamp or gps_time that differs from point to point, and no sensor "
-              "positions) and a trajectory that has times; there are none");
+              "`mount`, `mount_rotation` and `time_offset` need points with times (a column time, "
+              "timestamp or gps_time that varies, and no sensor positions) and a trajectory with "
+              "times; no input has both");
 }
 
 std::optional<PlacedByTimes> place_by_times(std::span<CloudPart> parts, const LoadOptions& options,

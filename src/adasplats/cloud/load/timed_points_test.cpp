@@ -135,7 +135,7 @@ class TimedPoints : public testing::Test {
 
      private:
       std::string& text_;
-    } listener(said_);
+    } listener(declared_);
     return load_cloud(std::span(&file, 1), options, Executor(2), listener);
   }
   /// Oracle: where the sensor was when each point was made.
@@ -153,7 +153,7 @@ class TimedPoints : public testing::Test {
 
   TemporaryFolder folder_;
   Recording recording_;
-  std::string said_;
+  std::string declared_;
 };
 
 TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
@@ -162,7 +162,8 @@ TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
   ASSERT_TRUE(report.timed.has_value());
   EXPECT_NE(report.timed->clock.find("adjusted GPS time; trajectory: GPS seconds of the week"),
             std::string::npos);
-  EXPECT_NE(said_.find("the sensor at (0.800, -0.300, 1.900) m"), std::string::npos) << said_;
+  EXPECT_NE(declared_.find("the sensor at (0.800, -0.300, 1.900) m"), std::string::npos)
+      << declared_;
   EXPECT_EQ(report.timed->scans, 40U);
   ASSERT_EQ(cloud.scan_poses.size(), 40U);
   ASSERT_EQ(cloud.scan_indices.size(), cloud.size());
@@ -229,7 +230,7 @@ TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
   expect_error(ErrorKind::data, {"does not fit", "in y from the sensor", "another place"}, [&] {
     load(points, with(poses(0, 0, 4, {10, -100, 0})));
   });
-  expect_error(ErrorKind::data, {"does not fit", "lies behind other points", "`mount`"}, [&] {
+  expect_error(ErrorKind::data, {"does not fit", "is hidden behind other points", "`mount`"}, [&] {
     LoadOptions options = with(poses(0, 0, 4));
     options.mount = Vec3d{0, 0, 0.05};  // on the ground
     load(points, options);
@@ -244,8 +245,8 @@ TEST_F(TimedPoints, WithoutAMountThePosesAreTheSensorsAndThatIsSaid) {
   LoadOptions options = with(poses(0, 0, 4, {0, 0, 1.9}));
   options.mount.reset();
   EXPECT_EQ(load(points, options).second.origins[3], recording_.time_s.size());
-  EXPECT_NE(said_.find("as the sensor's own since no `mount` is given"), std::string::npos)
-      << said_;
+  EXPECT_NE(declared_.find("as the sensor's own since no `mount` is given"), std::string::npos)
+      << declared_;
 }
 
 TEST_F(TimedPoints, APointWithoutATimeIsAnError) {
@@ -306,7 +307,7 @@ TEST_F(TimedPoints, PausesOfTheRecordingEndScans) {
 TEST_F(TimedPoints, WhatNothingTakesIsAnError) {
   const auto points = folder_.write("a.xyz", std::string("x y z\n1 2 3\n4 5 6\n"));
   LoadOptions options = with(poses(0, 0, 4));
-  expect_error(ErrorKind::usage, {"`mount`", "there are none"}, [&] { load(points, options); });
+  expect_error(ErrorKind::usage, {"`mount`", "no input has both"}, [&] { load(points, options); });
   options.mount.reset();
   EXPECT_EQ(load(points, options).first.origin_kind(0), OriginKind::guessed);
   options.time_offset_s = 1;

@@ -19,16 +19,17 @@
 namespace adasplats {
 namespace {
 
-/// A file as it was read, in world coordinates, without points whose time or place is not finite.
+/// Reads a file in world coordinates, without points with an invalid time or position.
 FileScan read_frame(const ScanSource& source, const std::filesystem::path& file) {
   FileScan read = source.read(file);
   if (read.times.size() != read.size())
-    throw Error(ErrorKind::data, file.string() +
-                                     ": its points have no times (a column time, "
-                                     "timestamp or gps_time), other files' have");
+    throw Error(ErrorKind::data,
+                file.string() +
+                    ": its points have no times (a column time, timestamp or gps_time), unlike "
+                    "other files; remove the file, or add the column");
   std::size_t kept = 0;
   for (std::size_t i = 0; i < read.size(); ++i) {
-    if (!is_place(read.positions[i]) || !std::isfinite(read.times[i])) continue;
+    if (!is_valid_position(read.positions[i]) || !std::isfinite(read.times[i])) continue;
     read.positions[kept] = read.positions[i];
     read.times[kept] = read.times[i];
     if (!read.intensities.empty()) read.intensities[kept] = read.intensities[i];
@@ -43,10 +44,10 @@ FileScan read_frame(const ScanSource& source, const std::filesystem::path& file)
   return read;
 }
 
-/// Where the sensor sits in the frame of the poses, and which it is.
+/// The sensor and its mount in the frame of the poses.
 struct WorldSensor {
   RigidTransform vehicle_from_sensor;
-  std::optional<SensorCones> cones;  ///< of a sensor that is recognised
+  std::optional<SensorCones> cones;  ///< of a recognised sensor
 };
 
 /// Reads the scans of a drive.
@@ -74,7 +75,7 @@ class FrameReader final : public ScanReader {
     scan.lasers.reserve(frame.size());
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
       if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.hold(frame.times[i], frame.positions[i]) ? 1 : 0);
+        scan.in_boxes.push_back(boxes_.contains(frame.times[i], frame.positions[i]) ? 1 : 0);
       const RigidTransform pose = pose_at(frame.times[i]);
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
       const auto [laser, origin] = beam_of_point(pose.inverse() * frame.positions[i]);
@@ -87,7 +88,7 @@ class FrameReader final : public ScanReader {
   }
 
  private:
-  /// Which laser measured a point of the sensor's frame, and where it sits there.
+  /// The laser that measured a point of the sensor frame, and its position there.
   std::pair<std::uint16_t, Vec3d> beam_of_point(Vec3d in_sensor) const {
     if (!sensor_.cones) return {kNoLaser, {}};
     const std::uint16_t laser = sensor_.cones->nearest(in_sensor).first;
@@ -101,13 +102,13 @@ class FrameReader final : public ScanReader {
   bool with_classes_;
 };
 
-/// When the points of each file were measured, and some of them in the vehicle's frame.
+/// The time span of each file, and a sample of its points.
 struct Overview {
-  std::vector<std::pair<double, double>> times_s;  ///< first and last of a file
+  std::vector<std::pair<double, double>> times_s;  ///< first and last of each file
   std::vector<std::vector<TimedPoint>> sample;     ///< some points of some files
   std::size_t taken = 0, left_out = 0;             ///< points of all files
 
-  /// The sample in the vehicle's frame, were the points' times `later_s` more.
+  /// The sample in the vehicle frame, with `later_s` added to the points' times.
   std::vector<Vec3d> vehicle_points(const Trajectory& vehicle, double later_s) const {
     std::vector<Vec3d> points;
     for (const auto& part : sample)
@@ -117,7 +118,8 @@ struct Overview {
   }
 };
 
-Overview look_into(const WorldFrames& frames, const Executor& executor, ProgressSink& progress) {
+Overview survey_frames(const WorldFrames& frames, const Executor& executor,
+                       ProgressSink& progress) {
   const std::vector<std::filesystem::path>& files = frames.files;
   constexpr std::size_t kFramesToRecognize = 5, kEveryPoint = 7;
   Overview overview;
@@ -149,11 +151,11 @@ Overview look_into(const WorldFrames& frames, const Executor& executor, Progress
   return overview;
 }
 
-/// Throws data where the trajectory is not of the times of the points.
+/// Throws data if the trajectory does not cover the times of the points.
 void require_covered(const WorldFrames& frames, const Overview& overview) {
   const std::vector<std::filesystem::path>& files = frames.files;
   const Trajectory& vehicle = frames.vehicle;
-  constexpr double kLongestSweep_s = 1;  // that one pose is near enough to, of a single scan
+  constexpr double kLongestSweep_s = 1;  // maximum distance of a single scan from a single pose
   const double begin_s = vehicle.front().time_s, end_s = vehicle.back().time_s;
   const double apart_s = vehicle.size() > 1
                              ? (end_s - begin_s) / static_cast<double>(vehicle.size() - 1)
@@ -163,25 +165,24 @@ void require_covered(const WorldFrames& frames, const Overview& overview) {
     const auto [first, last] = overview.times_s[k];
     if (std::isnan(first) || (first >= begin_s - apart_s && last <= end_s + apart_s)) continue;
     std::array<char, 256> text{};
-    std::snprintf(
-        text.data(), text.size(),
-        ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s: the clocks "
-        "differ (`time_offset` states by how much), or the trajectory is of another drive",
-        first, last, begin_s, end_s);
+    std::snprintf(text.data(), text.size(),
+                  ": its points cover %.3f to %.3f s, but the trajectory %.3f to %.3f s; the "
+                  "clocks differ (give `time_offset`), or the trajectory belongs to another drive",
+                  first, last, begin_s, end_s);
     throw Error(ErrorKind::data,
                 files[k].string() + text.data() + " (" + frames.poses_file.string() + ")");
   }
 }
 
-/// Throws data where boxes are of other times than the scans, and so would hold nothing.
+/// Throws data if no box overlaps the times of the scans.
 void require_boxes_of(const FrameDrive& drive, const MovingBoxes& boxes, const Overview& overview) {
   const auto covered = [&](const std::pair<double, double>& times_s) {
-    return boxes.cover(times_s.first, times_s.second);
+    return boxes.overlaps(times_s.first, times_s.second);
   };
   if (std::ranges::any_of(overview.times_s, covered)) return;
   throw Error(ErrorKind::data, drive.boxes.string() +
-                                   ": no box is of the times of the scans: the clocks differ, or "
-                                   "the boxes are of another drive");
+                                   ": no box has a time within the scans; the clocks differ, or "
+                                   "the boxes belong to another drive");
 }
 
 std::string description_of(const Recognition& found) {
@@ -195,10 +196,10 @@ std::string description_of(const Recognition& found) {
   return text.data();
 }
 
-/// How well the points lie on the cones with the clocks `later_s` apart.
+/// Distance of the points from the cones with the clocks shifted by `later_s`.
 double residual_of_shift(const Overview& overview, const Trajectory& vehicle,
                          const Recognition& found, double later_s) {
-  // The mount goes along with an even motion, as far as one mount can.
+  // A constant motion shifts the mount; follow it as far as one mount can.
   RigidTransform mount = found.vehicle_from_sensor;
   Vec3d moved_m;
   for (const auto& part : overview.sample) {
@@ -212,18 +213,18 @@ double residual_of_shift(const Overview& overview, const Trajectory& vehicle,
   return residual_near(overview.vehicle_points(vehicle, later_s), found.cones, mount);
 }
 
-/// Looks whether the clocks of points and poses are shifted: where a vehicle turns or changes its
-/// speed, one mount brings the points onto the cones with the right times only. Gives in words what
-/// that tells. Errors: data where another time is clearly better (of a stated one a warning).
+/// Checks whether the clocks of points and poses are shifted: if a vehicle turns or changes its
+/// speed, one mount fits the points to the cones only with the right times. Returns the result in
+/// words. Errors: data if another offset is clearly better (a warning if the offset is stated).
 std::string check_clock(const FrameDrive& drive, const Overview& overview,
                         const Trajectory& vehicle, const Recognition& found,
                         ProgressSink& progress) {
   constexpr std::array kShifts_s = {0.05, 0.1, 0.2, 0.5, 1.0, 2.0};
-  constexpr double kClearlyBetter = 0.8, kWorse = 1.1;  // of the angle to the cones
+  constexpr double kClearlyBetter = 0.8, kWorse = 1.1;  // ratio of angles to the cones
   constexpr double kDegrees = 57.29577951308232;
   const double begin_s = vehicle.front().time_s, end_s = vehicle.back().time_s;
   const double given_rad = residual_of_shift(overview, vehicle, found, 0);
-  double best_rad = given_rad, best_s = 0, told_s = 0;
+  double best_rad = given_rad, best_s = 0, resolved_s = 0;
   for (const double step_s : kShifts_s) {
     bool both_worse = true;
     for (const double later_s : {step_s, -step_s}) {
@@ -238,39 +239,38 @@ std::string check_clock(const FrameDrive& drive, const Overview& overview,
       best_rad = rad;
       best_s = later_s;
     }
-    if (both_worse && told_s == 0) told_s = step_s;
-    if (!both_worse) told_s = 0;
+    if (both_worse && resolved_s == 0) resolved_s = step_s;
+    if (!both_worse) resolved_s = 0;
   }
   std::array<char, 400> text{};
   if (best_rad < kClearlyBetter * given_rad) {
     std::snprintf(text.data(), text.size(),
-                  ": the clocks of the points and of the trajectory differ: points are %.3f deg "
-                  "from the cones of the beams of %s with the times as they are, %.3f with %+.2f s "
-                  "added to the points' times (`time_offset` states it)",
+                  ": the clocks of the points and the trajectory differ: points are %.3f deg from "
+                  "the cones of the beams of %s as given, %.3f deg with %+.2f s added to their "
+                  "times (give this as `time_offset`)",
                   given_rad * kDegrees, found.cones.sensor.c_str(), best_rad * kDegrees, best_s);
     if (!drive.time_offset_s) throw Error(ErrorKind::data, drive.folder.string() + text.data());
     progress.warn(drive.folder.string() + text.data());
   }
-  if (told_s == 0)
-    std::snprintf(
-        text.data(), text.size(),
-        "whether the clocks of points and poses are one does not show: the vehicle "
-        "drives too evenly, and a shift of the clocks would be taken for one of the mount");
+  if (resolved_s == 0)
+    std::snprintf(text.data(), text.size(),
+                  "cannot check that points and poses share a clock: the vehicle drives too evenly "
+                  "to distinguish a shift of the clock from one of the mount");
   else
     std::snprintf(text.data(), text.size(),
-                  "one clock: with times %.2f s earlier or later the points are farther from the "
-                  "cones of the beams",
-                  told_s);
+                  "points and poses share a clock: with times %.2f s earlier or later the points "
+                  "are farther from the cones of the beams",
+                  resolved_s);
   return text.data();
 }
-/// What was found of a drive, in words, where a sensor was recognised.
+/// Describes the recognised sensor of a drive.
 void describe_recognised(const Recognition& found, std::string clock, KittiSequence& sequence) {
   sequence.beams.recognised = description_of(found);
   sequence.beams.sensor = found.cones.sensor;
   sequence.facts.clock = std::move(clock);
 }
 
-/// Who measured the points. Nothing where that cannot be told.
+/// Finds the sensor and its mount; nothing if both are unknown.
 std::optional<WorldSensor> find_sensor(const FrameDrive& drive, const WorldFrames& frames,
                                        const Overview& overview, KittiSequence& sequence,
                                        const Executor& executor, ProgressSink& progress) {
@@ -288,10 +288,9 @@ std::optional<WorldSensor> find_sensor(const FrameDrive& drive, const WorldFrame
   if (!frames.own_mount) return std::nullopt;
   if (!frames.is_stated)
     progress.warn(drive.folder.string() +
-                  ": no sensor of the library is recognised, so its poses are taken as those of "
-                  "the LiDAR; where they are not, `mount` states where it sits");
-  sequence.beams.recognised = std::string("where the ") +
-                              (frames.is_stated ? "stated mount has the sensor" : "poses are") +
+                  ": its sensor is not recognised, so the poses are assumed to be those of the "
+                  "LiDAR; if they are not, give `mount`");
+  sequence.beams.recognised = std::string("the ") + (frames.is_stated ? "stated mount" : "poses") +
                               ", each point at its own time";
   return WorldSensor{*frames.own_mount, std::nullopt};
 }
@@ -300,7 +299,7 @@ std::optional<WorldSensor> find_sensor(const FrameDrive& drive, const WorldFrame
 
 std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const WorldFrames& frames,
                                                const Executor& executor, ProgressSink& progress) {
-  const Overview overview = look_into(frames, executor, progress);
+  const Overview overview = survey_frames(frames, executor, progress);
   require_covered(frames, overview);
   MovingBoxes boxes;
   if (!drive.boxes.empty()) {
@@ -313,13 +312,12 @@ std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const Wo
       find_sensor(drive, frames, overview, sequence, executor, progress);
   if (!sensor) {
     progress.warn(drive.folder.string() +
-                  ": no sensor of the library is recognised, so where it sits is not known; "
-                  "`mount` states it");
+                  ": its sensor is not recognised, so its mount is unknown; give `mount`");
     return std::nullopt;
   }
   const auto reader = std::make_shared<FrameReader>(frames, std::move(*sensor), std::move(boxes),
                                                     drive.with_classes);
-  sequence.facts.motion = "taken out of the points, which are in world coordinates";
+  sequence.facts.motion = "already compensated in the points, which are in world coordinates";
   sequence.facts.poses = "at the middles of the points' times";
   for (std::size_t k = 0; k < frames.files.size(); ++k) {
     const auto [first, last] = overview.times_s[k];
@@ -329,8 +327,8 @@ std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const Wo
     sequence.trajectory.push_back({middle_s, reader->pose_at(middle_s)});
   }
   if (sequence.scans.empty())
-    throw Error(ErrorKind::data, drive.folder.string() + ": none of its " +
-                                     std::to_string(frames.files.size()) + " scans has points");
+    throw Error(ErrorKind::data, drive.folder.string() + ": all of its " +
+                                     std::to_string(frames.files.size()) + " scans are empty");
   if (overview.left_out > 0)
     sequence.facts.left_out = std::to_string(overview.left_out) + " " + frames.others + " of " +
                               std::to_string(overview.taken + overview.left_out);

@@ -9,27 +9,27 @@
 #include <vector>
 
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 
 namespace adasplats {
 
-/// Scans in world coordinates whose points have times, and where their vehicle was.
+/// Scans in world coordinates with point times, and the trajectory of their vehicle.
 struct WorldFrames {
   std::vector<std::filesystem::path> files;
-  std::shared_ptr<const ScanSource> source = scans_in_files();  ///< which reads them
+  std::shared_ptr<const ScanSource> source = scans_in_files();  ///< reads them
   Trajectory vehicle;                ///< in the clock of the points; not empty
   std::filesystem::path poses_file;  ///< for messages
-  /// Where the sensor sits on the vehicle unless it is recognised; none: then it is not known.
+  /// Mount of the sensor on the vehicle if it is not recognised; none: then it is unknown.
   std::optional<RigidTransform> own_mount;
-  std::string others;      ///< what FileScan::left_out counts, in words
-  bool is_stated = false;  ///< own_mount is what the user says: nothing is to be recognised
+  std::string others;      ///< name of the points that FileScan::left_out counts
+  bool is_stated = false;  ///< the user gives own_mount, so the sensor is not recognised
 };
 
-/// Opens scans in world coordinates as a drive (open_frame_drive()); nothing, with a warning, where
-/// it is not known where the sensor sits. Of a single scan with a single pose that is its pose all
-/// the time, if it is not a second apart.
+/// Opens scans in world coordinates as a drive (open_frame_drive()); nothing, with a warning, if
+/// the mount of the sensor is unknown. A single scan with a single pose within a second of it keeps
+/// that pose all the time.
 std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const WorldFrames& frames,
                                                const Executor& executor, ProgressSink& progress);
 

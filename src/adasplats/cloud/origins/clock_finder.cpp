@@ -9,15 +9,94 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
+
+namespace {
+
+constexpr std::size_t kMaxPoints = 200'000, kSweeps = 8, kMaxOfSweep = 200'000;
+constexpr double kSweep_s = 0.1;
+
+/// Times in the middles of eight parts with as many points each.
+std::array<double, kSweeps> middles_of(const std::vector<TimedPoint>& points) {
+  std::vector<double> times;
+  times.reserve(points.size());
+  for (const TimedPoint& point : points) times.push_back(point.time);
+  std::ranges::sort(times);
+  std::array<double, kSweeps> middles{};
+  for (std::size_t s = 0; s < kSweeps; ++s)
+    middles[s] = times[times.size() * (2 * s + 1) / (2 * kSweeps)];
+  return middles;
+}
+
+void thin(std::vector<TimedPoint>& sweep) {
+  const std::size_t every = sweep.size() / kMaxOfSweep + 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < sweep.size(); i += every) sweep[kept++] = sweep[i];
+  sweep.resize(kept);
+}
+
+}  // namespace
+
+void TimedRecording::add(const std::string& file, std::span<const Vec3d> positions,
+                         std::span<const double> times, DeclaredClock declared) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (std::isfinite(times[i])) {
+      span_ = {std::min(span_.first, times[i]), std::max(span_.last, times[i])};
+    } else if (is_finite(positions[i])) {
+      throw Error(ErrorKind::data,
+                  file + ": the time of point " + std::to_string(i) + " (from 0) is not finite");
+    }
+  }
+  declared_ = files_.empty() || declared == declared_ ? declared : DeclaredClock::none;
+  if (files_.empty()) first_name_ = file;
+  files_.push_back({positions, times});
+  size_ += times.size();
+}
+
+std::string TimedRecording::name() const {
+  return first_name_ +
+         (files_.size() > 1 ? " and " + std::to_string(files_.size() - 1) + " more" : "");
+}
+
+std::size_t TimedRecording::count_within(TimeSpan span_s, const ClockPair& clock) const {
+  std::size_t points = 0;
+  for (const File& file : files_)
+    for (const double time : file.times) {
+      const double time_s = clock.in_trajectory(time);
+      if (time_s > span_s.first && time_s < span_s.last) ++points;
+    }
+  return points;
+}
+
+SweepSample TimedRecording::sample(double unit_s) const {
+  SweepSample sample;
+  const auto is_sound = [](const File& file, std::size_t i) {
+    return is_finite(file.positions[i]) && std::isfinite(file.times[i]);
+  };
+  const std::size_t stride = size_ / kMaxPoints + 1;
+  for (const File& file : files_)
+    for (std::size_t i = 0; i < file.times.size(); i += stride)
+      if (is_sound(file, i)) sample.points.push_back({file.positions[i], file.times[i]});
+  if (sample.points.empty()) return sample;
+  const auto middles = middles_of(sample.points);
+  sample.sweeps.resize(kSweeps);
+  for (const File& file : files_)
+    for (std::size_t i = 0; i < file.times.size(); ++i)
+      for (std::size_t s = 0; s < kSweeps; ++s)
+        if (std::fabs(file.times[i] - middles[s]) * unit_s <= 0.5 * kSweep_s && is_sound(file, i))
+          sample.sweeps[s].push_back({file.positions[i], file.times[i]});
+  std::ranges::for_each(sample.sweeps, thin);
+  return sample;
+}
+
 namespace {
 
 constexpr double kMaxFar = 0.5;  // of the points
-constexpr const char* kStateIt = "state it with `time_offset`, seconds to add to the points' times";
-constexpr const char* kTrust = "; `trust_origins` takes it nevertheless";
+constexpr const char* kGiveOffset = "give `time_offset`, the seconds to add to the points' times";
+constexpr const char* kTrustOrigins = "; `trust_origins` skips this check";
 
 std::string fixed(double value, int digits) {
   std::array<char, 400> text{};  // the largest double has 309 digits before the point
@@ -64,7 +143,8 @@ ClockPair ClockFinder::find() {
     require_cover({stated});
     return stated;
   }
-  const std::vector<ClockPair> possible = possible_clocks(points_.span(), points_.said(), padded_);
+  const std::vector<ClockPair> possible =
+      possible_clocks(points_.span(), points_.declared(), padded_);
   std::vector<ClockPair> covering;
   for (const ClockPair& clock : possible)
     if (covers(clock)) covering.push_back(clock);
@@ -118,21 +198,20 @@ void ClockFinder::require_cover(const std::vector<ClockPair>& possible) const {
                     (stated_offset_s_ ? " by the stated `time_offset`" : " by any known clock") +
                     ": points of " + span_text(points_.span()) + ", poses of " +
                     span_text({sensor_.front().time_s, sensor_.back().time_s}) +
-                    "; it is of another recording, or of another clock: " + kStateIt);
+                    "; it belongs to another recording, or to another clock: " + kGiveOffset);
   }
   const TimeSpan times = best->in_trajectory(points_.span());
   const TimeSpan poses = {sensor_.front().time_s * best->trajectory_unit_s,
                           sensor_.back().time_s * best->trajectory_unit_s};
-  throw Error(
-      ErrorKind::data,
-      named + std::to_string(points_.size() - most) + " of " + std::to_string(points_.size()) +
-          " points (" + best->description() + "): they are of " + span_text(times) +
-          " s, its poses of " + span_text(poses) + " s, so up to " +
-          fixed(std::max(0.0, poses.first - times.first), 3) + " s before and " +
-          fixed(std::max(0.0, times.last - poses.last), 3) +
-          " s behind; nothing is extrapolated. Leave these points out, or bring the rest of the "
-          "trajectory; where the clock is another one, " +
-          kStateIt);
+  throw Error(ErrorKind::data,
+              named + std::to_string(points_.size() - most) + " of " +
+                  std::to_string(points_.size()) + " points (" + best->description() +
+                  "): they are of " + span_text(times) + " s, its poses of " + span_text(poses) +
+                  " s: up to " + fixed(std::max(0.0, poses.first - times.first), 3) +
+                  " s before and " + fixed(std::max(0.0, times.last - poses.last), 3) +
+                  " s after its poses. Remove these points, or give the complete trajectory; if "
+                  "the clocks differ, " +
+                  kGiveOffset);
 }
 
 /// Of several clocks the one that the sweeps fit. One clock for both is taken where nothing speaks
@@ -155,12 +234,11 @@ ClockPair ClockFinder::clearest(const std::vector<ClockPair>& covering) {
   for (const auto& entry : by_cost)
     list += "\n  " + entry.second->description() +
             (has_evidence ? ", misfit " + fixed(entry.first, 2) : "");
-  throw Error(ErrorKind::data,
-              points_.name() + ": the trajectory " + file_.string() +
-                  " covers all times by several clocks, and " +
-                  (has_evidence ? "the points fit none of them clearly best"
-                                : "there are too few points to tell which is right") +
-                  "; " + kStateIt + ":" + list);
+  throw Error(ErrorKind::data, points_.name() + ": the trajectory " + file_.string() +
+                                   " covers all times by several clocks, and " +
+                                   (has_evidence ? "the points fit none of them clearly best"
+                                                 : "there are too few points to decide") +
+                                   "; " + kGiveOffset + ":" + list);
 }
 
 /// A shift of the times by which the points would fit clearly better; 0: none.
@@ -202,46 +280,45 @@ void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressS
                             " does not fit the points (" + clock.description() + "): ";
   const std::string median = "the median range is " + fixed(seen.median_range_m, 1) + " m";
   if (seen.share_far > kMaxFar || seen.median_range_m > kFarthestOriginM)
-    throw Error(ErrorKind::data, named + median + ", and " + percent(seen.share_far) +
-                                     " of the points are farther than " +
-                                     fixed(kFarInStreets_m, 0) +
-                                     " m and not below the sensor; it is of another place, another "
-                                     "frame or another clock" +
-                                     kTrust);
-  if (is_aside(clock, seen))
     throw Error(ErrorKind::data,
-                named + median + ", and half of the points are " + fixed(seen.median_way_m.x, 0) +
-                    " m or more in x and " + fixed(seen.median_way_m.y, 0) +
-                    " m in y from the sensor; moved by that, it would clearly fit better: it is of "
-                    "another place or frame" +
-                    kTrust);
+                named + median + ", and " + percent(seen.share_far) +
+                    " of the points are farther than " + fixed(kFarInStreets_m, 0) +
+                    " m and not below the sensor; it belongs to another scene, frame or clock" +
+                    kTrustOrigins);
+  if (is_aside(clock, seen))
+    throw Error(ErrorKind::data, named + median + ", and half of the points are " +
+                                     fixed(seen.median_way_m.x, 0) + " m or more in x and " +
+                                     fixed(seen.median_way_m.y, 0) +
+                                     " m in y from the sensor; moved by that, it would fit clearly "
+                                     "better: it belongs to another scene or frame" +
+                                     kTrustOrigins);
   if (const double shift_s = better_shift_s(clock); shift_s != 0) {
     const std::string message =
         named + "with " + (shift_s > 0 ? "+" : "") + fixed(shift_s, 1) +
-        " s more they would clearly fit better; the clocks differ by about that: " + kStateIt;
-    if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrust);
+        " s more they would clearly fit better; the clocks differ by about that: " + kGiveOffset;
+    if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrustOrigins);
     progress.warn(message);
   }
   if (seen.share_behind > seen.max_behind())
     throw Error(ErrorKind::data,
                 named + percent(seen.share_behind) +
-                    " of what was measured within 0.1 s lies behind other points as seen from "
-                    "there, at most " +
+                    " of what was measured within 0.1 s is hidden behind other points as seen from "
+                    "there, expected at most " +
                     percent(seen.max_behind()) +
-                    " do; the sensor sits elsewhere (`mount`), or the trajectory is of another "
-                    "place or clock; " +
-                    median + kTrust);
+                    "; the mount of the sensor is wrong (`mount`), or the trajectory belongs to "
+                    "another scene or clock; " +
+                    median + kTrustOrigins);
 }
 
 void ClockFinder::require_no_gaps(const ClockPair& clock, const Track& track) const {
   for (const TimeSpan gap : track.gaps) {
     const std::size_t inside = points_.count_within(gap, clock);
     if (inside == 0) continue;
-    throw Error(ErrorKind::data, points_.name() + ": " + std::to_string(inside) +
-                                     " points were measured in a gap of the trajectory " +
-                                     file_.string() + ", which has no poses from " +
-                                     span_text(gap) +
-                                     " s; leave them out: nothing is guessed there");
+    throw Error(ErrorKind::data,
+                points_.name() + ": " + std::to_string(inside) +
+                    " points were measured in a gap of the trajectory " + file_.string() +
+                    ", which has no poses from " + span_text(gap) +
+                    " s; remove these points, or give a trajectory without the gap");
   }
 }
 

@@ -74,14 +74,14 @@ bool is_of_an_epoch(const Reading& reading, double value) {
   return gps_s >= 0 && gps_s <= kLatestGps_s;
 }
 
-std::vector<Reading> readings_of(double value, SaidClock said) {
+std::vector<Reading> readings_of(double value, DeclaredClock declared) {
   std::vector<Reading> readings;
   const bool fits_week = value >= 0 && value < 2 * kWeek_s;
   const bool may_be_adjusted = value >= kEarliestAdjusted_s && value + kAdjusted_s <= kLatestGps_s;
-  if (said == SaidClock::adjusted_gps)
+  if (declared == DeclaredClock::adjusted_gps)
     return {{"adjusted GPS time", 1, false, Scale::gps, kAdjusted_s}};
   if (fits_week) readings.push_back({"GPS seconds of the week", 1, true, Scale::gps, 0});
-  if (said == SaidClock::gps_week) return readings;
+  if (declared == DeclaredClock::gps_week) return readings;
   if (fits_week) readings.push_back({"UTC seconds of the week", 1, true, Scale::utc, 0});
   struct Unit {
     double s;
@@ -147,15 +147,15 @@ void add_pair(std::vector<ClockPair>& pairs, ClockPair pair, TimeSpan points, Ti
   if (!is_known) pairs.push_back(std::move(pair));
 }
 
-std::vector<ClockPair> pairs_of(TimeSpan points, SaidClock said, TimeSpan trajectory) {
+std::vector<ClockPair> pairs_of(TimeSpan points, DeclaredClock declared, TimeSpan trajectory) {
   // Beyond it seconds are of no epoch; stamps of finer units are.
   constexpr double kMaxSeconds = 5e9;
   std::vector<ClockPair> pairs;
   if (std::fabs(points.last) < kMaxSeconds && std::fabs(trajectory.last) < kMaxSeconds)
     add_pair(pairs, {"one clock", kTheSameClock, 1, 1, 0}, points, trajectory);
   // The span's end: its begin may be before an epoch by a rounding.
-  for (const Reading& p : readings_of(points.last, said))
-    for (const Reading& t : readings_of(trajectory.last, SaidClock::nothing)) {
+  for (const Reading& p : readings_of(points.last, declared))
+    for (const Reading& t : readings_of(trajectory.last, DeclaredClock::none)) {
       const bool is_same = p.name == t.name;
       for (const double offset_s : offsets_of(p, points, t, trajectory))
         add_pair(pairs,
@@ -182,10 +182,11 @@ std::string ClockPair::description() const {
   return "points: " + points + "; trajectory: " + trajectory + offset.data();
 }
 
-std::vector<ClockPair> possible_clocks(TimeSpan points, SaidClock said, TimeSpan trajectory) {
-  std::vector<ClockPair> pairs = pairs_of(points, said, trajectory);
-  if (!pairs.empty() || said == SaidClock::nothing) return pairs;
-  pairs = pairs_of(points, SaidClock::nothing, trajectory);
+std::vector<ClockPair> possible_clocks(TimeSpan points, DeclaredClock declared,
+                                       TimeSpan trajectory) {
+  std::vector<ClockPair> pairs = pairs_of(points, declared, trajectory);
+  if (!pairs.empty() || declared == DeclaredClock::none) return pairs;
+  pairs = pairs_of(points, DeclaredClock::none, trajectory);
   for (ClockPair& pair : pairs) pair.points += " (not what the LAS header says)";
   return pairs;
 }

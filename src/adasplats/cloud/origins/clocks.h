@@ -14,7 +14,7 @@ struct TimeSpan {
 
 /// What a LAS header says of its points' times: bit 0 of the global encoding ("LAS specification
 /// 1.4 - R15", table 4). Other files say nothing.
-enum class SaidClock { nothing, gps_week, adjusted_gps };
+enum class DeclaredClock { none, gps_week, adjusted_gps };
 
 /// How far GPS time is ahead of UTC at a time, in seconds of GPS (since 1980-01-06). The table ends
 /// with the leap second of 2017-01-01, 18 s; none has been announced since.
@@ -44,6 +44,7 @@ struct ClockPair {
 /// (without leap seconds); UTC on Unix's epoch and of the week; TAI on Unix's epoch, as PTP has it;
 /// those on an epoch in s, ms, us and ns, too. `said` rules; where nothing fits by it, headers are
 /// wrong often enough that the others are tried, and the name says so.
-std::vector<ClockPair> possible_clocks(TimeSpan points, SaidClock said, TimeSpan trajectory);
+std::vector<ClockPair> possible_clocks(TimeSpan points, DeclaredClock declared,
+                                       TimeSpan trajectory);
 
 }  // namespace adasplats

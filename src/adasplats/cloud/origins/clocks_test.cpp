@@ -39,7 +39,7 @@ TEST(Clocks, OneMomentByEveryPairOfClocks) {
                           kTai_s, kWeek_s,      kWeek_s - 18};
   for (const double points : first)
     for (const double trajectory : first)
-      EXPECT_TRUE(has_offset(possible_clocks(from(points), SaidClock::nothing, from(trajectory)),
+      EXPECT_TRUE(has_offset(possible_clocks(from(points), DeclaredClock::none, from(trajectory)),
                              trajectory - points))
           << points << " " << trajectory;
 }
@@ -47,37 +47,38 @@ TEST(Clocks, OneMomentByEveryPairOfClocks) {
 TEST(Clocks, StampsOfFinerUnits) {
   for (const double unit_s : {1e-3, 1e-6, 1e-9}) {
     const TimeSpan stamps = {kUtc_s / unit_s, (kUtc_s + kLength_s) / unit_s};
-    const auto pairs = possible_clocks(stamps, SaidClock::nothing, from(kGps_s));
+    const auto pairs = possible_clocks(stamps, DeclaredClock::none, from(kGps_s));
     ASSERT_FALSE(pairs.empty());
     EXPECT_EQ(pairs.front().points_unit_s, unit_s);
     EXPECT_NEAR(pairs.front().in_trajectory(stamps).first, kGps_s, 1e-3);
-    const auto same = possible_clocks(stamps, SaidClock::nothing, stamps);
+    const auto same = possible_clocks(stamps, DeclaredClock::none, stamps);
     EXPECT_EQ(same.front().trajectory_unit_s, unit_s);
     EXPECT_EQ(same.front().offset_s, 0);
   }
 }
 
 TEST(Clocks, WhatTheHeaderSaysRules) {
-  const auto pairs = possible_clocks(from(kGps_s - 1e9), SaidClock::adjusted_gps, from(kWeek_s));
+  const auto pairs =
+      possible_clocks(from(kGps_s - 1e9), DeclaredClock::adjusted_gps, from(kWeek_s));
   ASSERT_FALSE(pairs.empty());
   EXPECT_EQ(pairs.front().points, "adjusted GPS time");
   EXPECT_NE(pairs.front().description().find("GPS seconds of the week; offset -310"),
             std::string::npos)
       << pairs.front().description();
   // Adjusted times under a header that says seconds of the week: common, and said aloud.
-  const auto wrong = possible_clocks(from(kGps_s - 1e9), SaidClock::gps_week, from(kGps_s));
+  const auto wrong = possible_clocks(from(kGps_s - 1e9), DeclaredClock::gps_week, from(kGps_s));
   ASSERT_TRUE(has_offset(wrong, 1e9));
   EXPECT_EQ(wrong.front().points, "adjusted GPS time (not what the LAS header says)");
 }
 
 TEST(Clocks, OthersAreNone) {
-  EXPECT_TRUE(possible_clocks(from(kGps_s), SaidClock::nothing, from(kGps_s + 1e6)).empty());
-  EXPECT_TRUE(possible_clocks(from(0.5), SaidClock::nothing, from(1e12)).empty());
+  EXPECT_TRUE(possible_clocks(from(kGps_s), DeclaredClock::none, from(kGps_s + 1e6)).empty());
+  EXPECT_TRUE(possible_clocks(from(0.5), DeclaredClock::none, from(1e12)).empty());
 }
 
 TEST(Clocks, ADriveOverTheEndOfTheWeek) {
   const double end_s = 2168 * 604800.0;
-  const auto pairs = possible_clocks({604790, 604810}, SaidClock::gps_week, from(end_s - 20));
+  const auto pairs = possible_clocks({604790, 604810}, DeclaredClock::gps_week, from(end_s - 20));
   EXPECT_TRUE(has_offset(pairs, end_s - 604800));
 }
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/maths/median.h"
 
 namespace adasplats {
@@ -47,8 +47,8 @@ double entropy_of(std::vector<std::uint64_t>& keys, const Executor& executor) {
 }
 
 /// StationView::share_behind in the mean of the sweeps that have points enough.
-void look_at_sweeps(const SweepSample& sample, const ClockPair& clock, const Trajectory& trajectory,
-                    const Executor& executor, SweepView& view) {
+void add_sweeps(const SweepSample& sample, const ClockPair& clock, const Trajectory& trajectory,
+                const Executor& executor, SweepView& view) {
   double behind = 0;
   int sweeps = 0;
   std::size_t points_of_sweeps = 0;
@@ -106,7 +106,7 @@ SweepView view_along(const SweepSample& sample, const ClockPair& clock,
   view.median_range_m = upper_median_of(ranges_m);
   view.median_way_m = {upper_median_of(ways_m[0]), upper_median_of(ways_m[1]),
                        upper_median_of(ways_m[2])};
-  look_at_sweeps(sample, clock, trajectory, executor, view);
+  add_sweeps(sample, clock, trajectory, executor, view);
   return view;
 }
 

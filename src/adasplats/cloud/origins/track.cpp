@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 #include "adasplats/core/maths/median.h"
 
@@ -29,6 +30,17 @@ TimedPose run_out(const TimedPose& at, const TimedPose& from, double ahead_s) {
 }
 
 }  // namespace
+
+bool is_in_gap(const std::vector<TimeSpan>& gaps, TimeSpan span_s) {
+  // The last gap that begins before the span ends.
+  const auto after = std::ranges::lower_bound(gaps, span_s.last, {}, &TimeSpan::first);
+  return after != gaps.begin() && span_s.first < std::prev(after)->last;
+}
+
+bool Track::covers(TimeSpan span_s) const {
+  const TimeSpan all = covered_s();
+  return span_s.first >= all.first && span_s.last <= all.last && !is_in_gap(gaps, span_s);
+}
 
 double pose_distance_s(const Trajectory& poses) {
   std::vector<double> apart_s;

@@ -16,7 +16,13 @@ struct Track {
   TimeSpan measured_s;
 
   TimeSpan covered_s() const { return {poses.front().time_s, poses.back().time_s}; }
+  /// Whether there are poses for all of a span: within covered_s(), and not in a gap.
+  bool covers(TimeSpan span_s) const;
+  bool covers(double time_s) const { return covers(TimeSpan{time_s, time_s}); }
 };
+
+/// Whether a span has a part in one of the gaps, which ascend.
+bool is_in_gap(const std::vector<TimeSpan>& gaps, TimeSpan span_s);
 
 /// The median time between poses; 0 of a single one.
 double pose_distance_s(const Trajectory& poses);

@@ -10,11 +10,29 @@
 
 namespace adasplats {
 
-/// A point whose laser is not known.
+/// A point whose laser is unknown.
 inline constexpr std::uint16_t kNoLaser = 0xffff;
 
-/// What the lasers of one unit measure beside its table: to be added to what they report. Only
-/// differences between lasers are known; the means are zero.
+/// The direction in which a larger elevation moves a ray: unit, across it; {0,0,0} where the ray is
+/// along the axis. On any device.
+ADASPLATS_HD inline Vec3d upward_across(Vec3d direction, Vec3d axis) {
+  const Vec3d across = axis - dot(axis, direction) * direction;
+  return length(across) > 1e-6 ? normalized(across) : Vec3d{};
+}
+
+/// Where the ray from `origin` ended that a laser with these offsets reported at `end`. `axis`: of
+/// the sensor's rotation, unit, upwards. On any device.
+ADASPLATS_HD inline Vec3d corrected_end(Vec3d origin, Vec3d end, Vec3d axis, double range_m,
+                                        double elevation_rad) {
+  const Vec3d way = end - origin;
+  const double range = length(way);
+  if (!(range > 0)) return end;
+  const Vec3d direction = way / range;
+  return end + range_m * direction + range * elevation_rad * upward_across(direction, axis);
+}
+
+/// Corrections of the lasers of one sensor (this physical device) against its table, added to what
+/// they report. Only differences between lasers can be measured; the means are zero.
 struct LaserOffsets {
   std::vector<double> range_m;
   std::vector<double> elevation_rad;  ///< positive upwards; as long as range_m
@@ -25,13 +43,11 @@ struct LaserOffsets {
     return laser < elevation_rad.size() ? elevation_rad[laser] : 0;
   }
 
-  /// Where the ray from `origin` ended that the laser reported at `end`. `axis`: of the sensor's
-  /// rotation, unit, upwards.
-  Vec3d corrected(Vec3d origin, Vec3d end, Vec3d axis, std::uint16_t laser) const;
+  /// corrected_end() with the offsets of `laser`.
+  Vec3d corrected(Vec3d origin, Vec3d end, Vec3d axis, std::uint16_t laser) const {
+    if (laser >= range_m.size()) return end;
+    return corrected_end(origin, end, axis, range_of(laser), elevation_of(laser));
+  }
 };
-
-/// The direction in which a larger elevation moves a ray: unit, across it; {0,0,0} where the ray is
-/// along the axis.
-Vec3d upward_of(Vec3d direction, Vec3d axis);
 
 }  // namespace adasplats

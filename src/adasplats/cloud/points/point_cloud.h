@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/points/empty_beam.h"
 #include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/points/origin_kind.h"
 #include "adasplats/cloud/poses/trajectory.h"
@@ -17,6 +16,13 @@
 #include "adasplats/io/base/crs.h"
 
 namespace adasplats {
+
+/// A beam that returned nothing: what it passed is free.
+struct EmptyBeam {
+  Vec3f origin;            ///< where it left the sensor, relative to the cloud's origin, m
+  Vec3f direction;         ///< unit, world axes
+  std::uint32_t scan = 0;  ///< number of its scan
+};
 
 /// Points of one or many scans, as a structure of arrays. World coordinates are origin +
 /// position: double at the border, float inside. An attribute is empty or as long as `positions`.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numbers>
+
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/setting.h"
 
@@ -12,7 +14,11 @@ struct MountSettings {
   Vec3d translation_m;
   Vec3d rotation_deg;  ///< yaw, pitch, roll
 
-  RigidTransform transform() const;  ///< vehicle_from_sensor
+  /// vehicle_from_sensor
+  RigidTransform transform() const {
+    const Vec3d turn_rad = (std::numbers::pi / 180) * rotation_deg;
+    return {rotation_from_yaw_pitch_roll(turn_rad.x, turn_rad.y, turn_rad.z), translation_m};
+  }
 };
 
 template <class Visit>

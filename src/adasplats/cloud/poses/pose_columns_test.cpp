@@ -142,7 +142,7 @@ TEST(PoseColumns, OrdersThatAreNamedWrongAreRefusedOnBends) {
       folder.write("poses.csv", "time,x,y,z,qw,qx,qy,qz\n" + rows_of("txyzbcda", ','));
   expect_error(ErrorKind::data, {"poses.csv", "not in the order that is named"},
                [&] { read_trajectory(first); });
-  // Straight ahead nothing tells.
+  // A straight drive decides nothing.
   std::string straight;
   for (int k = 0; k < 40; ++k)
     straight += std::to_string(k) + " " + std::to_string(k) + " 0 0 1 0 0 0\n";

@@ -53,7 +53,7 @@ Mat3d frame_from_world(double w, double x, double y, double z) {
 
 }  // namespace
 
-std::string objection_to_quaternion_order(std::span<const PlacedQuaternion> poses) {
+std::string quaternion_order_problem(std::span<const PlacedQuaternion> poses) {
   const std::vector<PoseStep> steps = steps_of(poses);
   if (steps.size() < kMinSteps) return {};
   if (evenness(steps, [](const Quaternion&) { return Mat3d{}; }) > kBends) return {};

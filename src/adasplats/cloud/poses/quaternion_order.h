@@ -17,10 +17,10 @@ struct PlacedQuaternion {
 };
 
 /// Whether the scalar of the quaternions is in another place than their names say. Their norms and
-/// the angles between them are the same in any order, but what drives goes one way in its own
-/// frame (mostly ahead), also round a bend: where it does so by another order alone, that is the
-/// right one. Gives what is wrong in words, or "" where nothing is, or where nothing tells (too few
-/// poses, no bends, what flies or is carried).
-std::string objection_to_quaternion_order(std::span<const PlacedQuaternion> poses);
+/// the angles between them are the same in any order, but what drives goes one way in its own frame
+/// (mostly ahead), also round a bend: where it does so by another order alone, that is the right
+/// one. Returns the problem in words, or "" if there is none or the test is inconclusive (too few
+/// poses, no bends, something that flies or is carried).
+std::string quaternion_order_problem(std::span<const PlacedQuaternion> poses);
 
 }  // namespace adasplats

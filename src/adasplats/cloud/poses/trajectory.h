@@ -32,7 +32,7 @@ using Trajectory = std::vector<TimedPose>;
 /// Lines that begin with '#' or '%' are comments.
 /// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, columns
 /// that are not named, or not clearly, not finite, rotation not orthonormal to 1e-3, quaternion
-/// norm off by more than 1e-3 or in another order than is named (objection_to_quaternion_order()),
+/// norm off by more than 1e-3 or in another order than is named (quaternion_order_problem()),
 /// time that does not ascend or is none in seconds.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
@@ -65,5 +65,15 @@ Trajectory resampled_by_time(const Trajectory& trajectory, double rate_hz);
 /// Poses every `spacing_m` of the way from the first one on. A vehicle that stands gives none.
 /// Errors: usage (a distance that is not positive, more than 10 million poses).
 Trajectory resampled_by_distance(const Trajectory& trajectory, double spacing_m);
+
+/// One more pose `by_s` before the first and one behind the last, as the motion within that time
+/// there goes on: sensors sweep a little longer than there are poses. Of a single pose: that pose.
+Trajectory with_extrapolated_ends(Trajectory poses, double by_s);
+
+/// Writes KITTI's rows for a sequence folder: poses of the camera, camera_from_velodyne * pose *
+/// its inverse by the folder's calib.txt, as read_trajectory brings them back beside that file.
+/// Errors: data (no calib.txt, or none with a line `Tr:`).
+void write_kitti_poses(const std::filesystem::path& path, const Trajectory& world_from_velodyne,
+                       const std::filesystem::path& sequence_folder);
 
 }  // namespace adasplats

@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/cloud/poses/kitti_poses.h"
 #include "adasplats/cloud/poses/pose_columns.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
@@ -244,7 +243,7 @@ Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns
     trajectory.push_back(
         {v[0], {rotation_from_quaternion(q.w, q.x, q.y, q.z), placed.back().place}});
   }
-  const std::string objection = objection_to_quaternion_order(placed);
+  const std::string objection = quaternion_order_problem(placed);
   if (!objection.empty()) throw Error(ErrorKind::data, path.string() + ": " + objection);
   return trajectory;
 }

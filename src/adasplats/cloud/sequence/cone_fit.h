@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+// How points lie on the cones of a sensor, and the mount near a given one that they lie on best.
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,9 +12,9 @@
 
 #include "adasplats/cloud/sequence/sensor_cones.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/executor.h"
 #include "adasplats/core/maths/rigid_transform.h"
 
-// How points lie on the cones of a sensor, and the mount near a given one that they lie on best.
 namespace adasplats {
 
 /// Nearer points are the vehicle's own; farther ones are few, and wind and poses move them more.
@@ -123,5 +125,17 @@ struct ConeFit {
 /// From a mount that is nearly right.
 ConeFit fit_near(std::span<const Vec3d> points, const ConeTable& table,
                  const RigidTransform& mount);
+
+/// The mounts that are searched.
+inline constexpr double kMaxAside_m = 2;
+inline constexpr double kLowest_m = -0.5;
+inline constexpr double kHighest_m = 2.5;
+inline constexpr double kMaxTilt_rad = 1.25 * kDegree;
+
+/// The best mount of one sensor: a grid of places and tilts, judged by the points that lead
+/// farthest (far ones, sparse lasers), then Gauss-Newton from the best of them with more and more
+/// points.
+ConeFit searched_fit(std::span<const Vec3d> points, const ConeTable& table,
+                     const Executor& executor);
 
 }  // namespace adasplats

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/sequence/kitti_raw.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
@@ -212,7 +210,7 @@ void require_record_near(const Trajectory& records, double time_s, const fs::pat
   if (is_between && behind->time_s - std::prev(behind)->time_s <= max_s) return;
   throw fault(scan, "no record of oxts is near its time, " +
                         exact_text(std::round(1e3 * (time_s - records[1].time_s)) / 1e3) +
-                        " s after the first record; leave it out: nothing is guessed there");
+                        " s after the first record; remove the scan");
 }
 
 /// Scans as text, x y z reflectance a line: those of drives that are not synced.
@@ -252,7 +250,7 @@ KittiSequence open_kitti_raw_drive(const fs::path& folder) {
   const fs::path stamps = folder / "velodyne_points" / "timestamps.txt";
   const std::vector<double> times_s = read_stamps(stamps);
   const RigidTransform imu_from_velodyne = read_imu_to_velodyne(folder).inverse();
-  const Trajectory records = with_motion_continued(read_records(folder), kRecord_s);
+  const Trajectory records = with_extrapolated_ends(read_records(folder), kRecord_s);
   for (const fs::path& scan : sequence.scans) {
     const double time_s = stamp_of(scan, times_s, stamps);
     require_record_near(records, time_s, scan);

@@ -9,13 +9,40 @@
 #include <utility>
 #include <variant>
 
-#include "adasplats/cloud/sequence/files_by_name.h"
-#include "adasplats/cloud/sequence/kitti_raw.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
+
+std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& folder,
+                                                 const std::string& extension) {
+  std::vector<std::filesystem::path> files;
+  std::error_code problem;
+  if (!std::filesystem::is_directory(folder, problem)) return files;
+  std::filesystem::directory_iterator entry(folder, problem);
+  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
+    const std::filesystem::path& path = entry->path();
+    // A leading dot marks files that are being written or belong to some tool.
+    if (path.extension() == extension && path.filename().string().front() != '.')
+      files.push_back(path);
+  }
+  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::optional<std::size_t> number_in_name(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  constexpr std::size_t kMaxDigits = 18;  // fits 64 bits
+  if (stem.empty() || stem.size() > kMaxDigits) return std::nullopt;
+  std::size_t number = 0;
+  for (const char c : stem) {
+    if (c < '0' || c > '9') return std::nullopt;
+    number = 10 * number + static_cast<std::size_t>(c - '0');
+  }
+  return number;
+}
 
 namespace {
 
@@ -79,7 +106,7 @@ void keep_outside(const std::vector<std::uint8_t>& in_boxes, std::vector<T>& val
 }
 
 /// Takes what is in boxes out of a scan.
-void leave_boxes_out(KittiScan& scan) {
+void remove_points_in_boxes(KittiScan& scan) {
   if (scan.in_boxes.empty()) return;
   keep_outside(scan.in_boxes, scan.positions);
   keep_outside(scan.in_boxes, scan.intensities);
@@ -124,7 +151,7 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
   KittiScan scan = read_all_returns(sequence, index);
-  leave_boxes_out(scan);
+  remove_points_in_boxes(scan);
   return scan;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -15,14 +16,22 @@
 
 namespace adasplats {
 
+/// Files of a folder with an extension, by name; none where there is no such folder. Errors:
+/// no_input (it cannot be listed).
+std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& folder,
+                                                 const std::string& extension);
+
+/// The number that a name such as 000123 is; nothing for other names.
+std::optional<std::size_t> number_in_name(const std::filesystem::path& file);
+
 struct KittiScan;
 
-/// What was understood of a drive, in words; empty: nothing to tell.
+/// What was inferred about a drive, in words; empty: nothing to report.
 struct DriveFacts {
   std::string points_in;  ///< the frame of the points in the files, and by what
   std::string poses;      ///< how scans got theirs
   std::string motion;     ///< of the sensor within a sweep
-  std::string clock;      ///< whether the clocks of points and poses are one, and what tells it
+  std::string clock;      ///< whether points and poses share a clock, with the evidence
   std::string unchecked;  ///< of the poses (require_poses_that_fit())
   /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
   /// points of the files are of none of the scans.
@@ -94,5 +103,19 @@ KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index);
 /// The same; nothing where the scan cannot be read. For what looks into scans that nobody chose:
 /// whoever reads one that was chosen says what is wrong with it.
 std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index);
+
+/// True for a drive as KITTI's raw data have it: folders `velodyne_points/data` and `oxts/data`.
+bool is_kitti_raw_drive(const std::filesystem::path& folder);
+
+/// Opens a drive of KITTI's raw data (Geiger et al., "Vision meets robotics: the KITTI dataset",
+/// 2013, and its devkit's readme), synced (`_sync`, .bin) or not (`_extract`, .txt). Poses are
+/// those of the GPS/IMU unit at the scans' own times (velodyne_points/timestamps.txt, when the
+/// laser pointed forward), interpolated between the records of oxts and brought to the LiDAR by
+/// calib_imu_to_velo.txt, of the folder or of the one above. World: metres from the first scan, x
+/// east, y north, z up (Mercator, scaled by the latitude of the first record, as the devkit has
+/// it). Times are seconds since 1970 of the clock in the files. Errors: no_input (nothing is
+/// there), data (calibration, stamps or records that are missing or no numbers; scans whose time is
+/// farther than 0.1 s before or behind all records, or in a gap of them).
+KittiSequence open_kitti_raw_drive(const std::filesystem::path& folder);
 
 }  // namespace adasplats

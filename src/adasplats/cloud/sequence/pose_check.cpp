@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 
@@ -309,7 +309,7 @@ void require_times_of_scans(const KittiSequence& sequence) {
 }
 
 /// In one line: why the unit of the poses was not checked.
-std::string what_is_not_told(const KittiSequence& sequence, const PoseEvidence& evidence) {
+std::string unchecked_text(const KittiSequence& sequence, const PoseEvidence& evidence) {
   double reach_m = 0;
   for (const TimedPose& pose : sequence.trajectory)
     reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
@@ -318,19 +318,18 @@ std::string what_is_not_told(const KittiSequence& sequence, const PoseEvidence& 
   std::array<char, 300> text{};
   if (reach_m < kMinApart_m)
     std::snprintf(text.data(), text.size(),
-                  "the poses lead %.2f m away at most: that they are metres, and of the sensor, "
-                  "could not be checked (scans %.0f m apart and more tell)",
+                  "cannot check that the poses are in metres and of the sensor: they span only "
+                  "%.2f m, and scans at least %.0f m apart are needed",
                   reach_m, kMinApart_m);
   else if (evidence.points == 0)
     std::snprintf(text.data(), text.size(),
-                  "that the poses are metres, and of the sensor, could not be checked: no scans 3 "
-                  "to 15 m apart see upright things");
+                  "cannot check that the poses are in metres and of the sensor: no scans 3 to 15 m "
+                  "apart contain upright objects");
   else
     std::snprintf(
         text.data(), text.size(),
-        "that the poses are metres, and of the sensor, could not be checked: of %zu "
-        "points on upright things %.0f %% meet another scan by the poses, %.0f %% by "
-        "their rotations alone",
+        "cannot check that the poses are in metres and of the sensor: of %zu points on upright "
+        "objects %.0f %% align with another scan by the poses, %.0f %% by their rotations alone",
         evidence.points, 100 * evidence.share(0),
         100 * static_cast<double>(evidence.met_turned) / static_cast<double>(evidence.points));
   return text.data();
@@ -422,7 +421,7 @@ std::string require_poses_that_fit(const KittiSequence& sequence, const Executor
           sequence, scale.points, scale.pairs, scale.met_given, scale.met,
           "with their translations times " + factor_text(scale.factor) + " (are they in metres?)");
   }
-  return what_is_not_told(sequence, evidence);
+  return unchecked_text(sequence, evidence);
 }
 
 }  // namespace adasplats

@@ -58,9 +58,9 @@ KittiSequence drive(const TemporaryFolder& folder, const std::vector<Vec3d>& wor
     for (const Vec3d p : world) {
       const Vec3d seen = pose.inverse() * p;
       if (!(length(seen) < 35)) continue;
-      const Vec3d told = in_world ? p : seen;
-      values.insert(values.end(), {static_cast<float>(told.x), static_cast<float>(told.y),
-                                   static_cast<float>(told.z), 0.5F});
+      const Vec3d point = in_world ? p : seen;
+      values.insert(values.end(), {static_cast<float>(point.x), static_cast<float>(point.y),
+                                   static_cast<float>(point.z), 0.5F});
     }
     sequence.scans.push_back(folder.write("velodyne/" + std::to_string(k) + ".bin", values));
     sequence.trajectory.push_back({0.1 * k, written(pose)});

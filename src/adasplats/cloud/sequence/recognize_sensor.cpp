@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "adasplats/cloud/sequence/mount_search.h"
+#include "adasplats/cloud/sequence/cone_fit.h"
 
 namespace adasplats {
 namespace {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "adasplats/cloud/poses/continued_motion.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/sweep_check.h"
 #include "adasplats/core/error.h"
@@ -142,7 +142,7 @@ namespace {
 Vec3d origin_in_sweep(const ScanBeams& beams, std::size_t scan, Vec3d point, double phase) {
   Vec3d origin;
   if (beams.from_hdl64) {
-    // From the middle between the blocks the two parts of the fan are told apart well enough.
+    // The middle between the blocks separates the two parts of the fan well enough.
     constexpr double kBetween_m = 0.165;
     const double elevation_deg =
         std::atan2(point.z - kBetween_m, std::hypot(point.x, point.y)) / kRadians;
@@ -245,7 +245,7 @@ FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec
 }
 
 /// Whether poses are near enough in time to say how the sensor moved during a revolution.
-bool says_motion_of_sweeps(const Trajectory& poses) {
+bool resolves_sweep_motion(const Trajectory& poses) {
   constexpr double kMaxApart_s = 5 * kRevolution_s;
   std::vector<double> apart_s;
   apart_s.reserve(poses.size());
@@ -258,9 +258,9 @@ bool says_motion_of_sweeps(const Trajectory& poses) {
 /// the points do not lie on each other the better for it.
 void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& sweeps_m,
                       ScanBeams& beams, const Executor& executor) {
-  if (says_motion_of_sweeps(sequence.trajectory)) {
+  if (resolves_sweep_motion(sequence.trajectory)) {
     set_raw_motions(beams, sequence.trajectory,
-                    with_motion_continued(sequence.trajectory, kRevolution_s));
+                    with_extrapolated_ends(sequence.trajectory, kRevolution_s));
     const SweepEvidence evidence = weigh_sweeps(sequence, beams, executor);
     if (evidence.confirms()) return;
     beams.raw_motions.clear();

@@ -18,7 +18,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kCell_m = 0.5, kFarthest_m = 30, kNearest_m = 3;
-constexpr std::size_t kMinOnWalls = 500;  // for a median that tells a tenth apart
+constexpr std::size_t kMinOnWalls = 500;  // for a median that resolves a tenth
 
 /// What points of a cell have in common.
 struct WallCell {

@@ -29,7 +29,7 @@ struct Looked {
 
 /// Where the sensor was in the mean of each scan, by the numbers of the scans; of scans without a
 /// measured origin nothing.
-std::vector<Vec3d> places_of_scans(const Looked& points, const Executor& executor) {
+std::vector<Vec3d> positions_of_scans(const Looked& points, const Executor& executor) {
   const PointCloud& cloud = points.cloud;
   const ScanRuns scans(cloud.scan_indices, executor);
   std::vector<std::pair<Vec3d, std::size_t>> sums(scans.size());
@@ -50,7 +50,7 @@ std::vector<Vec3d> places_of_scans(const Looked& points, const Executor& executo
 }
 
 /// Whether an offset is at most `radius_m` long in the plane, as std::hypot says it: that takes as
-/// long as all else here, and only next to the radius do squares not tell.
+/// long as all else here, and squares are inconclusive only next to the radius.
 bool is_within(Vec3d offset, double radius_m) {
   constexpr double kSure = 1e-12;
   const double square = offset.x * offset.x + offset.y * offset.y, most = radius_m * radius_m;
@@ -59,15 +59,15 @@ bool is_within(Vec3d offset, double radius_m) {
 }
 
 /// Where the sensor was in a scan, relative to the cloud's origin.
-struct ScanScene {
+struct ScanPosition {
   Vec3d at;
   bool is_own = true;  ///< the scan is in the cloud
 };
 
 /// The places of a cloud's scans, between those beyond.
-std::vector<ScanScene> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
-                                      Vec3d origin) {
-  std::vector<ScanScene> places;
+std::vector<ScanPosition> path_positions(const std::vector<Vec3d>& own, const PathBeyond& beyond,
+                                         Vec3d origin) {
+  std::vector<ScanPosition> places;
   for (const Vec3d world : beyond.before) places.push_back({world - origin, false});
   for (const Vec3d at : own) places.push_back({at, true});
   for (const Vec3d world : beyond.after) places.push_back({world - origin, false});
@@ -78,7 +78,7 @@ std::vector<ScanScene> places_of_path(const std::vector<Vec3d>& own, const PathB
 /// points.
 class Path {
  public:
-  Path(const std::vector<ScanScene>& scans, const PointCloud& cloud,
+  Path(const std::vector<ScanPosition>& scans, const PointCloud& cloud,
        const DrivenPathOptions& options) {
     for (const Vec3f point : cloud.positions) {
       low_ = min(low_, point);
@@ -142,7 +142,7 @@ class Path {
            place.x > static_cast<double>(high_.x) + kReach_m ||
            place.y > static_cast<double>(high_.y) + kReach_m;
   }
-  /// Most points are near no place, which these few bytes tell.
+  /// A small table that rejects most points: they are near no position.
   static std::size_t slot_of(std::uint64_t key) {
     constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // Fibonacci hashing (Knuth 6.4)
     return static_cast<std::size_t>(key * kGolden >> (64U - kSlotBits));
@@ -222,7 +222,7 @@ std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
   if (!(options.half_width_m > 0) || cloud.sensor_positions.empty() || cloud.scan_indices.empty())
     return {};
   const Looked points{cloud, left_out};
-  const Path path(places_of_path(places_of_scans(points, executor), beyond, cloud.origin), cloud,
+  const Path path(path_positions(positions_of_scans(points, executor), beyond, cloud.origin), cloud,
                   options);
   if (path.length_m() < options.min_path_m) return {};
   std::vector<double> heights = heights_above_ground(points, path, options, executor);

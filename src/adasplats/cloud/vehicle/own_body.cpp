@@ -198,7 +198,7 @@ class Search {
         executor_(executor),
         stations_(points, options.station_m, executor) {}
 
-  bool can_tell() const {
+  bool has_enough_motion() const {
     return stations_.size() >= options_.min_stations &&
            path_m(points_, executor_) >= options_.min_path_m;
   }
@@ -319,7 +319,7 @@ std::vector<std::uint8_t> find_own_body(const PointCloud& cloud, const OwnBodyOp
                                         std::span<const std::uint8_t> left_out) {
   if (!cloud.has_beams()) return {};
   const Search search({cloud, left_out}, options, executor);
-  return search.can_tell() ? search.run() : std::vector<std::uint8_t>();
+  return search.has_enough_motion() ? search.run() : std::vector<std::uint8_t>();
 }
 
 std::vector<std::uint8_t> points_within(const PointCloud& cloud, double radius_m,

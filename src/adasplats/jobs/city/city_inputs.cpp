@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load/file_pieces.h"
-#include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"

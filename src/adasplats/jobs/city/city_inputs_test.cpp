@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load/file_pieces.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/temporary_folder_test.h"
@@ -118,7 +118,7 @@ TEST(CityInputs, FilesOutsideOfTheExtentHaveNoPoints) {
   const Taken some = taken(inputs, 1000, load);
   EXPECT_EQ(some.world().size(), 1000U);
   load.selection.extent = Extent{{50, -1, -1}, {60, 9, 9}};
-  EXPECT_NE(error_of(inputs, load).find("lies in the extent"), std::string::npos);
+  EXPECT_NE(error_of(inputs, load).find("is in the extent"), std::string::npos);
 }
 
 // Oracle: at once such points are dropped as far, which is an error where they are many.
@@ -207,7 +207,7 @@ TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
   EXPECT_EQ(pieces[1].first, 1500U);
   EXPECT_FALSE(pieces[1].has_whole_scans);
   ASSERT_EQ(progress.warnings.size(), 1U);
-  EXPECT_NE(progress.warnings[0].find("not one behind another"), std::string::npos);
+  EXPECT_NE(progress.warnings[0].find("not ordered by scan"), std::string::npos);
 }
 
 /// A track of poses of a sensor 2 m above the ground, from `begin_s` on.

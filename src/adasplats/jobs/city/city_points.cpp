@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/city/tile_points.h"
-#include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/jobs/provenance/metrics_json.h"
 #include "adasplats/jobs/session/inputs.h"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/session/inputs.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/features.h"
@@ -28,7 +28,9 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
                               const std::filesystem::path& trajectory, Session& session) {
   require_input(given);
   if (is_drive_by_itself(given)) {
-    FrameDrive drive{.folder = given, .trajectory = trajectory};
+    FrameDrive drive;
+    drive.folder = given;
+    drive.trajectory = trajectory;
     drive.with_classes = false;
     return open_frame_drive(drive, session.executor, session.progress).value();
   }
@@ -41,7 +43,9 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
     return sequence;
   }
   const std::filesystem::path own = given / "poses.csv";
-  FrameDrive drive{.folder = given, .trajectory = std::filesystem::exists(own) ? own : trajectory};
+  FrameDrive drive;
+  drive.folder = given;
+  drive.trajectory = std::filesystem::exists(own) ? own : trajectory;
   drive.with_classes = false;
   if (drive.trajectory.empty())
     throw Error(ErrorKind::usage, given.string() +

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/cloud/load/recorded_trajectory.h"
+#include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/jobs/session/inputs.h"

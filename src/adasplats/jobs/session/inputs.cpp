@@ -6,7 +6,7 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/load/recorded_trajectory.h"
+#include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/recorded_trajectory.h"
+#include "adasplats/cloud/load/recording_poses.h"
 
 #include <gtest/gtest.h>
 
@@ -21,20 +21,20 @@ constexpr std::int64_t kTenSeconds_ns = 10'000'000'000;
 std::int64_t at_step(int step) { return kTenSeconds_ns + step * std::int64_t{10'000'000}; }
 
 /// Poses every 10 ms at 5 m/s along x of `child` in 'map', from 10 to 11 s.
-void add_moves(std::vector<Said>& said, const std::string& topic, const std::string& child) {
+void add_moves(std::vector<Said>& messages, const std::string& topic, const std::string& child) {
   for (int step = 0; step <= 100; ++step) {
     const bags_test::PoseNumbers pose = {0.05 * step, 2, 0, 0, 0, 0, 1};
     if (topic == "/tf")
-      said.push_back({topic, "tf2_msgs/msg/TFMessage", 0,
-                      bags_test::transforms_message(at_step(step), "map", child, pose)});
+      messages.push_back({topic, "tf2_msgs/msg/TFMessage", 0,
+                          bags_test::transforms_message(at_step(step), "map", child, pose)});
     else
-      said.push_back({topic, "nav_msgs/msg/Odometry", 0,
-                      bags_test::odometry_message(at_step(step), "map", child, pose)});
+      messages.push_back({topic, "nav_msgs/msg/Odometry", 0,
+                          bags_test::odometry_message(at_step(step), "map", child, pose)});
   }
 }
 
 /// A cloud of one point every 100 ms from 10.005 s on, which is between two poses.
-void add_clouds(std::vector<Said>& said, int first = 0) {
+void add_clouds(std::vector<Said>& messages, int first = 0) {
   for (int k = first; k < 10; ++k) {
     bags_test::CloudWords cloud;
     cloud.stamp_ns = at_step(10 * k) + 5'000'000;
@@ -42,19 +42,20 @@ void add_clouds(std::vector<Said>& said, int first = 0) {
     cloud.width = 1;
     cloud.step = cloud.row_step = 12;
     cloud.points = std::string(12, '\0');
-    said.push_back({"/points", "sensor_msgs/msg/PointCloud2", 0, bags_test::cloud_message(cloud)});
+    messages.push_back(
+        {"/points", "sensor_msgs/msg/PointCloud2", 0, bags_test::cloud_message(cloud)});
   }
 }
 
 class RecordedWays : public ::testing::Test {
  protected:
   RecordedTrajectory read(const std::string& poses_topic = "", const std::string& topic = "") {
-    const auto path = folder_.write("drive.mcap", bags_test::mcap_of(said));
+    const auto path = folder_.write("drive.mcap", bags_test::mcap_of(messages));
     ProgressSink quiet;
     return trajectory_of_recording(path, topic, poses_topic, quiet);
   }
 
-  std::vector<Said> said;
+  std::vector<Said> messages;
 
  private:
   TemporaryFolder folder_;
@@ -62,10 +63,10 @@ class RecordedWays : public ::testing::Test {
 
 // Oracle: by hand.
 TEST_F(RecordedWays, PosesAreAtTheTimesOfClouds) {
-  said.push_back({"/tf_static", "tf2_msgs/msg/TFMessage", 0,
-                  bags_test::transforms_message(0, "car", "lidar", {0, 0, 1.5, 0, 0, 0, 1})});
-  add_moves(said, "/tf", "car");
-  add_clouds(said, -1);  // the first one is 95 ms before the first pose
+  messages.push_back({"/tf_static", "tf2_msgs/msg/TFMessage", 0,
+                      bags_test::transforms_message(0, "car", "lidar", {0, 0, 1.5, 0, 0, 0, 1})});
+  add_moves(messages, "/tf", "car");
+  add_clouds(messages, -1);  // the first one is 95 ms before the first pose
   const RecordedTrajectory way = read();
   ASSERT_EQ(way.poses.size(), 10U);
   for (std::size_t k = 0; k < 10; ++k) {
@@ -81,32 +82,32 @@ TEST_F(RecordedWays, PosesAreAtTheTimesOfClouds) {
 }
 
 TEST_F(RecordedWays, AVehicleThatNothingJoinsToTheCloudsKeepsItsPoses) {
-  add_moves(said, "/odom", "car");
-  add_clouds(said);
+  add_moves(messages, "/odom", "car");
+  add_clouds(messages);
   const RecordedTrajectory way = read();
   ASSERT_EQ(way.poses.size(), 10U);
   EXPECT_NEAR(way.poses[9].world_from_sensor.translation.x, 4.525, 1e-5);
-  EXPECT_NE(way.by.find("nothing joins"), std::string::npos) << way.by;
+  EXPECT_NE(way.by.find("no transforms connect"), std::string::npos) << way.by;
 }
 
 TEST_F(RecordedWays, WithoutCloudsAllPosesAreTaken) {
-  add_moves(said, "/odom", "car");
+  add_moves(messages, "/odom", "car");
   EXPECT_EQ(read().poses.size(), 101U);
-  add_moves(said, "/tf", "other");
+  add_moves(messages, "/tf", "other");
   EXPECT_EQ(read("/tf").poses.size(), 101U);
-  add_moves(said, "/tf", "third");
+  add_moves(messages, "/tf", "third");
   expect_error(ErrorKind::usage, {"drive.mcap", "'other', 'third'"}, [&] { read("/tf"); });
   EXPECT_EQ(read("/odom").poses.size(), 101U);
-  said.clear();
-  said.push_back({"/words", "std_msgs/msg/String", 0, "hello"});
+  messages.clear();
+  messages.push_back({"/words", "std_msgs/msg/String", 0, "hello"});
   expect_error(ErrorKind::data, {"drive.mcap", "no poses"}, [&] { read(); });
 }
 
 TEST_F(RecordedWays, CloudsOfAnotherClockAreRefused) {
-  add_moves(said, "/tf", "lidar");
+  add_moves(messages, "/tf", "lidar");
   for (int k = 0; k < 3; ++k) {
-    add_clouds(said, 9);
-    said.back().bytes[4] = static_cast<char>(70 + k);  // seconds of the header
+    add_clouds(messages, 9);
+    messages.back().bytes[4] = static_cast<char>(70 + k);  // seconds of the header
   }
   expect_error(ErrorKind::data, {"drive.mcap", "clocks"}, [&] { read(); });
 }

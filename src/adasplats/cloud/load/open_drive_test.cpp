@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,9 @@ TEST(FrameDrive, AnotherClockIsAnError) {
       "late.csv",
       std::string("time,x,y,z,qw,qx,qy,qz\n1e9,0,0,0,1,0,0,0\n1000000001,1,0,0,1,0,0,0\n"));
   expect_error(ErrorKind::data, {"0.ply", "the clocks differ", "late.csv"}, [&] {
-    open_frame_drive({.folder = drive.frames(), .trajectory = late}, Executor(1), quiet);
+    DriveSettings settings;
+    settings.trajectory = late;
+    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 
@@ -209,23 +211,23 @@ TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   } listener;
   LoadOptions options;
   options.trajectory = folder.path() / "poses.csv";
-  // Nothing in them tells, and that is no reason to guess.
+  // The frame is undetermined, and it is not guessed.
   ProgressSink silent;
-  expect_error(ErrorKind::data, {"is not clear", "points_in"},
+  expect_error(ErrorKind::data, {"cannot determine", "points_in"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), silent); });
   options.points_in = PointsIn::world;
   const PointCloud cloud = load_cloud(std::span(&frames, 1), options, Executor(2), listener).first;
   EXPECT_EQ(cloud.size(), 1400U);
   EXPECT_EQ(cloud.origin_kind(0), OriginKind::guessed);
   EXPECT_TRUE(cloud.scan_poses.empty());
-  EXPECT_NE(listener.text.find("no sensor of the library is recognised"), std::string::npos);
+  EXPECT_NE(listener.text.find("its sensor is not recognised"), std::string::npos);
   // What is for scans alone must not be dropped in silence.
   ProgressSink quiet;
   options.scan_stride = 2;
-  expect_error(ErrorKind::usage, {"scans are chosen"},
+  expect_error(ErrorKind::usage, {"a choice of scans"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
   options.scan_stride = 0;
-  expect_error(ErrorKind::usage, {"stride of 0"},
+  expect_error(ErrorKind::usage, {"stride is 0"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
 }
 
@@ -236,8 +238,10 @@ TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
       "boxes.csv", std::string("time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
                                "1e9,1,0,0,0,0,1,1,1,0\n"));
   expect_error(ErrorKind::data, {"boxes.csv", "the clocks differ"}, [&] {
-    open_frame_drive({.folder = drive.frames(), .trajectory = drive.poses(), .boxes = boxes},
-                     Executor(1), quiet);
+    DriveSettings settings;
+    settings.trajectory = drive.poses();
+    settings.boxes = boxes;
+    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/sensor_frames.h"
+#include "adasplats/cloud/load/sensor_drive.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/load/court_test.h"
-#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
@@ -169,7 +169,7 @@ TEST(SensorFrames, PointsAsMeasuredAreBroughtToTheirScan) {
 TEST(SensorFrames, CompensatedPointsKeepTheirPlacesAndGetTheOriginsOfTheirTimes) {
   const Court court({.dress = Dress::compensated});
   const auto [cloud, report] = court.load();
-  EXPECT_NE(facts_of(report).motion.find("taken out of the points"), std::string::npos)
+  EXPECT_NE(facts_of(report).motion.find("already compensated"), std::string::npos)
       << facts_of(report).motion;
   expect_as_cast(court, cloud, kHalfStep_m);
 }
@@ -195,7 +195,7 @@ TEST(SensorFrames, OffsetsFromTheStampsInTheNamesAreUnderstoodInTheirUnits) {
 TEST(SensorFrames, WithoutTimesOfThePointsEachScanStandsStill) {
   const Court court({.dress = Dress::compensated, .has_times = false, .stamped_names = true});
   const auto [cloud, report] = court.load();
-  EXPECT_NE(facts_of(report).motion.find("standing still"), std::string::npos);
+  EXPECT_NE(facts_of(report).motion.find("assumed to be at rest"), std::string::npos);
   ASSERT_EQ(cloud.size(), court.world.size());
   for (std::size_t i = 0; i < cloud.size(); i += 11)
     ASSERT_LT(length(cloud.world(i) - court.world[i]), kStraight_m);
@@ -211,8 +211,7 @@ TEST(SensorFrames, ShiftedClocksOfPointsInTheWorldAreRefused) {
   write_trajectory_csv(court.folder().path() / "poses.csv", late);
   EXPECT_GT(court.load(options).first.size(), 1000U);
   options.time_offset_s.reset();
-  expect_error(ErrorKind::data,
-               {"the clocks of the points and of the trajectory differ", "+0.10 s"},
+  expect_error(ErrorKind::data, {"the clocks of the points and the trajectory differ", "+0.10 s"},
                [&] { court.load(options); });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/intensity_scale.h"
+#include "adasplats/cloud/load/file_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,6 @@
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/load/sensor_drive.h"
-#include "adasplats/cloud/load/sensor_frames.h"
 #include "adasplats/cloud/load/world_drive.h"
 #include "adasplats/cloud/origins/track.h"
 #include "adasplats/core/error.h"
@@ -25,28 +24,24 @@
 namespace adasplats {
 namespace {
 
-/// Throws data where a file was measured when there are no poses.
+/// Throws data if a file was measured outside the track.
 void require_track_of(const SensorFrames& frames, const Track& track,
                       const std::filesystem::path& trajectory) {
-  const TimeSpan covered = track.covered_s();
   for (std::size_t k = 0; k < frames.files.size(); ++k) {
     const TimeSpan span = frames.spans_s[k];
-    const bool in_gap = std::ranges::any_of(
-        track.gaps, [&](TimeSpan gap) { return span.last > gap.first && span.first < gap.last; });
-    if (!in_gap && span.first >= covered.first && span.last <= covered.last) continue;
+    if (track.covers(span)) continue;
     std::array<char, 256> text{};
     std::snprintf(text.data(), text.size(),
-                  ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s%s: the "
-                  "clocks differ (`time_offset` states by how much), or the trajectory is of "
-                  "another drive",
+                  ": its points cover %.3f to %.3f s, but the trajectory %.3f to %.3f s%s; the "
+                  "clocks differ (give `time_offset`), or the trajectory belongs to another drive",
                   span.first, span.last, track.measured_s.first, track.measured_s.last,
-                  in_gap ? " and has a gap then" : "");
+                  is_in_gap(track.gaps, span) ? ", with a gap there" : "");
     throw Error(ErrorKind::data,
                 frames.files[k].string() + text.data() + " (" + trajectory.string() + ")");
   }
 }
 
-/// Whether the times of the matched poses are those of the files' points.
+/// Whether the times of the matched poses agree with those of the files' points.
 bool are_of_the_points(const SensorFrames& frames, double apart_s) {
   for (std::size_t k = 0; k < frames.spans_s.size(); ++k) {
     const double time_s = frames.poses.of_scans[k].time_s;
@@ -56,8 +51,7 @@ bool are_of_the_points(const SensorFrames& frames, double apart_s) {
   return true;
 }
 
-/// The files with their poses and what their times mean, before anything is decided; nothing where
-/// they have no poses.
+/// The files with their poses and the meaning of their times; nothing if they have no poses.
 std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
                                              std::vector<std::filesystem::path> files,
                                              const Executor& executor, ProgressSink& progress) {
@@ -74,7 +68,7 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
   if (!poses && !(is_absolute && track)) return std::nullopt;
   frames.files = std::move(files);
   if (poses) frames.poses = std::move(*poses);
-  const RigidTransform mount = drive.mount.value_or(MountSettings{}).transform();
+  const RigidTransform mount = drive.given_mount().value_or(MountSettings{}).transform();
   if (is_absolute && track) {
     frames.spans_s = spans_of_scans(frames, executor, progress);
     require_track_of(frames, *track, drive.trajectory);
@@ -94,22 +88,6 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
 
 }  // namespace
 
-FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
-  return {.folder = folder,
-          .trajectory = settings.trajectory,
-          .boxes = settings.boxes,
-          .time_offset_s = settings.time_offset_s,
-          .mount = settings.given_mount(),
-          .points_in = settings.points_in,
-          .sweep_points = settings.sweep_points,
-          .scan_times = settings.scan_times,
-          .topic = settings.topic,
-          .poses_topic = settings.poses_topic,
-          .scene = settings.scene,
-          .packets_of = settings.packets_of,
-          .beams_from_poses = settings.beams_from_poses};
-}
-
 bool is_drive_by_itself(const std::filesystem::path& path) {
   return is_recording(path) || is_capture(path) || data_tree_of(path) != nullptr;
 }
@@ -126,7 +104,7 @@ bool has_timed_frames(const std::filesystem::path& folder) {
 
 namespace {
 
-/// What files in world coordinates say. Errors: those of SharedCrs.
+/// The coordinate system of files in world coordinates. Errors: those of SharedCrs.
 Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& progress) {
   SharedCrs crs;
   for (const std::filesystem::path& file : files) crs.add(file, read_crs(file));
@@ -134,13 +112,13 @@ Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& 
   return crs.crs();
 }
 
-/// A folder of files, one a scan.
+/// Opens a folder of files, one per scan.
 std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor& executor,
                                         ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
-    // Where the mount is stated nothing is to be recognised.
-    if (drive.mount || !has_timed_frames(drive.folder)) return std::nullopt;
+    // With a stated mount the sensor need not be recognised.
+    if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
     WorldFrames frames;
     frames.files = files;
     frames.vehicle = read_trajectory(drive.trajectory);
@@ -155,7 +133,7 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
     auto sequence = open_as_world();
     if (sequence) {
       sequence->facts.points_in = "world (as stated)";
-      tell_of_drive(*sequence, progress);
+      report_drive(*sequence, progress);
     }
     return sequence;
   }
@@ -164,15 +142,15 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
   FrameVerdict verdict{PointsIn::sensor, "as stated"};
   if (drive.points_in == PointsIn::sensor) {
     if (!frames)
-      throw Error(ErrorKind::data,
-                  drive.folder.string() + ": no scans with poses: " + std::to_string(files.size()) +
-                      " files of points, " +
-                      std::to_string(read_trajectory(drive.trajectory).size()) + " poses in " +
-                      drive.trajectory.string() +
-                      ", and neither names nor `scan_times` nor times of points say which belongs "
-                      "to which");
+      throw Error(
+          ErrorKind::data,
+          drive.folder.string() +
+              ": the poses of its scans are undetermined: " + std::to_string(files.size()) +
+              " point files, " + std::to_string(read_trajectory(drive.trajectory).size()) +
+              " poses in " + drive.trajectory.string() +
+              ", and neither the file names nor times of points match them; give `scan_times`");
   } else {
-    if (!frames) return open_as_world();  // which says what is wrong with the times
+    if (!frames) return open_as_world();  // reports what is wrong with the times
     progress.begin_step("frame of the points", 0);
     verdict = find_frame(*frames, executor);
     progress.end_step();
@@ -181,13 +159,13 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
     return open_sensor_frames(drive, *frames, verdict.because, executor, progress);
   if (verdict.points_in == PointsIn::found)
     throw Error(ErrorKind::data, drive.folder.string() +
-                                     ": whether its points are in the frame of the sensor or in "
-                                     "the world is not clear (" +
-                                     verdict.because + "); `points_in` states it");
+                                     ": cannot determine whether its points are in the sensor "
+                                     "frame or in world coordinates (" +
+                                     verdict.because + "); give `points_in`");
   auto sequence = open_as_world();
   if (sequence) {
     sequence->facts.points_in = "world (" + verdict.because + ")";
-    tell_of_drive(*sequence, progress);
+    report_drive(*sequence, progress);
   }
   return sequence;
 }
@@ -198,7 +176,7 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
                                               ProgressSink& progress) {
   if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
     throw Error(ErrorKind::usage,
-                drive.folder.string() + ": is no data root of nuScenes, which `scene` is for");
+                drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
   if (is_recording(drive.folder))
     return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
                                 progress);
