@@ -17,8 +17,8 @@
 #include "adasplats/core/setting.h"
 #include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/session/session.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/build_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 namespace adasplats {
 

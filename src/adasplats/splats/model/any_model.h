@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {

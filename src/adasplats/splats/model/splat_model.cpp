@@ -15,13 +15,12 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
 namespace {
 
-constexpr const char* kLabelsComment = "adasplats.labels ";
 constexpr const char* kNetworkComment = "adasplats.network_sha256 ";
-constexpr const char* kMethodComment = "adasplats.method ";
 /// Of the response's tables, in the order of response_tables().
 constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
@@ -89,12 +88,6 @@ std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, s
     }
   }
   return {low, high};
-}
-
-std::string comment_value(const Table& table, const std::string& key) {
-  for (const std::string& comment : table.comments)
-    if (comment.rfind(key, 0) == 0) return comment.substr(key.size());
-  return {};
 }
 
 /// The members of `response`, an IntensityResponse, const or not.

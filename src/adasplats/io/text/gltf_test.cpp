@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/gltf.h"
+#include "adasplats/io/text/gltf.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include <random>
 
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/scene/mesh_model.h"
 
 namespace adasplats {
 namespace {
@@ -114,13 +113,9 @@ TEST_F(GltfTest, SameMeshFromAllThreeContainers) {
   }
 }
 
-TEST_F(GltfTest, MeshesAreToldByTheirContent) {
-  const auto path = folder_.write("car.dat", glb(two_triangles(), vertices_and_indices()));
-  EXPECT_TRUE(is_mesh_file(path));
-  const MeshModel model = load_mesh(path);
-  EXPECT_EQ(model.size(), 2U);
-  EXPECT_EQ(model.mesh.vertices[3], (Vec3f{3, 0, 0}));
-  EXPECT_FALSE(is_mesh_file(folder_.write("report.json", R"({"figures": [1, 2]})")));
+TEST_F(GltfTest, IsRecognisedByItsContent) {
+  EXPECT_TRUE(is_gltf(folder_.write("car.dat", glb(two_triangles(), vertices_and_indices()))));
+  EXPECT_FALSE(is_gltf(folder_.write("report.json", R"({"figures": [1, 2]})")));
   EXPECT_FALSE(is_gltf(folder_.write("blank", "   \n")));
   EXPECT_FALSE(is_gltf(folder_.write("short", "g")));
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/gltf.h"
+#include "adasplats/io/text/gltf.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@
 namespace adasplats {
 namespace {
 
-using Json = nlohmann::json;
+using GltfJson = nlohmann::json;
 
 /// Instances of one mesh may multiply a small file; no object of a scene needs more.
 constexpr std::size_t kMaxVertices = 50'000'000;
@@ -95,9 +95,9 @@ std::string without_percents(std::string_view uri) {
 }
 
 /// A JSON value that knows where in the document it is, for messages.
-class Member {
+class GltfMember {
  public:
-  Member(const std::filesystem::path& path, const Json& value, std::string place)
+  GltfMember(const std::filesystem::path& path, const GltfJson& value, std::string place)
       : path_(&path), value_(&value), place_(std::move(place)) {}
 
   const std::string& place() const { return place_; }
@@ -107,26 +107,26 @@ class Member {
   }
 
   /// A member that must be there.
-  Member operator[](const char* key) const {
-    if (const std::optional<Member> found = find(key)) return *found;
+  GltfMember operator[](const char* key) const {
+    if (const std::optional<GltfMember> found = find(key)) return *found;
     throw error("'" + std::string(key) + "' is missing");
   }
-  std::optional<Member> find(const char* key) const {
+  std::optional<GltfMember> find(const char* key) const {
     if (!value_->is_object()) throw error("is not an object");
     const auto found = value_->find(key);
     if (found == value_->end()) return std::nullopt;
-    return Member(*path_, *found, place_.empty() ? key : place_ + "." + key);
+    return GltfMember(*path_, *found, place_.empty() ? key : place_ + "." + key);
   }
 
   std::size_t size() const {
     if (!value_->is_array()) throw error("is not an array");
     return value_->size();
   }
-  Member at(std::size_t i) const {
+  GltfMember at(std::size_t i) const {
     return {*path_, (*value_)[i], place_ + "[" + std::to_string(i) + "]"};
   }
-  std::vector<Member> elements() const {
-    std::vector<Member> all;
+  std::vector<GltfMember> elements() const {
+    std::vector<GltfMember> all;
     for (std::size_t i = 0; i < size(); ++i) all.push_back(at(i));
     return all;
   }
@@ -160,18 +160,18 @@ class Member {
 
  private:
   const std::filesystem::path* path_;
-  const Json* value_;
+  const GltfJson* value_;
   std::string place_;
 };
 
-std::uint64_t whole_number_or(const std::optional<Member>& member, std::uint64_t otherwise) {
+std::uint64_t whole_number_or(const std::optional<GltfMember>& member, std::uint64_t otherwise) {
   return member ? member->whole_number() : otherwise;
 }
 
 /// Section 3.6.2.2, "Accessor Data Types".
 enum class Component : std::uint16_t { u8 = 5121, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-std::size_t bytes_of(Component component) {
+std::size_t component_bytes(Component component) {
   return component == Component::u8 ? 1 : (component == Component::u16 ? 2 : 4);
 }
 
@@ -207,8 +207,8 @@ class GltfReader {
 
   std::vector<std::filesystem::path> buffer_files() const {
     std::vector<std::filesystem::path> files;
-    for (const Member& buffer : buffers_) {
-      const std::optional<Member> uri = buffer.find("uri");
+    for (const GltfMember& buffer : buffers_) {
+      const std::optional<GltfMember> uri = buffer.find("uri");
       if (uri && !uri->text().starts_with("data:")) files.push_back(file_beside(*uri));
     }
     return files;
@@ -226,38 +226,39 @@ class GltfReader {
   }
 
  private:
-  Json parse() const {
+  GltfJson parse() const {
     try {
-      return Json::parse(chunks_.json);
-    } catch (const Json::exception& problem) {
+      return GltfJson::parse(chunks_.json);
+    } catch (const GltfJson::exception& problem) {
       throw data_error({path_, {}, {}}, std::string("glTF: ") + problem.what());
     }
   }
-  Member root() const { return {path_, json_, ""}; }
+  GltfMember root() const { return {path_, json_, ""}; }
   /// An array of the document; empty where it has none.
-  std::vector<Member> all(const char* key) const {
-    const std::optional<Member> found = root().find(key);
-    return found ? found->elements() : std::vector<Member>();
+  std::vector<GltfMember> all(const char* key) const {
+    const std::optional<GltfMember> found = root().find(key);
+    return found ? found->elements() : std::vector<GltfMember>();
   }
 
   void refuse_other_versions() const;
   void refuse_extensions() const;
-  std::filesystem::path file_beside(const Member& uri) const;
-  std::string read_buffer(const Member& buffer, std::size_t number) const;
+  std::filesystem::path file_beside(const GltfMember& uri) const;
+  std::string read_buffer(const GltfMember& buffer, std::size_t number) const;
   std::string_view buffer_bytes(std::size_t number);
-  Elements elements(const Member& accessor, std::string_view type, std::size_t components);
+  Elements elements(const GltfMember& accessor, std::string_view type, std::size_t components);
   void add_scene();
   void add_tree(std::size_t root_node);
-  void add_mesh(const Member& mesh, const AffineMap& world_from_mesh);
+  void add_mesh(const GltfMember& mesh, const AffineMap& world_from_mesh);
   void add_vertices(const Elements& positions, const AffineMap& world_from_mesh);
-  void add_triangles(const Member& primitive, std::size_t first_vertex, std::size_t count);
+  void add_triangles(const GltfMember& primitive, std::size_t first_vertex, std::size_t count);
 
   std::filesystem::path path_;
   std::string file_;
   Chunks chunks_;
-  Json json_;
-  std::vector<Member> buffers_ = all("buffers"), views_ = all("bufferViews"),
-                      accessors_ = all("accessors"), meshes_ = all("meshes"), nodes_ = all("nodes");
+  GltfJson json_;
+  std::vector<GltfMember> buffers_ = all("buffers"), views_ = all("bufferViews"),
+                          accessors_ = all("accessors"), meshes_ = all("meshes"),
+                          nodes_ = all("nodes");
   std::vector<std::optional<std::string>> buffer_contents_ =
       std::vector<std::optional<std::string>>(buffers_.size());
   std::vector<bool> node_is_placed_ = std::vector<bool>(nodes_.size());
@@ -266,14 +267,14 @@ class GltfReader {
 };
 
 void GltfReader::refuse_other_versions() const {
-  const Member version = root()["asset"]["version"];
+  const GltfMember version = root()["asset"]["version"];
   if (!version.text().starts_with("2."))
     throw version.error("found " + version.text().substr(0, 20) + ", expected 2.0");
 }
 
 /// Section 3.12: a file says which extensions it cannot be read without. Those of looks do no harm.
 void GltfReader::refuse_extensions() const {
-  for (const Member& required : all("extensionsRequired")) {
+  for (const GltfMember& required : all("extensionsRequired")) {
     const std::string& name = required.text();
     const bool looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                        name.starts_with("EXT_texture_") || name == "KHR_lights_punctual";
@@ -284,8 +285,8 @@ void GltfReader::refuse_extensions() const {
 }
 
 /// Section 3.6.1: bytes of a file beside the document, of a data URI, or of the binary chunk.
-std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) const {
-  const std::optional<Member> uri = buffer.find("uri");
+std::string GltfReader::read_buffer(const GltfMember& buffer, std::size_t number) const {
+  const std::optional<GltfMember> uri = buffer.find("uri");
   if (!uri) {
     if (number > 0 || chunks_.binary.empty()) throw buffer.error("has neither uri nor chunk");
     return std::string(chunks_.binary);
@@ -303,7 +304,7 @@ std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) co
   return read_file(file_beside(*uri));
 }
 
-std::filesystem::path GltfReader::file_beside(const Member& uri) const {
+std::filesystem::path GltfReader::file_beside(const GltfMember& uri) const {
   const std::string& text = uri.text();
   const std::filesystem::path name = without_percents(text);
   if (name.empty() || name.is_absolute() || text.find("://") != std::string::npos ||
@@ -313,7 +314,7 @@ std::filesystem::path GltfReader::file_beside(const Member& uri) const {
 }
 
 std::string_view GltfReader::buffer_bytes(std::size_t number) {
-  const Member& buffer = buffers_[number];
+  const GltfMember& buffer = buffers_[number];
   std::optional<std::string>& content = buffer_contents_[number];
   if (!content) content = read_buffer(buffer, number);
   const std::uint64_t length = buffer["byteLength"].whole_number();
@@ -325,7 +326,7 @@ std::string_view GltfReader::buffer_bytes(std::size_t number) {
 
 /// Section 3.6.2: `count` elements of `components` each, `byteStride` apart, within a view within a
 /// buffer.
-Elements GltfReader::elements(const Member& accessor, std::string_view type,
+Elements GltfReader::elements(const GltfMember& accessor, std::string_view type,
                               std::size_t components) {
   if (accessor.find("sparse")) throw accessor.error("sparse accessors are not read");
   if (accessor["type"].text() != type)
@@ -339,13 +340,13 @@ Elements GltfReader::elements(const Member& accessor, std::string_view type,
     throw accessor["componentType"].error("found " + std::to_string(component) + ", expected " +
                                           (components > 1 ? "5126 (float)" : "5121, 5123 or 5125"));
   result.component = static_cast<Component>(component);
-  const Member& view = views_[accessor["bufferView"].index_below(views_.size())];
+  const GltfMember& view = views_[accessor["bufferView"].index_below(views_.size())];
   const std::string_view buffer = buffer_bytes(view["buffer"].index_below(buffers_.size()));
   const std::uint64_t view_begin = whole_number_or(view.find("byteOffset"), 0);
   const std::uint64_t view_bytes = view["byteLength"].whole_number();
   if (view_begin > buffer.size() || view_bytes > buffer.size() - view_begin)
     throw view.error("reaches beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
-  const std::size_t element_bytes = components * bytes_of(result.component);
+  const std::size_t element_bytes = components * component_bytes(result.component);
   const std::uint64_t stride = whole_number_or(view.find("byteStride"), element_bytes);
   const std::uint64_t begin = whole_number_or(accessor.find("byteOffset"), 0);
   const std::uint64_t count = accessor["count"].whole_number();
@@ -362,36 +363,36 @@ Elements GltfReader::elements(const Member& accessor, std::string_view type,
 
 /// Section 3.5: the nodes of the default scene, or of the first; without scenes every mesh once.
 void GltfReader::add_scene() {
-  const std::vector<Member> scenes = all("scenes");
+  const std::vector<GltfMember> scenes = all("scenes");
   if (scenes.empty()) {
-    for (const Member& mesh : meshes_) add_mesh(mesh, {});
+    for (const GltfMember& mesh : meshes_) add_mesh(mesh, {});
     return;
   }
-  const std::optional<Member> chosen = root().find("scene");
-  const Member& scene = scenes[chosen ? chosen->index_below(scenes.size()) : 0];
-  const std::optional<Member> roots = scene.find("nodes");
+  const std::optional<GltfMember> chosen = root().find("scene");
+  const GltfMember& scene = scenes[chosen ? chosen->index_below(scenes.size()) : 0];
+  const std::optional<GltfMember> roots = scene.find("nodes");
   if (!roots) return;
-  for (const Member& node : roots->elements()) add_tree(node.index_below(nodes_.size()));
+  for (const GltfMember& node : roots->elements()) add_tree(node.index_below(nodes_.size()));
 }
 
 /// Section 3.5.3, "Transformations": a matrix by columns, or translation * rotation * scale.
-AffineMap local_transform(const Member& node) {
-  if (const std::optional<Member> matrix = node.find("matrix")) {
+AffineMap local_transform(const GltfMember& node) {
+  if (const std::optional<GltfMember> matrix = node.find("matrix")) {
     const auto m = matrix->numbers<16>();
     return {{{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}}}, {m[12], m[13], m[14]}};
   }
   AffineMap map;
-  if (const std::optional<Member> rotation = node.find("rotation")) {
+  if (const std::optional<GltfMember> rotation = node.find("rotation")) {
     const auto q = rotation->numbers<4>();  // x, y, z, w
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(std::fabs(norm - 1) <= 1e-3)) throw rotation->error("is not a unit quaternion");
     map.linear = rotation_from_quaternion(q[3] / norm, q[0] / norm, q[1] / norm, q[2] / norm);
   }
-  if (const std::optional<Member> scale = node.find("scale")) {
+  if (const std::optional<GltfMember> scale = node.find("scale")) {
     const auto s = scale->numbers<3>();
     for (Vec3d& row : map.linear.rows) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
   }
-  if (const std::optional<Member> translation = node.find("translation")) {
+  if (const std::optional<GltfMember> translation = node.find("translation")) {
     const auto t = translation->numbers<3>();
     map.offset = {t[0], t[1], t[2]};
   }
@@ -404,27 +405,27 @@ void GltfReader::add_tree(std::size_t root_node) {
   while (!waiting.empty()) {
     const auto [number, world_from_parent] = waiting.back();
     waiting.pop_back();
-    const Member& node = nodes_[number];
+    const GltfMember& node = nodes_[number];
     if (node_is_placed_[number]) throw node.error("stands in the scene twice");
     node_is_placed_[number] = true;
     const AffineMap world_from_node = world_from_parent * local_transform(node);
-    if (const std::optional<Member> mesh = node.find("mesh"))
+    if (const std::optional<GltfMember> mesh = node.find("mesh"))
       add_mesh(meshes_[mesh->index_below(meshes_.size())], world_from_node);
-    const std::optional<Member> children = node.find("children");
+    const std::optional<GltfMember> children = node.find("children");
     if (!children) continue;
-    for (const Member& child : children->elements())
+    for (const GltfMember& child : children->elements())
       waiting.emplace_back(child.index_below(nodes_.size()), world_from_node);
   }
 }
 
 /// Section 3.7.2, "Meshes".
-void GltfReader::add_mesh(const Member& mesh, const AffineMap& world_from_mesh) {
+void GltfReader::add_mesh(const GltfMember& mesh, const AffineMap& world_from_mesh) {
   constexpr std::uint64_t kTriangles = 4, kFan = 6;
-  for (const Member& primitive : mesh["primitives"].elements()) {
+  for (const GltfMember& primitive : mesh["primitives"].elements()) {
     const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
     if (mode < kTriangles) continue;  // points and lines
     if (mode > kFan) throw primitive.error("mode " + std::to_string(mode) + " is none of glTF");
-    const std::optional<Member> position = primitive["attributes"].find("POSITION");
+    const std::optional<GltfMember> position = primitive["attributes"].find("POSITION");
     if (!position) continue;  // section 3.7.2.1: then it need not be drawn
     const Elements positions =
         elements(accessors_[position->index_below(accessors_.size())], "VEC3", 3);
@@ -448,9 +449,9 @@ void GltfReader::add_vertices(const Elements& positions, const AffineMap& world_
   }
 }
 
-void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex,
+void GltfReader::add_triangles(const GltfMember& primitive, std::size_t first_vertex,
                                std::size_t count) {
-  const std::optional<Member> indices = primitive.find("indices");
+  const std::optional<GltfMember> indices = primitive.find("indices");
   Elements corners;
   if (indices) corners = elements(accessors_[indices->index_below(accessors_.size())], "SCALAR", 1);
   const std::size_t corner_count = indices ? corners.count : count;

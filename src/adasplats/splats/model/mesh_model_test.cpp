@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 #include <gtest/gtest.h>
 
@@ -106,6 +106,25 @@ TEST(MeshModel, ObjIsTakenByItsContent) {
   EXPECT_EQ(model.origin, (Vec3d{3000000, 0, 0}));
   EXPECT_EQ(model.mesh.vertices[1], (Vec3f{1, 0, 0}));
   EXPECT_TRUE(model.mesh.classes.empty());
+}
+
+TEST(MeshModel, GltfIsRecognisedByItsContent) {
+  const TemporaryFolder folder;
+  folder.write("triangle.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0"      // (0, 0, 0)
+                                           "\0\0\x80\x3f\0\0\0\0\0\0\0\0"  // (1, 0, 0)
+                                           "\0\0\0\0\0\0\0\0\0\0\0\x40",   // (0, 0, 2)
+                                           36));
+  const auto path = folder.write("car.dat", R"({
+    "asset": {"version": "2.0"},
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "triangle.bin"}]})");
+  EXPECT_TRUE(is_mesh_file(path));
+  const MeshModel model = load_mesh(path);
+  EXPECT_EQ(model.mesh.triangles, (std::vector<Corners>{{0, 1, 2}}));
+  EXPECT_EQ(model.mesh.vertices[2], (Vec3f{2, 0, 0}));
+  EXPECT_FALSE(is_mesh_file(folder.write("report.json", R"({"figures": [1, 2]})")));
 }
 
 TEST(MeshModel, OtherFilesAreNoMeshes) {
