@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/sequence/calibration.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
 #include "adasplats/scene/scene.h"
