@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace adasplats {
@@ -15,33 +14,13 @@ namespace {
 constexpr float kMinSide_m = 1e-25F;
 constexpr std::size_t kMaxChildren = 8;
 
-struct Extent {
-  Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
-            std::numeric_limits<float>::max()};
-  Vec3f high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
-             std::numeric_limits<float>::lowest()};
-  Extent& operator+=(const Extent& other) {
-    low = min(low, other.low);
-    high = max(high, other.high);
-    return *this;
-  }
-};
-
 /// Over the box of position_of(0 .. count - 1); without cells where that is a point or no float.
 template <class PositionOf>
 HilbertGrid grid_over(std::size_t count, const PositionOf& position_of, const Executor& executor) {
-  const Extent extent =
-      executor.sum_chunks(count, kCoarseGrain, Extent{}, [&](std::size_t begin, std::size_t end) {
-        Extent part;
-        for (std::size_t i = begin; i < end; ++i) {
-          part.low = min(part.low, position_of(i));
-          part.high = max(part.high, position_of(i));
-        }
-        return part;
-      });
-  const Vec3f size = extent.high - extent.low;
+  const CurveBox box = curve_box_of(count, position_of, executor);
+  const Vec3f size = box.high - box.low;
   const bool has_cells = is_finite(size) && std::max({size.x, size.y, size.z}) > kMinSide_m;
-  return has_cells ? HilbertGrid(extent.low, extent.high) : HilbertGrid({}, {});
+  return has_cells ? HilbertGrid(box.low, box.high) : HilbertGrid({}, {});
 }
 
 struct CurveOrder {
@@ -121,12 +100,9 @@ std::size_t LevelOrder::run_end(std::size_t i, std::size_t end, int level) const
 }
 
 float LevelOrder::box_side_m(const LevelBlock& block) const {
-  Extent extent;
-  for (std::size_t i = block.begin; i < block.end; ++i) {
-    extent.low = min(extent.low, position(i));
-    extent.high = max(extent.high, position(i));
-  }
-  const Vec3f size = extent.high - extent.low;
+  CurveBox box = CurveBox::empty();
+  for (std::size_t i = block.begin; i < block.end; ++i) box.add(position(i));
+  const Vec3f size = box.high - box.low;
   return std::max({size.x, size.y, size.z, 0.0F});
 }
 

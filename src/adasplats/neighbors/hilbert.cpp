@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -71,31 +70,11 @@ struct StepTable {
 constexpr StepTable kSteps;
 static_assert(kBits % StepTable::kLevels == 0);
 
-struct Extent {
-  Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
-            std::numeric_limits<float>::max()};
-  Vec3f high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
-             std::numeric_limits<float>::lowest()};
-  Extent& operator+=(const Extent& other) {
-    low = min(low, other.low);
-    high = max(high, other.high);
-    return *this;
-  }
-};
-
 }  // namespace
 
 CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor) {
-  const Extent all = executor.sum_chunks(points.size(), kCoarseGrain, Extent{},
-                                         [&](std::size_t begin, std::size_t end) {
-                                           Extent extent;
-                                           for (std::size_t i = begin; i < end; ++i) {
-                                             extent.low = min(extent.low, points[i]);
-                                             extent.high = max(extent.high, points[i]);
-                                           }
-                                           return extent;
-                                         });
-  return {all.low, all.high};
+  return curve_box_of(
+      points.size(), [&](std::size_t i) { return points[i]; }, executor);
 }
 
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -57,14 +58,38 @@ ADASPLATS_HD constexpr std::uint64_t hilbert_key_by_turns(std::uint32_t x, std::
   return key;
 }
 
-/// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the whole
-/// come in the order that they have in the whole. Beyond its cube the curve begins anew in cube
-/// after cube, so that a box can be kept when points are added outside.
+/// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the full cloud
+/// are in the same order as there. Beyond its cube the curve repeats cube by cube, so a box can be
+/// kept when points are added outside.
 struct CurveBox {
   Vec3f low, high;
+
+  /// Holds nothing: low is above high.
+  static CurveBox empty() {
+    constexpr float kFar = std::numeric_limits<float>::max();
+    return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  }
+  void add(Vec3f point) {
+    low = min(low, point);
+    high = max(high, point);
+  }
+  CurveBox& operator+=(const CurveBox& other) {
+    low = min(low, other.low);
+    high = max(high, other.high);
+    return *this;
+  }
 };
 
-/// Of the points; an empty one is inverted.
+/// The box of position_of(0 .. count - 1); CurveBox::empty() without any.
+template <class PositionOf>
+CurveBox curve_box_of(std::size_t count, const PositionOf& position_of, const Executor& executor) {
+  return executor.sum_chunks(count, kCoarseGrain, CurveBox::empty(),
+                             [&](std::size_t begin, std::size_t end) {
+                               CurveBox box = CurveBox::empty();
+                               for (std::size_t i = begin; i < end; ++i) box.add(position_of(i));
+                               return box;
+                             });
+}
 CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor);
 
 /// The cells of the curve over a bounding box: those of the cube over its longest side.
