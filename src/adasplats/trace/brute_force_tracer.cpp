@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/trace/castable.h"
-#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/tracer.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
-#include "adasplats/trace/embree_handles.h"
 
 namespace adasplats {
 

@@ -6,10 +6,9 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/trace/castable.h"
-#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
-#include "adasplats/trace/embree_handles.h"
+#include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

@@ -11,7 +11,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/sparse_array.h"
-#include "adasplats/trace/clear_hits.h"
+#include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/wide_bvh.h"
 #include "adasplats/trace/wide_kernel.h"
 
