@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/segment/network/matrix_product.h"
+#include "adasplats/segment/network/run_network.h"
 
 // Small network files for tests.
 namespace adasplats::network_test {

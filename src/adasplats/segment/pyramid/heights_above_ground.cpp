@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/segment/pyramid/heights_above_ground.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "adasplats/segment/pyramid/pyramid.h"
 
 namespace adasplats {
 namespace {

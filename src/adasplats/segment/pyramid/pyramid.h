@@ -57,4 +57,8 @@ NeighborTable find_neighbors(std::span<const Vec3f> queries, std::span<const Vec
 std::vector<PyramidLevel> make_pyramid(std::vector<Vec3f> points, const PyramidShape& shape,
                                        const Executor& executor);
 
+/// Height of points above the lowest ones around, m: the least of square columns of 1 m, eroded and
+/// smoothed over nine of them each way.
+std::vector<float> heights_above_ground(std::span<const Vec3f> points);
+
 }  // namespace adasplats
