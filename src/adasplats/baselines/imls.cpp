@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/baselines/imls.h"
 
+#include "adasplats/core/error.h"
 #ifdef ADASPLATS_HAVE_OPENVDB
 
 #include <openvdb/Grid.h>
@@ -220,6 +221,19 @@ TriangleMesh imls_surface(std::span<const Vec3f> points, std::span<const Vec3f> 
   });
   field.values->clear();
   return to_triangles(extracted, options.voxel_m);
+}
+
+}  // namespace adasplats
+
+#else
+
+namespace adasplats {
+
+TriangleMesh imls_surface(std::span<const Vec3f>, std::span<const Vec3f>, const ImlsOptions&,
+                          const Executor&) {
+  throw Error(ErrorKind::unavailable,
+              "IMLS needs OpenVDB, which was not there when adasplats was built: install the "
+              "packages libopenvdb-dev and libboost-dev and build again");
 }
 
 }  // namespace adasplats

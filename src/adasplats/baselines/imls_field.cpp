@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/baselines/imls_field.h"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/baselines/imls.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {

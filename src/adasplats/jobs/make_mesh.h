@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/baselines/imls_field.h"
+#include "adasplats/baselines/imls.h"
 #include "adasplats/baselines/oriented_normals.h"
 #include "adasplats/baselines/poisson.h"
 #include "adasplats/cloud/load/load_cloud.h"
