@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "adasplats/surface/fusion_cell.h"
-
 namespace adasplats {
 namespace {
 

@@ -106,7 +106,7 @@ TEST(GlobalContext, APieceHasTheSplatsOfTheWhole) {
       if (disk.center.z > 2.5F) sum += disk.radius * disk.radius;
     return sum;
   };
-  // Nobody tells the piece of the rays that go through the panel.
+  // The tile lacks the rays that pass through the panel.
   whole.passing = {};
   EXPECT_GT(area_in_the_air(disks_of_piece(piece, options)), 3 * area_in_the_air(disks));
 }

@@ -57,7 +57,7 @@ TEST(OriginCheck, SmallPiecesAreJoined) {
   EXPECT_DOUBLE_EQ(check.near_rise, (600 * 0.5 + 600 * 1.5 + 800 * 1.2) / 2000);
 }
 
-TEST(OriginCheck, TooFewContradictedSeedsTellNothing) {
+TEST(OriginCheck, TooFewContradictedSeedsAreInconclusive) {
   const std::vector<MovedEvidence> pieces = {piece(300, kEast), piece(1100, kEast)};
   const OriginCheck check = origin_check(pieces);
   EXPECT_EQ(check.contradicted, 1400U);
@@ -67,7 +67,7 @@ TEST(OriginCheck, TooFewContradictedSeedsTellNothing) {
   EXPECT_EQ(origin_check({}).share(), 0);
 }
 
-TEST(OriginCheck, WhatIsRightWrongAndDoubtful) {
+TEST(OriginCheck, CorrectWrongAndDoubtfulPositions) {
   const auto of = [](double near, double far) { return OriginCheck{100'000, 5000, near, far}; };
   EXPECT_EQ(origin_objection(of(1.2, 1.4)) + origin_doubt(of(1.2, 1.4)), "");
   const std::string wrong = origin_objection(of(0.76, 1.22));

@@ -54,8 +54,9 @@ TEST(SixteenthOfTurn, AQuarterTurnIsFourSectors) {
 }
 
 TEST(SectorReach, SectorsAreWholeSixteenths) {
-  for (const int sectors : {0, 1, 2, 4, 8, 16}) EXPECT_TRUE(SectorReach::can_have(sectors));
-  for (const int sectors : {-1, 3, 5, 12, 15, 17, 32}) EXPECT_FALSE(SectorReach::can_have(sectors));
+  for (const int sectors : {0, 1, 2, 4, 8, 16}) EXPECT_TRUE(SectorReach::is_valid_count(sectors));
+  for (const int sectors : {-1, 3, 5, 12, 15, 17, 32})
+    EXPECT_FALSE(SectorReach::is_valid_count(sectors));
   const Disk disk = {{0, 0, 0}, 1, {0, 0, 1}};
   for (const int sectors : {1, 2, 4, 8, 16}) {
     SectorReach reach(disk, sectors);

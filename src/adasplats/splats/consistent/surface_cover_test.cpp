@@ -317,7 +317,7 @@ TEST(SurfaceCover, LimitsHold) {
   EXPECT_EQ(count_chosen(cover.choose(executor)), 0U);
 }
 
-TEST(SurfaceCover, SeedsWithNoRadiusAreNotThere) {
+TEST(SurfaceCover, SeedsWithoutRadiusAreIgnored) {
   // They are not chosen, need no cover, and are no edge: the others are chosen as if alone.
   const Executor executor(1);
   std::vector<Disk> patch;

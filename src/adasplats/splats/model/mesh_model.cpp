@@ -67,7 +67,8 @@ void set_vertices(MeshModel& model, const std::filesystem::path& path, const Tab
   for (std::size_t i = 0; i < vertices.rows; ++i) {
     const Vec3f local = vec_cast<float>(world[i] - model.origin);
     if (!is_finite(local))
-      throw data_error({path, {}, {}}, "vertex " + std::to_string(i) + " is too far away");
+      throw data_error({path, {}, {}}, "vertex " + std::to_string(i) +
+                                           " is too far from the others for single precision");
     model.mesh.vertices.push_back(local);
   }
 }
@@ -97,7 +98,7 @@ MeshModel to_model(const std::filesystem::path& path, MeshTable table) {
   model.label_scheme = comment_value(table.vertices, kLabelsComment);
   model.method = comment_value(table.vertices, kMethodComment);
   model.crs = std::move(table.vertices.crs);
-  table.vertices = {};  // large meshes: not kept twice
+  table.vertices = {};  // frees it early: meshes can be large
   model.mesh.classes = face_classes(path, table.faces);
   const std::vector<std::uint32_t>& corners = table.triangle_vertices;
   model.mesh.triangles.reserve(corners.size() / 3);

@@ -52,7 +52,7 @@ TEST(MeshModel, RoundTripFarFromZeroWithoutClasses) {
   expect_equal(load_mesh(folder.path() / "m.ply"), model);
 }
 
-TEST(MeshModel, RoundTripOfNothing) {
+TEST(MeshModel, RoundTripOfAnEmptyMesh) {
   const TemporaryFolder folder;
   save_mesh(folder.path() / "m.ply", {});
   expect_equal(load_mesh(folder.path() / "m.ply"), {});
@@ -95,7 +95,7 @@ TEST(MeshModel, VerticesThatAreNotFinite) {
                [&] { load_mesh(folder.write("m.ply", text)); });
 }
 
-TEST(MeshModel, ObjIsTakenByItsContent) {
+TEST(MeshModel, ObjIsRecognisedByItsContent) {
   const TemporaryFolder folder;
   const auto path = folder.write("mesh.txt",
                                  "v 3000000 0 0\nv 3000001 0 0\nv 3000001 1 0\nv 3000000 1 "
@@ -127,7 +127,7 @@ TEST(MeshModel, GltfIsRecognisedByItsContent) {
   EXPECT_FALSE(is_mesh_file(folder.write("report.json", R"({"figures": [1, 2]})")));
 }
 
-TEST(MeshModel, OtherFilesAreNoMeshes) {
+TEST(MeshModel, OtherFilesAreRejected) {
   const TemporaryFolder folder;
   const std::string points =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "

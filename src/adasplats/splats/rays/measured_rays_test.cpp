@@ -106,7 +106,7 @@ std::uint64_t total(const std::vector<std::uint32_t>& counts) {
   return sum;
 }
 
-TEST(MeasuredRays, EachPointOnceAndNoneNearerThanTheLeastRange) {
+TEST(MeasuredRays, EachPointOnceAndNoneNearerThanTheMinRange) {
   const PointCloud cloud = random_cloud(70000);
   const MeasuredRays rays(cloud, 4, Executor(2));
   std::vector<int> times(cloud.size());
