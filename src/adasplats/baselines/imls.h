@@ -14,12 +14,12 @@
 
 namespace adasplats {
 
-/// What the implicit function of IMLS is evaluated with; defaults are those of the paper's section
-/// on experiments.
+/// Parameters of the implicit function of IMLS; the defaults are from the paper's section on
+/// experiments.
 struct ImlsOptions {
   double voxel_m = 0.07;
   double sigma_voxels = 2;       ///< of the Gaussian weight, in voxels
-  double truncation_voxels = 3;  ///< values only this near to a point; N_x are the points within
+  double truncation_voxels = 3;  ///< maximum distance from points; N_x are the points within it
 };
 
 template <class Visit>
@@ -33,7 +33,7 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
                 .exclusive_min = true},
         imls.voxel_m);
   visit(Setting{.name = "sigma",
-                .help = "Of the Gaussian weight, voxels",
+                .help = "Standard deviation of the Gaussian weight, voxels",
                 .key = "sigma_voxels",
                 .group = kGroup,
                 .min = 0,
@@ -41,7 +41,7 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
                 .exclusive_min = true},
         imls.sigma_voxels);
   visit(Setting{.name = "truncation",
-                .help = "Values only in voxels this near to a point, voxels",
+                .help = "Maximum distance of voxels from a point, voxels",
                 .key = "truncation_voxels",
                 .group = kGroup,
                 .min = 1,
@@ -49,10 +49,10 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
         imls.truncation_voxels);
 }
 
-/// What imls_surface is made from: the IMLS function of oriented points in the voxels near them,
-/// block by block. Paper eq. IMLS with the weight exp(-d^2 / sigma^2):
+/// The IMLS function of oriented points in the voxels near them, block by block; the input of
+/// imls_surface. Paper eq. IMLS with the weight exp(-d^2 / sigma^2):
 ///     IMLS(x) = sum_k n_k . (x - p_k) w_k(x)  /  sum_k w_k(x),  p_k within the truncation of x.
-/// Voxel (i, j, k) stands for the point x = voxel_m * (i, j, k) of the cloud's local frame. Values
+/// Voxel (i, j, k) is the point x = voxel_m * (i, j, k) in the cloud's local frame. Values
 /// are the same bytes for every number of threads.
 class ImlsField {
  public:
@@ -60,20 +60,20 @@ class ImlsField {
 
   struct Block {
     std::array<std::int32_t, 3> corner;  ///< lowest voxel, multiples of kSide
-    /// In m, positive on the side that normals point to; index (x * 8 + y) * 8 + z from `corner`.
+    /// m, positive on the side of the normals; index (x * 8 + y) * 8 + z from `corner`.
     std::array<float, kSide * kSide * kSide> values;
     /// Bit 8 y + z of word x: the voxel has a value.
     std::array<std::uint64_t, kSide> known;
   };
 
-  /// Points and as many unit normals; both must outlive the field.
+  /// `normals`: unit, one per point. Both spans must outlive the field.
   /// Errors: usage (options out of range, voxels too small for the extents).
   ImlsField(std::span<const Vec3f> points, std::span<const Vec3f> normals,
             const ImlsOptions& options, const Executor& executor);
 
   /// Number of blocks that may hold values.
   std::size_t size() const { return blocks_.size(); }
-  /// Evaluates one of them; may be called from several threads.
+  /// Evaluates one block; thread-safe.
   Block block(std::size_t i) const;
 
  private:
@@ -87,16 +87,16 @@ class ImlsField {
   std::span<const Vec3f> points_;
   std::span<const Vec3f> normals_;
   ImlsOptions options_;
-  std::vector<std::uint32_t> order_;   ///< points by block, in the order given within one
-  std::vector<Run> runs_;              ///< the points of each block that has some, by key
+  std::vector<std::uint32_t> order_;   ///< points by block, in input order within a block
+  std::vector<Run> runs_;              ///< the points of each block with points, by key
   std::vector<std::uint64_t> blocks_;  ///< keys of the blocks that may hold values, ascending
 };
 
-/// The surface of oriented points by Implicit Moving Least Squares as the paper's experiments have
-/// it: values in voxels near points (ImlsField) in a sparse grid, zero surface by OpenVDB. The
-/// surface ends where the values end: a cell with a corner that has none gives no faces. Faces are
-/// oriented as the normals; without classes. Extraction is dual contouring, not marching cubes:
-/// half as many vertices in the same cells. The same bytes for every number of threads.
+/// The surface of oriented points by Implicit Moving Least Squares, as in the paper's experiments:
+/// values in voxels near points (ImlsField) in a sparse grid, zero surface by OpenVDB. The surface
+/// ends with the values: a cell with a corner without a value has no faces. Faces are oriented like
+/// the normals and have no classes. Extraction is dual contouring, not marching cubes: half as many
+/// vertices in the same cells. The same bytes for every number of threads.
 /// Errors: unavailable (built without OpenVDB), usage (options).
 TriangleMesh imls_surface(std::span<const Vec3f> points, std::span<const Vec3f> normals,
                           const ImlsOptions& options, const Executor& executor);

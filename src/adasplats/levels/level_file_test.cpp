@@ -124,7 +124,7 @@ TEST(LevelFile, DamageIsOneError) {
   for (const std::size_t size : {std::size_t{1}, line - 1, line, line + 47, good.size() - 1})
     EXPECT_NE(says(good.substr(0, size)), "") << size;
   EXPECT_NE(says(good + "x"), "") << "longer than it says";
-  EXPECT_NE(says(std::string(1000, 'x')).find("no levels"), std::string::npos);
+  EXPECT_NE(says(std::string(1000, 'x')).find("not a file of levels"), std::string::npos);
   EXPECT_NE(with_word(0, 8, 0), "") << "a node that is its own child";
   EXPECT_NE(with_word(0, 8, 2), "") << "a node that is nobody's child";
   EXPECT_NE(with_word(0, 9, 9), "") << "more than eight children";
@@ -134,7 +134,7 @@ TEST(LevelFile, DamageIsOneError) {
   EXPECT_NE(with_word(0, 6, 0xbf800000U), "") << "a negative spacing";
 }
 
-TEST(LevelFile, AnotherVersionSaysWhichOne) {
+TEST(LevelFile, AnErrorNamesAnotherVersion) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   write_levels(file, small_tree(), kFacts);

@@ -23,7 +23,7 @@ constexpr std::uint64_t spread(std::uint64_t v) {
   return v;
 }
 
-/// For each of the turns that occur and one bit of x, y and z: next turn << 3 | bits of the key.
+/// Entry of a turn and one bit of x, y and z: next turn << 3 | bits of the key.
 constexpr std::size_t kTurns = 24;
 using LevelTable = std::array<std::array<std::uint16_t, 8>, kTurns>;
 
@@ -106,8 +106,8 @@ std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Cu
   });
   std::vector<std::uint32_t> order;
   executor.sort_keys(keys, order);
-  // Within a cell the curve says nothing: coordinates decide. Runs are short, or one long run of
-  // equal points (a degenerate cloud), which std::sort takes in n log n.
+  // Within a cell coordinates decide. Runs are short, or one long run of equal points (a degenerate
+  // cloud), which std::sort sorts in n log n.
   const auto by_coordinates = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3f p = points[a], q = points[b];
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);

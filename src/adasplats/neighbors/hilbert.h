@@ -17,17 +17,17 @@ namespace adasplats {
 
 inline constexpr int kHilbertBits = 21;  ///< of a cell's number along one axis
 
-/// Skilling's algorithm level by level, from the top bit down. What the levels above did to the
-/// axes of this one is a permutation with inversions. His last step inverts all three bits of the
-/// key at once; since the Gray code passes an inversion of the first axis on to all three, that is
-/// one more inversion of the first axis.
+/// Skilling's algorithm level by level, from the top bit down. The effect of the levels above on
+/// the axes of a level is a permutation with inversions. His last step inverts all three bits of
+/// the key at once; since the Gray code passes an inversion of the first axis on to all three, that
+/// is one more inversion of the first axis.
 struct HilbertTurn {
-  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< which coordinate stands on the i-th axis
+  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< the coordinate on the i-th axis
   std::array<bool, 3> inverted{};
 
   constexpr bool operator==(const HilbertTurn&) const = default;
 
-  /// Takes one bit of x, y and z (x is the highest of the three) and gives three bits of the key.
+  /// Converts one bit of x, y and z (x is the highest of the three) to three bits of the key.
   ADASPLATS_HD constexpr std::uint32_t step(std::uint32_t bits) {
     std::array<bool, 3> set{};
     for (std::size_t i = 0; i < 3; ++i) set[i] = ((bits >> (2 - axis[i]) & 1U) != 0) != inverted[i];
@@ -119,16 +119,16 @@ struct HilbertGrid {
   }
 };
 
-/// Position of a cell along the Hilbert curve of 2^21 cells a side (63 bits). Skilling 2004,
+/// Position of a cell on the Hilbert curve of 2^21 cells a side (63 bits). Skilling 2004,
 /// "Programming the Hilbert curve": transpose form, then the bits of the axes interleaved.
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
 /// The order of points along a Hilbert curve over their bounding cube: `order[i]` is the index of
 /// the i-th point. Points in the same cell of the curve (2^-21 of the cube's side) are ordered by
-/// x, y, z and then by index. Consecutive points are near each other, and runs of them fill
-/// compact boxes, which Morton order does not give.
+/// x, y, z and then by index. Consecutive points are close, and runs of them fill compact boxes,
+/// unlike in Morton order.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor);
-/// The same over another box, which need not hold them.
+/// The same for a curve over another box, which need not contain the points.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const CurveBox& box,
                                          const Executor& executor);
 

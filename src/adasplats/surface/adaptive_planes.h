@@ -16,22 +16,22 @@
 
 namespace adasplats {
 
-struct AdaptivePlaneOptions {  // docs/fidelity.md has where each number comes from
-  /// Neighbourhood sizes that are tried, ascending; the largest that is still a plane is taken.
-  /// Large ones average noise and registration errors out and are never one scan ring alone.
+struct AdaptivePlaneOptions {  // sources of the numbers: docs/fidelity.md
+  /// Neighbourhood sizes to try, ascending; the largest that is still a plane is used. Large ones
+  /// average out noise and registration errors and never consist of a single scan ring.
   std::array<std::uint32_t, 5> scales = {10, 20, 40, 80, 160};
-  double max_sigma_m = 0.025;  ///< standard deviation across a plane that noise explains
-  double trim_sigmas = 2.5;    ///< points farther from the plane are left out of the last fits
+  double max_sigma_m = 0.025;  ///< maximum standard deviation across a plane, as noise explains it
+  double trim_sigmas = 2.5;    ///< points farther from the plane are excluded from the last fits
   double min_sigma_m = 0.01;   ///< for the trimming
-  double max_shift_m = 0.1;    ///< a cell's mean moves to its plane by at most this
+  double max_shift_m = 0.1;    ///< maximum shift of a cell's mean onto its plane
 };
 
 /// The surface at a fused cell.
 struct LocalPlane {
   Vec3f center;            ///< the cell's mean, moved onto the plane
-  Vec3f normal;            ///< unit; its sign says nothing
-  float spacing_m;         ///< distance to the 7th nearest cell: how dense the cells are here
-  std::uint8_t scale = 0;  ///< which of the scales was taken
+  Vec3f normal;            ///< unit; its sign is arbitrary
+  float spacing_m;         ///< distance to the 7th nearest cell
+  std::uint8_t scale = 0;  ///< index of the scale used
 };
 
 /// A plane relative to the cell's mean.
@@ -46,7 +46,7 @@ struct ScaledFit {
   std::uint8_t scale = 0;
 };
 
-/// Sums over cells, each as often as it has points.
+/// Adds a cell with the weight of its number of points.
 ADASPLATS_HD inline void add_weighted(Moments& moments, Vec3f offset, double weight) {
   const Vec3d d = vec_cast<double>(offset);
   moments.count += weight;
@@ -63,9 +63,9 @@ ADASPLATS_HD inline PlaneFit plane_fit(const Moments& moments) {
   return {moments.sum / moments.count, local_shape(moments)};
 }
 
-/// The largest scale up to which the neighbourhood stays a plane; the smallest in any case.
-/// `neighborhood` has the neighbours of a cell, the nearest first: their number size(), and the
-/// offset(k) of one from the cell, with the number of its points weight(k).
+/// Fit at the largest scale up to which the neighbourhood is a plane, or at the smallest scale.
+/// `neighborhood` holds the neighbours of a cell, nearest first: their number size(), the offset(k)
+/// of each from the cell and its number of points weight(k).
 template <class Neighborhood>
 ADASPLATS_HD ScaledFit fit_at_best_scale(const Neighborhood& neighborhood,
                                          const AdaptivePlaneOptions& options) {
@@ -86,19 +86,19 @@ ADASPLATS_HD ScaledFit fit_at_best_scale(const Neighborhood& neighborhood,
   return best;
 }
 
-/// The same plane without the neighbours that are far from it.
+/// The plane refitted without outliers.
 template <class Neighborhood>
 ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const ScaledFit& start,
                                   const AdaptivePlaneOptions& options) {
   constexpr int kTrimRounds = 2;
-  constexpr int kMinTrimmed = 6;  // cells that a trimmed fit must keep
+  constexpr int kMinTrimmed = 6;  // minimum number of cells of a trimmed fit
   PlaneFit fit = start.fit;
   for (int round = 0; round < kTrimRounds; ++round) {
     const double bound_m =
         options.trim_sigmas * std::max(options.min_sigma_m, std::sqrt(fit.shape.lambda[2]));
     const Vec3d normal = vec_cast<double>(fit.shape.normal);
     Moments moments;
-    int kept = 0;  // moments.count holds their points
+    int kept = 0;  // cells; moments.count counts points
     for (std::uint32_t k = 0; k < start.used; ++k) {
       const Vec3f offset = neighborhood.offset(k);
       if (!(std::fabs(dot(normal, vec_cast<double>(offset) - fit.mean)) < bound_m)) continue;
@@ -129,9 +129,9 @@ ADASPLATS_HD LocalPlane local_plane(Vec3f position, const Neighborhood& neighbor
   return plane;
 }
 
-/// One plane a cell, by PCA with the cells' numbers of points as weights (so that a plane through
-/// cells is the plane through their points), at a scale of its own. `index` holds the cells in
-/// their order.
+/// One plane per cell, each at its own scale, by PCA weighted with the cells' numbers of points (so
+/// that a plane through cells is the plane through their points). `index` holds the cells in their
+/// order.
 std::vector<LocalPlane> adaptive_planes(const FusedPoints& cells, const PointIndex& index,
                                         const AdaptivePlaneOptions& options,
                                         const Executor& executor);

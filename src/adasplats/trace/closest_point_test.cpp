@@ -148,7 +148,7 @@ TEST(ClosestPoint, ManyEqualTriangles) {
   expect_brute_force(mesh, {{0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}, {5, 5, 5}});
 }
 
-TEST(ClosestPoint, NothingToFind) {
+TEST(ClosestPoint, MeshesWithoutTrianglesAndPointsOutOfRange) {
   const Executor executor(1);
   const TriangleMesh empty;
   const SurfaceDistance none =

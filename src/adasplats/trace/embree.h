@@ -12,7 +12,7 @@
 #include "adasplats/core/executor.h"
 
 #ifndef ADASPLATS_EMBREE_MAJOR
-#error "who includes this needs the version that CMake found"
+#error "the includer must define the Embree version that CMake found"
 #endif
 #if ADASPLATS_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -83,7 +83,8 @@ inline void intersect(RTCScene scene, QueryContext& context, const int* valid, R
 
 namespace adasplats {
 
-/// The first error that Embree reports; it reports from any thread and must not see an exception.
+/// Stores the first error that Embree reports; it reports on any thread and must not see
+/// exceptions.
 class ErrorLog {
  public:
   static void report(void* log, RTCError code, const char* text);
@@ -105,11 +106,11 @@ struct ReleaseScene {
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-/// A device that reports to `errors`, which must outlive it. Errors: software.
+/// Creates a device that reports to `errors`, which must outlive it. Errors: software.
 DeviceHandle start_embree(ErrorLog& errors);
 
-/// Builds a scene. Embree builds in the thread pool of its caller, so the call is made on the
-/// executor's. (The device's own setting `threads` would bound all of the process.)
+/// Builds a scene on the executor's threads: Embree uses the thread pool of its caller. (The device
+/// setting `threads` would limit the entire process.)
 void commit(RTCScene scene, const Executor& executor);
 
 }  // namespace adasplats

@@ -157,7 +157,7 @@ TEST(TiledTracer, TilesAreBuiltWhileOthersAreCast) {
   expect_same(hits_of(*tracer, 1), expected_hits(field, all, 1));
 }
 
-TEST(TiledTracer, WhatItWasNotToldIsAFault) {
+TEST(TiledTracer, MisuseThrowsLogicError) {
   const Field field = random_field();
   const Executor executor(1);
   const std::unique_ptr<TiledTracer> tracer = make_tiled_tracer(field.counts);

@@ -16,8 +16,8 @@
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
 
-// Only what follows is compiled for AVX2; headers above stay at the baseline, so that no shared
-// inline function of theirs is emitted with instructions an older CPU lacks.
+// Only what follows is compiled for AVX2; headers above stay at the baseline, so that none of their
+// shared inline functions is emitted with instructions that an older CPU lacks.
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,bmi,bmi2,popcnt")
 

@@ -19,7 +19,7 @@ class WideTracer final : public Tracer {
       : cast_(cast) {
     if (scene.primitive_count() >= Hit::kNone)
       throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
-                                       " primitives; at most 2^32 - 2 can be told apart");
+                                       " primitives; the maximum is 2^32 - 2");
     bvh_ = build_wide_bvh(scene, executor);
   }
 
@@ -37,7 +37,7 @@ class WideTracer final : public Tracer {
     const WideView tree = bvh_.view();
     executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
       const auto own = hits.subspan(begin * slots, (end - begin) * slots);
-      std::ranges::fill(own, Hit{});  // here: as many threads as there are, and in their caches
+      std::ranges::fill(own, Hit{});  // here: in parallel, and in each core's cache
       if (tree.root.kind() == WideRef::Kind::nothing) return;
       cast_(tree, rays.subspan(begin, end - begin), slots, own);
     });
@@ -74,8 +74,8 @@ std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const Executor&
 }
 
 std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& executor) {
-  // Measured by bench_trace: for disks our tree is faster in everything where there are vectors of
-  // 8 or 16; with triangles it is no better, and slower with AVX2.
+  // Measured by bench_trace: for disks our tree is faster with vectors of 8 or 16; with triangles
+  // it is not, and slower with AVX2.
   const bool has_vectors = detail::wide_versions().front().name != "portable";
   if (has_vectors && scene.triangle_count() == 0) return make_wide_tracer(scene, executor);
   return make_embree_tracer(scene, executor);

@@ -22,7 +22,7 @@ using network_test::pole_network;
 using network_test::pole_network_of_8_bits;
 using nlohmann::json;
 
-TEST(Network, IsReadAndRefusedWhereItIsWrong) {
+TEST(Network, ReadsFilesAndRejectsInvalidOnes) {
   const Network network = parse_network(pole_network().text(), "n");
   EXPECT_EQ(network.classes, (std::vector<std::string>{"road", "pole"}));
   Sha256 hash;
@@ -64,7 +64,7 @@ TEST(Network, IsReadAndRefusedWhereItIsWrong) {
   refused(wrong.text(), "beyond its end");
 }
 
-TEST(Network, WeightsOf8BitsAreReadAndRefusedWhereTheyAreWrong) {
+TEST(Network, ReadsWeightsOf8BitsAndRejectsInvalidOnes) {
   EXPECT_EQ(parse_network(pole_network_of_8_bits().text(), "n").weights[0].values,
             (std::vector<float>{1, 0, 0, 1}));
   NetworkText wrong = pole_network_of_8_bits();
@@ -79,7 +79,7 @@ TEST(Network, WeightsOf8BitsAreReadAndRefusedWhereTheyAreWrong) {
   expect_error(ErrorKind::data, {"n: ", "not finite"}, [&] { parse_network(wrong.text(), "n"); });
 }
 
-TEST(Network, ShapesOutOfRangeAreRefused) {
+TEST(Network, RejectsShapesOutOfRange) {
   const auto refused = [](const char* key, const json& value, const std::string& why) {
     NetworkText wrong = pole_network();
     (wrong.header["shape"].contains(key) ? wrong.header["shape"] : wrong.header)[key] = value;
@@ -95,7 +95,7 @@ TEST(Network, ShapesOutOfRangeAreRefused) {
   refused("kernel", {{0, 0, 1e300}}, "out of range");
   refused("features", json::array(), "out of range");
   refused("layers", json::array(), "no layers");
-  refused("classes", {"road", "road"}, "'road' is there twice");
+  refused("classes", {"road", "road"}, "'road' occurs twice");
   refused("classes", {"road", "pole", "tree"}, "do not fit");
   refused("classes", "road", "damaged");
   refused("values", 1, "out of range");

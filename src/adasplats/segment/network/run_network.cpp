@@ -18,7 +18,7 @@ namespace adasplats {
 #ifdef ADASPLATS_OPENBLAS
 
 void require_products() {
-  // Its own threads would share the cores with ours, and sum in an order that depends on them.
+  // Its own threads would compete with ours, and the order of sums would depend on them.
   static const bool kAlone = [] {
     openblas_set_num_threads(1);
     return true;
@@ -38,7 +38,8 @@ void multiply(const float* a, const float* b, float* c, std::size_t rows, std::s
 
 void require_products() {
   throw Error(ErrorKind::unavailable,
-              "networks need OpenBLAS, which this program was built without (libopenblas-dev)");
+              "this program was built without OpenBLAS, which networks need; install "
+              "libopenblas-dev and build again");
 }
 
 void multiply(const float*, const float*, float*, std::size_t, std::size_t, std::size_t) {
@@ -49,7 +50,7 @@ void multiply(const float*, const float*, float*, std::size_t, std::size_t, std:
 
 namespace {
 
-constexpr std::size_t kRows = 256;  // points of a product
+constexpr std::size_t kRows = 256;  // points per product
 constexpr std::size_t kMaxKernel = 64;
 
 /// Numbers of the points of a level, point by point.
@@ -131,7 +132,7 @@ class Run {
     return result;
   }
 
-  /// Neighbours of a layer's points and the level that these are of.
+  /// Neighbours of a layer's points, and their level.
   struct Reach {
     const NeighborTable* table;
     const PyramidLevel* supports;
@@ -161,7 +162,7 @@ class Run {
     return result;
   }
 
-  /// What each point of the kernel takes of the neighbours (KPConv, equations 2 and 3).
+  /// Adds the neighbours, weighted for each kernel point (KPConv, equations 2 and 3).
   void add_neighbors(Vec3f point, const Reach& reach, std::span<const std::uint32_t> neighbors,
                      const Values& input, float* weighted) const {
     const float cell_m = reach.supports->cell_m;
@@ -222,7 +223,7 @@ class Run {
   std::span<const PyramidLevel> levels_;
   const Executor& executor_;
   std::vector<Values> values_;
-  std::vector<std::size_t> last_use_;  ///< layer after which a value goes
+  std::vector<std::size_t> last_use_;  ///< layer after which a value is freed
 };
 
 }  // namespace

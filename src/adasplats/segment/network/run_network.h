@@ -15,31 +15,31 @@
 
 namespace adasplats {
 
-/// How much a point of a kernel (in cells) takes of a neighbour that lies `way` off (KPConv,
-/// equation 3); not positive: nothing.
+/// Weight of a neighbour at the offset `way` for a kernel point (in cells; KPConv, equation 3); no
+/// influence unless it is positive.
 ADASPLATS_HD inline float kernel_influence(Vec3f way, Vec3f kernel_point, float cell_m,
                                            float sigma_m) {
   const Vec3f off = way - cell_m * kernel_point;
   return 1 - std::sqrt(dot(off, off)) / sigma_m;
 }
 
-/// Leaky rectification: negative values are multiplied.
+/// Leaky rectifier: scales negative values.
 ADASPLATS_HD inline float activated(float value, float slope) {
   return value < 0 ? slope * value : value;
 }
 
-/// The logits of every point of the finest level, point by point, a number a class. `features`:
-/// likewise, a number a feature of the network. The same bits on any number of threads. Errors:
-/// unavailable (built without OpenBLAS).
+/// Computes the logits of every point of the finest level, point by point, one per class.
+/// `features`: point by point, one per feature of the network. The same bits on any number of
+/// threads. Errors: unavailable (built without OpenBLAS).
 std::vector<float> run_network(const Network& network, std::span<const PyramidLevel> levels,
                                std::vector<float> features, const Executor& executor);
 
-/// c = a * b, row by row: (rows, inner) by (inner, columns). May be called from several threads;
-/// each product is made by the thread that asks. Errors: unavailable (built without OpenBLAS).
+/// c = a * b, row by row: (rows, inner) by (inner, columns). Thread-safe; the calling thread
+/// computes the product. Errors: unavailable (built without OpenBLAS).
 void multiply(const float* a, const float* b, float* c, std::size_t rows, std::size_t inner,
               std::size_t columns);
 
-/// Errors: unavailable, saying what is missing and how to get it, where products cannot be made.
+/// Throws unavailable if the library was built without OpenBLAS.
 void require_products();
 
 }  // namespace adasplats
