@@ -220,7 +220,7 @@ class SegmentTest(ProgramTest):
         text = self.folder / "text.network"
         text.write_text("no network\n")
         self.run_bad(65, "segment", self.sequence, "-o", out, "--network", text,
-                     says=["text.network", "no network of adasplats"])
+                     says=["text.network", "not a network file of adasplats"])
         self.run_bad(66, "segment", self.folder / "gone", "-o", out, says=["gone", "no such file"])
         self.run_bad(66, "segment", self.sequence, "-o", out, "--network", self.folder / "none",
                      says=["none"])

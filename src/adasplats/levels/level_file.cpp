@@ -31,7 +31,7 @@ static_assert(std::endian::native == std::endian::little,
 constexpr const char* kFormat = "adasplats levels";
 constexpr int kLevelsVersion = 1;
 /// The header line is searched in chunks of doubling size, up to kLongestLine (400 bytes per part).
-constexpr std::size_t kFirstPiece = 4096;
+constexpr std::size_t kFirstChunk = 4096;
 constexpr std::size_t kLongestLine = std::size_t{1} << 30;
 
 Error damaged(const fs::path& path, const std::string& what) {
@@ -59,11 +59,11 @@ LevelPart part_of(const Json& json) {
 
 /// The first line of the file without its end.
 std::string first_line(InputFile& file) {
-  std::size_t bytes = kFirstPiece;
+  std::size_t bytes = kFirstChunk;
   for (;;) {
     bytes = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, file.remaining()));
-    const auto piece = file.peek(bytes);
-    const std::string_view text(reinterpret_cast<const char*>(piece.data()), piece.size());
+    const auto chunk = file.peek(bytes);
+    const std::string_view text(reinterpret_cast<const char*>(chunk.data()), chunk.size());
     if (const std::size_t end = text.find('\n'); end != std::string_view::npos) {
       std::string line(text.substr(0, end));
       file.skip(end + 1);

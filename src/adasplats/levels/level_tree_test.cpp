@@ -272,7 +272,7 @@ TEST(LevelTree, APlaneStaysAPlaneWithoutHolesOrOverhang) {
   }
 }
 
-// Oracle: the two planes that the disks lie on.
+// Oracle: the two planes of the disks.
 TEST(LevelTree, ACornerHasTwoFacingsAndAWallOne) {
   std::vector<Disk> corner = plane(10'000, 16, 3);
   for (std::size_t i = 0; i < corner.size(); ++i)

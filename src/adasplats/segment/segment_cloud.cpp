@@ -71,7 +71,7 @@ class Segmenter {
     return std::span(order_).subspan(begins_[tile], end - begins_[tile]);
   }
 
-  /// The points of the tile first, then those of its neighbours that lie in its margin.
+  /// The points of the tile first, then those of its neighbours in its margin.
   std::vector<std::uint32_t> points_of(std::size_t tile) const {
     const SegmentSquare square = tiles_[tile];
     const std::span<const std::uint32_t> core = core_of(tile);

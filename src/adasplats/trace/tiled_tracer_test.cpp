@@ -23,7 +23,7 @@ constexpr std::size_t kColumns = 5, kRows = 4;
 constexpr double kSide_m = 20;
 
 /// Disks of a field of tiles, tile after tile. Some tiles are empty, one has a single disk, and
-/// some disks stand twice: in neighbouring tiles, where the first must win.
+/// some disks occur twice: in neighbouring tiles, where the first must win.
 struct Field {
   std::vector<Disk> disks;
   std::vector<std::size_t> counts;

@@ -26,11 +26,11 @@ namespace {
 
 using GltfJson = nlohmann::json;
 
-/// Instances of one mesh may multiply a small file; no object of a scene needs more.
+/// Limits against small files that instantiate a mesh many times.
 constexpr std::size_t kMaxVertices = 50'000'000;
 constexpr std::size_t kMaxTriangles = 100'000'000;
 
-/// Any affine map, as nodes have it.
+/// An affine map, as nodes have.
 struct AffineMap {
   Mat3d linear;
   Vec3d offset;
@@ -68,7 +68,7 @@ Chunks split(const std::filesystem::path& path, std::string_view file) {
   while (offset < file.size()) {
     const auto length = word_at(file, offset), type = word_at(file, offset + 4);
     if (!length || !type || *length > file.size() - offset - kChunkHeaderBytes)
-      throw data_error({path, offset, {}}, "a chunk reaches beyond the end of the file");
+      throw data_error({path, offset, {}}, "a chunk extends beyond the end of the file");
     const std::string_view content = file.substr(offset + kChunkHeaderBytes, *length);
     if (*type == kJson && chunks.json.empty()) chunks.json = content;
     if (*type == kBinary && chunks.binary.empty()) chunks.binary = content;
@@ -77,12 +77,12 @@ Chunks split(const std::filesystem::path& path, std::string_view file) {
   return chunks;
 }
 
-/// RFC 3986: "%20" for a blank. Anything else behind a % stays as it is.
+/// Decodes percent escapes (RFC 3986), such as "%20"; leaves invalid ones unchanged.
 std::string without_percents(std::string_view uri) {
   const auto digit = [](char c) {
     constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
-    const std::size_t place = kDigits.find(c);
-    return place == std::string_view::npos ? -1 : static_cast<int>(place < 16 ? place : place - 6);
+    const std::size_t index = kDigits.find(c);
+    return index == std::string_view::npos ? -1 : static_cast<int>(index < 16 ? index : index - 6);
   };
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -94,19 +94,19 @@ std::string without_percents(std::string_view uri) {
   return text;
 }
 
-/// A JSON value that knows where in the document it is, for messages.
+/// A JSON value with its path in the document, for error messages.
 class GltfMember {
  public:
-  GltfMember(const std::filesystem::path& path, const GltfJson& value, std::string place)
-      : path_(&path), value_(&value), place_(std::move(place)) {}
+  GltfMember(const std::filesystem::path& path, const GltfJson& value, std::string pointer)
+      : path_(&path), value_(&value), pointer_(std::move(pointer)) {}
 
-  const std::string& place() const { return place_; }
+  const std::string& pointer() const { return pointer_; }
 
   Error error(const std::string& message) const {
-    return data_error({*path_, {}, {}}, place_ + ": " + message);
+    return data_error({*path_, {}, {}}, pointer_ + ": " + message);
   }
 
-  /// A member that must be there.
+  /// A required member. Errors: data.
   GltfMember operator[](const char* key) const {
     if (const std::optional<GltfMember> found = find(key)) return *found;
     throw error("'" + std::string(key) + "' is missing");
@@ -115,7 +115,7 @@ class GltfMember {
     if (!value_->is_object()) throw error("is not an object");
     const auto found = value_->find(key);
     if (found == value_->end()) return std::nullopt;
-    return GltfMember(*path_, *found, place_.empty() ? key : place_ + "." + key);
+    return GltfMember(*path_, *found, pointer_.empty() ? key : pointer_ + "." + key);
   }
 
   std::size_t size() const {
@@ -123,7 +123,7 @@ class GltfMember {
     return value_->size();
   }
   GltfMember at(std::size_t i) const {
-    return {*path_, (*value_)[i], place_ + "[" + std::to_string(i) + "]"};
+    return {*path_, (*value_)[i], pointer_ + "[" + std::to_string(i) + "]"};
   }
   std::vector<GltfMember> elements() const {
     std::vector<GltfMember> all;
@@ -132,13 +132,14 @@ class GltfMember {
   }
 
   std::uint64_t whole_number() const {
-    if (!value_->is_number_unsigned()) throw error("is not a whole number of 0 or more");
+    if (!value_->is_number_unsigned()) throw error("is not a whole number of at least 0");
     return value_->get<std::uint64_t>();
   }
   std::size_t index_below(std::size_t count) const {
     const std::uint64_t index = whole_number();
     if (index >= count)
-      throw error("found " + std::to_string(index) + ", but there are " + std::to_string(count));
+      throw error("found " + std::to_string(index) + ", but there are only " +
+                  std::to_string(count));
     return static_cast<std::size_t>(index);
   }
   double number() const {
@@ -148,20 +149,20 @@ class GltfMember {
   }
   template <std::size_t N>
   std::array<double, N> numbers() const {
-    if (size() != N) throw error("has not " + std::to_string(N) + " numbers");
+    if (size() != N) throw error("expected " + std::to_string(N) + " numbers");
     std::array<double, N> all;
     for (std::size_t i = 0; i < N; ++i) all[i] = at(i).number();
     return all;
   }
   const std::string& text() const {
-    if (!value_->is_string()) throw error("is not a text");
+    if (!value_->is_string()) throw error("is not a string");
     return value_->get_ref<const std::string&>();
   }
 
  private:
   const std::filesystem::path* path_;
   const GltfJson* value_;
-  std::string place_;
+  std::string pointer_;
 };
 
 std::uint64_t whole_number_or(const std::optional<GltfMember>& member, std::uint64_t otherwise) {
@@ -201,8 +202,8 @@ class GltfReader {
  public:
   explicit GltfReader(const std::filesystem::path& path)
       : path_(path), file_(read_file(path)), chunks_(split(path, file_)), json_(parse()) {
-    refuse_other_versions();
-    refuse_extensions();
+    require_version_2();
+    reject_extensions();
   }
 
   std::vector<std::filesystem::path> buffer_files() const {
@@ -234,14 +235,14 @@ class GltfReader {
     }
   }
   GltfMember root() const { return {path_, json_, ""}; }
-  /// An array of the document; empty where it has none.
+  /// The elements of an array of the document; empty if it has none.
   std::vector<GltfMember> all(const char* key) const {
     const std::optional<GltfMember> found = root().find(key);
     return found ? found->elements() : std::vector<GltfMember>();
   }
 
-  void refuse_other_versions() const;
-  void refuse_extensions() const;
+  void require_version_2() const;
+  void reject_extensions() const;
   std::filesystem::path file_beside(const GltfMember& uri) const;
   std::string read_buffer(const GltfMember& buffer, std::size_t number) const;
   std::string_view buffer_bytes(std::size_t number);
@@ -261,26 +262,26 @@ class GltfReader {
                           nodes_ = all("nodes");
   std::vector<std::optional<std::string>> buffer_contents_ =
       std::vector<std::optional<std::string>>(buffers_.size());
-  std::vector<bool> node_is_placed_ = std::vector<bool>(nodes_.size());
+  std::vector<bool> is_node_used_ = std::vector<bool>(nodes_.size());
   std::array<std::vector<double>, 3> coordinates_;
   std::vector<std::uint32_t> triangles_;
 };
 
-void GltfReader::refuse_other_versions() const {
+void GltfReader::require_version_2() const {
   const GltfMember version = root()["asset"]["version"];
   if (!version.text().starts_with("2."))
     throw version.error("found " + version.text().substr(0, 20) + ", expected 2.0");
 }
 
-/// Section 3.12: a file says which extensions it cannot be read without. Those of looks do no harm.
-void GltfReader::refuse_extensions() const {
+/// Section 3.12, required extensions. Those that affect only the appearance are ignored.
+void GltfReader::reject_extensions() const {
   for (const GltfMember& required : all("extensionsRequired")) {
     const std::string& name = required.text();
     const bool looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                        name.starts_with("EXT_texture_") || name == "KHR_lights_punctual";
     if (!looks)
       throw required.error("the extension " + name.substr(0, 60) +
-                           " is not read; export the mesh without it");
+                           " is not supported; export the mesh without it");
   }
 }
 
@@ -288,7 +289,8 @@ void GltfReader::refuse_extensions() const {
 std::string GltfReader::read_buffer(const GltfMember& buffer, std::size_t number) const {
   const std::optional<GltfMember> uri = buffer.find("uri");
   if (!uri) {
-    if (number > 0 || chunks_.binary.empty()) throw buffer.error("has neither uri nor chunk");
+    if (number > 0 || chunks_.binary.empty())
+      throw buffer.error("has no uri, and the file has no binary chunk for it");
     return std::string(chunks_.binary);
   }
   const std::string& text = uri->text();
@@ -298,7 +300,7 @@ std::string GltfReader::read_buffer(const GltfMember& buffer, std::size_t number
     auto bytes = begin == std::string::npos
                      ? std::nullopt
                      : from_base64(std::string_view(text).substr(begin + kCoding.size()));
-    if (!bytes) throw uri->error("is not data in base64");
+    if (!bytes) throw uri->error("is not base64 data");
     return std::move(*bytes);
   }
   return read_file(file_beside(*uri));
@@ -309,7 +311,7 @@ std::filesystem::path GltfReader::file_beside(const GltfMember& uri) const {
   const std::filesystem::path name = without_percents(text);
   if (name.empty() || name.is_absolute() || text.find("://") != std::string::npos ||
       text.find('\0') != std::string::npos)
-    throw uri.error("is not a file beside the document");
+    throw uri.error("is not a file relative to the document");
   return path_.parent_path() / name;
 }
 
@@ -328,7 +330,7 @@ std::string_view GltfReader::buffer_bytes(std::size_t number) {
 /// buffer.
 Elements GltfReader::elements(const GltfMember& accessor, std::string_view type,
                               std::size_t components) {
-  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not read");
+  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not supported");
   if (accessor["type"].text() != type)
     throw accessor["type"].error("found " + accessor["type"].text().substr(0, 20) + ", expected " +
                                  std::string(type));
@@ -345,23 +347,24 @@ Elements GltfReader::elements(const GltfMember& accessor, std::string_view type,
   const std::uint64_t view_begin = whole_number_or(view.find("byteOffset"), 0);
   const std::uint64_t view_bytes = view["byteLength"].whole_number();
   if (view_begin > buffer.size() || view_bytes > buffer.size() - view_begin)
-    throw view.error("reaches beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
+    throw view.error("extends beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
   const std::size_t element_bytes = components * component_bytes(result.component);
   const std::uint64_t stride = whole_number_or(view.find("byteStride"), element_bytes);
   const std::uint64_t begin = whole_number_or(accessor.find("byteOffset"), 0);
   const std::uint64_t count = accessor["count"].whole_number();
-  // Divided, not multiplied: nothing wraps.
+  // Division instead of multiplication: no overflow.
   const bool fits = begin <= view_bytes && stride >= element_bytes &&
                     (count == 0 || (view_bytes - begin >= element_bytes &&
                                     count - 1 <= (view_bytes - begin - element_bytes) / stride));
-  if (!fits) throw accessor.error("reaches beyond its view " + view.place());
+  if (!fits) throw accessor.error("extends beyond its view " + view.pointer());
   result.begin = buffer.data() + view_begin + begin;
   result.count = static_cast<std::size_t>(count);
   result.stride_bytes = static_cast<std::size_t>(stride);
   return result;
 }
 
-/// Section 3.5: the nodes of the default scene, or of the first; without scenes every mesh once.
+/// Section 3.5: adds the nodes of the default scene, else of the first; without scenes, every mesh
+/// once.
 void GltfReader::add_scene() {
   const std::vector<GltfMember> scenes = all("scenes");
   if (scenes.empty()) {
@@ -399,15 +402,15 @@ AffineMap local_transform(const GltfMember& node) {
   return map;
 }
 
-/// A node and all below it, without recursion: files decide how deep it goes.
+/// Adds a node and its descendants, without recursion, since files control the depth.
 void GltfReader::add_tree(std::size_t root_node) {
   std::vector<std::pair<std::size_t, AffineMap>> waiting = {{root_node, {}}};
   while (!waiting.empty()) {
     const auto [number, world_from_parent] = waiting.back();
     waiting.pop_back();
     const GltfMember& node = nodes_[number];
-    if (node_is_placed_[number]) throw node.error("stands in the scene twice");
-    node_is_placed_[number] = true;
+    if (is_node_used_[number]) throw node.error("occurs twice in the scene");
+    is_node_used_[number] = true;
     const AffineMap world_from_node = world_from_parent * local_transform(node);
     if (const std::optional<GltfMember> mesh = node.find("mesh"))
       add_mesh(meshes_[mesh->index_below(meshes_.size())], world_from_node);
@@ -424,9 +427,10 @@ void GltfReader::add_mesh(const GltfMember& mesh, const AffineMap& world_from_me
   for (const GltfMember& primitive : mesh["primitives"].elements()) {
     const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
     if (mode < kTriangles) continue;  // points and lines
-    if (mode > kFan) throw primitive.error("mode " + std::to_string(mode) + " is none of glTF");
+    if (mode > kFan)
+      throw primitive.error("mode " + std::to_string(mode) + " does not exist in glTF");
     const std::optional<GltfMember> position = primitive["attributes"].find("POSITION");
-    if (!position) continue;  // section 3.7.2.1: then it need not be drawn
+    if (!position) continue;  // section 3.7.2.1: may be skipped
     const Elements positions =
         elements(accessors_[position->index_below(accessors_.size())], "VEC3", 3);
     const std::size_t first_vertex = coordinates_[0].size();
@@ -465,7 +469,7 @@ void GltfReader::add_triangles(const GltfMember& primitive, std::size_t first_ve
   const std::uint64_t mode = whole_number_or(primitive.find("mode"), 4);
   const std::size_t step = mode == 4 ? 3 : 1;
   if (mode == 4 && corner_count % 3 != 0)
-    throw primitive.error(std::to_string(corner_count) + " corners are not whole triangles");
+    throw primitive.error(std::to_string(corner_count) + " corners, expected a multiple of 3");
   if (corner_count / step > kMaxTriangles - triangles_.size() / 3)
     throw primitive.error("the scene has more than " + std::to_string(kMaxTriangles) +
                           " triangles");

@@ -159,7 +159,8 @@ TEST(ConsistentModel, SurfacesThatLaterRaysPassThroughLeaveAlmostNoSplats) {
   EXPECT_TRUE(built.warnings.texts.empty());
 }
 
-/// A wall, seen up to its upper edge every 10 cm from 8 m away, by 12 scans that stand apart.
+/// A wall, seen up to its upper edge every 10 cm from 8 m away, by 12 scans from different
+/// positions.
 PointCloud scanned_wall(bool with_empty_beams) {
   PointCloud cloud;
   for (int scan = 0; scan < 12; ++scan) {
@@ -183,7 +184,7 @@ PointCloud scanned_wall(bool with_empty_beams) {
   return cloud;
 }
 
-// Nothing was measured above the edge, so nothing but empty beams says how far disks may reach.
+// Nothing was measured above the edge, so only empty beams limit the disks.
 TEST(ConsistentModel, BeamsWithoutReturnEndDisksAtEdges) {
   const auto overhang_m2 = [](bool with_empty_beams) {
     const Built built = build(scanned_wall(with_empty_beams));
@@ -552,7 +553,7 @@ PointCloud ordered(const PointCloud& cloud) {
 }
 
 TEST(ConsistentDisks, CellsBelongToTheirDisks) {
-  // Every disk stands on its cell: off its mean by the shifts to the plane and to the rays at most.
+  // Every disk is at its cell: off its mean by at most the shifts to the plane and to the rays.
   const PointCloud cloud = ordered(thin_room());
   const ConsistentOptions options = quick_recipe();
   const Made made = disks_of(cloud, options);

@@ -23,11 +23,11 @@ constexpr double kMinNear = 0.96, kDoubtedNear = 1.03;
 constexpr double kMinFar = 0.97, kDoubtedFar = 1.06;
 
 /// Joins parts with the next ones until each has enough contradicted seeds.
-std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
+std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> scene_parts) {
   std::vector<MovedEvidence> parts;
   MovedEvidence next;
-  for (const MovedEvidence& piece : pieces) {
-    next += piece;
+  for (const MovedEvidence& part : scene_parts) {
+    next += part;
     if (next.given.contradicted < kEnoughOfPart) continue;
     parts.push_back(next);
     next = {};
@@ -64,14 +64,14 @@ double OriginCheck::share() const {
   return seeds == 0 ? 0 : static_cast<double>(contradicted) / static_cast<double>(seeds);
 }
 
-OriginCheck origin_check(std::span<const MovedEvidence> pieces) {
+OriginCheck origin_check(std::span<const MovedEvidence> scene_parts) {
   OriginCheck check;
-  for (const MovedEvidence& piece : pieces) {
-    check.seeds += piece.given.crossed;
-    check.contradicted += piece.given.contradicted;
+  for (const MovedEvidence& part : scene_parts) {
+    check.seeds += part.given.crossed;
+    check.contradicted += part.given.contradicted;
   }
   std::uint64_t near = 0, far = 0;
-  for (const MovedEvidence& part : parts_of(pieces)) {
+  for (const MovedEvidence& part : parts_of(scene_parts)) {
     const std::span moved(part.moved);
     near += min_contradicted(moved.first(kNearMoves));
     far += min_contradicted(moved.subspan(kNearMoves));

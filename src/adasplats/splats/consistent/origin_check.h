@@ -68,7 +68,7 @@ struct OriginCheck {
 
 /// Evaluates parts that are neighbours in their order. Parts with too few contradicted seeds are
 /// joined with the next ones.
-OriginCheck origin_check(std::span<const MovedEvidence> pieces);
+OriginCheck origin_check(std::span<const MovedEvidence> scene_parts);
 
 /// Error text if the sensor positions cannot be correct; else empty.
 std::string origin_objection(const OriginCheck& check);

@@ -68,7 +68,7 @@ TEST(BalancedRadius, KnownAnswers) {
   EXPECT_EQ(balanced(all_rings(0xfffffffeU), all_rings(0xffffffffU)), 0.0F);
 }
 
-/// Oracle for random counts: the balance of every radius, summed anew.
+/// Oracle for random counts: the balance of every radius, summed directly.
 TEST(BalancedRadius, IsTheBestOfAllRadii) {
   for (std::size_t round = 0; round < 2000; ++round) {
     Random random(1, 0, round);
@@ -247,8 +247,8 @@ void settle_disks(std::span<Disk> disks, const MeasuredRays& rays, const SettleO
 }
 
 TEST(SettleDisks, APlaneThatIsOffComesBack) {
-  // Oracle: the floor. Rays that say 3 cm, and as many as three that say 0: some 100 rays a disk
-  // leave 1 mm; the disks overlap, so that some have half of it.
+  // Oracle: the floor. Rays with an offset of 3 cm, and a prior of three rays with 0: some 100 rays
+  // per disk leave 1 mm; the disks overlap, so that some have half of it.
   for (const float height_m : {0.03F, -0.03F, 0.0F}) {
     Floor floor(40000, height_m);
     const Executor executor(2);
@@ -267,7 +267,8 @@ TEST(SettleDisks, APlaneThatIsOffComesBack) {
 }
 
 TEST(SettleDisks, PriorCountsAsRays) {
-  // One disk, n vertical rays that all say 3 cm: it moves by 3 cm * n / (n + 3), from 4 rays on.
+  // One disk, n vertical rays that all end 3 cm away: it moves by 3 cm * n / (n + 3), from 4 rays
+  // on.
   for (const std::size_t n : {0, 1, 3, 4, 10, 27}) {
     PointCloud cloud;
     for (std::size_t i = 0; i < n; ++i) {
@@ -286,7 +287,7 @@ TEST(SettleDisks, PriorCountsAsRays) {
 }
 
 TEST(SettleDisks, LimitsTheShiftAndIgnoresRaysOutOfReach) {
-  // 0.3 m off: within reach, limited to 0.1 m. 0.5 m off: the rays speak of something else.
+  // 0.3 m off: within reach, limited to 0.1 m. 0.5 m off: out of reach.
   for (const float height_m : {0.3F, -0.3F, 0.5F, -0.5F}) {
     Floor floor(4000, height_m);
     const Executor executor(1);

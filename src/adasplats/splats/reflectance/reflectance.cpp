@@ -25,7 +25,7 @@ float IntensityResponse::gain(float range_m, float cos_incidence) const {
          table_value(cos_incidences, incidence_gains, cos_incidence);
 }
 
-void solve_table(std::span<const std::int64_t> diagonal, std::span<const std::int64_t> beside,
+void solve_table(std::span<const std::int64_t> diagonal, std::span<const std::int64_t> off_diagonal,
                  std::span<const std::int64_t> right, std::size_t unit, std::span<float> values) {
   const std::size_t nodes = values.size();
   std::vector<double> d(diagonal.begin(), diagonal.end()), x(right.begin(), right.end());
@@ -35,7 +35,7 @@ void solve_table(std::span<const std::int64_t> diagonal, std::span<const std::in
   if (!(sum > 0)) return;
   // Chosen: less leaves nodes without rays undetermined, more flattens the table.
   const double pull = 2e-4 * sum;
-  const auto link = [&](std::size_t k) { return static_cast<double>(beside[k]) - pull; };
+  const auto link = [&](std::size_t k) { return static_cast<double>(off_diagonal[k]) - pull; };
   for (std::size_t k = 0; k < nodes; ++k) d[k] += (k == 0 || k + 1 == nodes) ? pull : 2 * pull;
   for (std::size_t k = 1; k < nodes; ++k) {
     const double factor = link(k - 1) / d[k - 1];

@@ -172,7 +172,7 @@ TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
   std::vector<Disk> disks = ground();
   disks.push_back({{50, 50, 0}, 0.5F, {0, 0, 1}});
   EXPECT_EQ(measure(disks, measured_ground(20000)).values.back(), 0.5F);
-  // Nothing is known of it: what is usual stands in.
+  // No information: the mean of the model is used.
   const float usual = measure(disks, measured_ground(20000), 2, kNan).values.back();
   EXPECT_GT(usual, 0.2F);
   EXPECT_LT(usual, 0.6F);

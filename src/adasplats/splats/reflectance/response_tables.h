@@ -96,13 +96,13 @@ ADASPLATS_HD inline std::int64_t whole_units(double share) {
 template <std::size_t N>
 struct TableSums {
   std::array<std::int64_t, N> diagonal = {};
-  std::array<std::int64_t, N> beside = {};  ///< off-diagonal of nodes k and k + 1
+  std::array<std::int64_t, N> off_diagonal = {};  ///< off-diagonal of nodes k and k + 1
   std::array<std::int64_t, N> right = {};
 
   ADASPLATS_HD TableSums& operator+=(const TableSums& other) {
     for (std::size_t k = 0; k < N; ++k) {
       diagonal[k] += other.diagonal[k];
-      beside[k] += other.beside[k];
+      off_diagonal[k] += other.off_diagonal[k];
       right[k] += other.right[k];
     }
     return *this;
@@ -114,7 +114,7 @@ struct TableSums {
     const double low = (1 - upper) * factor, high = upper * factor;
     diagonal[at.below] += whole_units(low * low);
     diagonal[at.below + 1] += whole_units(high * high);
-    beside[at.below] += whole_units(low * high);
+    off_diagonal[at.below] += whole_units(low * high);
     right[at.below] += whole_units(low * intensity);
     right[at.below + 1] += whole_units(high * intensity);
   }
@@ -123,13 +123,13 @@ struct TableSums {
 /// Solves for the values at the nodes, scaled to 1 at node `unit`. A weak coupling of neighbours
 /// gives a node without rays the value of its neighbour. Without rays, or with 0 at `unit`: 1
 /// everywhere. All spans have the same length.
-void solve_table(std::span<const std::int64_t> diagonal, std::span<const std::int64_t> beside,
+void solve_table(std::span<const std::int64_t> diagonal, std::span<const std::int64_t> off_diagonal,
                  std::span<const std::int64_t> right, std::size_t unit, std::span<float> values);
 
 template <std::size_t N>
 std::array<float, N> solved(const TableSums<N>& sums, std::size_t unit) {
   std::array<float, N> values;
-  solve_table(sums.diagonal, sums.beside, sums.right, unit, values);
+  solve_table(sums.diagonal, sums.off_diagonal, sums.right, unit, values);
   return values;
 }
 
