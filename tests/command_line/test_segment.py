@@ -213,7 +213,7 @@ class SegmentTest(ProgramTest):
             network.write_bytes(network_file({**header, **changes}, data))
             self.run_bad(65, *command, says=["a.network", says])
         network.write_bytes(network_file(header, good)[:40])
-        self.run_bad(65, *command, says=["a.network", "cut off"])
+        self.run_bad(65, *command, says=["a.network", "truncated"])
 
     def test_bad_input(self):
         out = self.folder / "out"
