@@ -14,11 +14,6 @@ class BruteForceTracer final : public Tracer {
 
   std::string_view name() const override { return "brute force"; }
 
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    nearest_hits(rays, 1, hits, executor);
-  }
-
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
     clear_hits(rays, depth, hits);

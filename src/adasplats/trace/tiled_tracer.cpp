@@ -11,7 +11,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/sparse_array.h"
-#include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/wide_bvh.h"
 #include "adasplats/trace/wide_kernel.h"
 
@@ -154,21 +153,9 @@ class WideTiledTracer final : public TiledTracer {
     if (!roots.empty()) shown_.root = add_top(roots, next).ref;
   }
 
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    nearest_hits(rays, 1, hits, executor);
-  }
-
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
-    const auto slots = static_cast<std::size_t>(depth);
-    require_slots(rays, depth, hits);
-    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-      const auto own = hits.subspan(begin * slots, (end - begin) * slots);
-      std::ranges::fill(own, Hit{});
-      if (shown_.root.kind() == WideRef::Kind::nothing) return;
-      cast_(shown_, rays.subspan(begin, end - begin), slots, own);
-    });
+    detail::cast_in_chunks(cast_, shown_, rays, depth, hits, executor);
   }
 
  private:

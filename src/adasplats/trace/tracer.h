@@ -26,7 +26,9 @@ class Tracer {
   /// direction, hits nothing; a t_min below 0 counts as 0. Ties go to the smaller primitive index.
   /// Throws std::logic_error if the numbers of rays and hits differ.
   virtual void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-                       const Executor& executor) const = 0;
+                       const Executor& executor) const {
+    nearest_hits(rays, 1, hits, executor);
+  }
 
   /// The nearest `depth` hits of every ray in ascending order: hits[i * depth + k]; entries after
   /// the last hit are Hit{} (not valid()).

@@ -33,6 +33,10 @@ struct WideVersion {
 /// The versions that this machine can run, the fastest first. All give the same bits.
 std::vector<WideVersion> wide_versions();
 
+/// Tracer::nearest_hits() for a tree.
+void cast_in_chunks(WideCast cast, const WideView& tree, std::span<const Ray> rays, int depth,
+                    std::span<Hit> hits, const Executor& executor);
+
 /// make_wide_tracer with the given version.
 std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const WideVersion& version,
                                          const Executor& executor);

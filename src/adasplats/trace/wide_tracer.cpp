@@ -25,22 +25,9 @@ class WideTracer final : public Tracer {
 
   std::string_view name() const override { return "wide"; }
 
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    nearest_hits(rays, 1, hits, executor);
-  }
-
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
-    const auto slots = static_cast<std::size_t>(depth);
-    require_slots(rays, depth, hits);
-    const WideView tree = bvh_.view();
-    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-      const auto own = hits.subspan(begin * slots, (end - begin) * slots);
-      std::ranges::fill(own, Hit{});  // here: in parallel, and in each core's cache
-      if (tree.root.kind() == WideRef::Kind::nothing) return;
-      cast_(tree, rays.subspan(begin, end - begin), slots, own);
-    });
+    detail::cast_in_chunks(cast_, bvh_.view(), rays, depth, hits, executor);
   }
 
  private:
@@ -49,6 +36,18 @@ class WideTracer final : public Tracer {
 };
 
 }  // namespace
+
+void detail::cast_in_chunks(WideCast cast, const WideView& tree, std::span<const Ray> rays,
+                            int depth, std::span<Hit> hits, const Executor& executor) {
+  const auto slots = static_cast<std::size_t>(depth);
+  require_slots(rays, depth, hits);
+  executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    const auto own = hits.subspan(begin * slots, (end - begin) * slots);
+    std::ranges::fill(own, Hit{});  // here: in parallel, and in each core's cache
+    if (tree.root.kind() == WideRef::Kind::nothing) return;
+    cast(tree, rays.subspan(begin, end - begin), slots, own);
+  });
+}
 
 std::vector<detail::WideVersion> detail::wide_versions() {
   std::vector<WideVersion> versions;
