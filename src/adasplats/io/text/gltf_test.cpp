@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
