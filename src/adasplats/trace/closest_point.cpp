@@ -33,7 +33,7 @@ struct Search {
   std::uint32_t triangle = SurfaceDistance::kNone;
 };
 
-/// Called for triangles whose box the query's sphere touches; true where the sphere shrank.
+/// Called for triangles with a box that touches the query's sphere; true if the sphere shrank.
 bool offer(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const std::uint32_t triangle = arguments->primID;

@@ -81,7 +81,7 @@ inline void store(std::uint32_t* p, U16 v) {
   _mm256_store_si256(reinterpret_cast<__m256i*>(p + 8), v.b);
 }
 inline unsigned at_least(__m256i x, __m256i y) {
-  // There is no unsigned comparison: x >= y where max(x, y) is x.
+  // There is no unsigned comparison: x >= y if max(x, y) is x.
   return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_max_epu32(x, y), x)));
 }
 inline unsigned less(U16 x, U16 y) {

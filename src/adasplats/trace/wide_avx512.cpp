@@ -65,7 +65,7 @@ inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 f
   return static_cast<unsigned>(__builtin_popcount(kept));
 }
 
-#define ADASPLATS_WIDE_PUSH  // the one above
+#define ADASPLATS_WIDE_PUSH  // push() is defined above
 #include "adasplats/trace/wide_kernel.inc"
 #undef ADASPLATS_WIDE_PUSH
 

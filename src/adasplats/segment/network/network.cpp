@@ -43,7 +43,7 @@ const std::vector<std::string_view> kFeatures = {"one", "height", "intensity", "
 template <class T>
 T word_in(const std::vector<std::string_view>& words, const std::string& word) {
   const auto found = std::ranges::find(words, word);
-  if (found == words.end()) throw std::runtime_error("'" + word + "' is not known");
+  if (found == words.end()) throw std::runtime_error("'" + word + "' is unknown");
   return static_cast<T>(found - words.begin());
 }
 
@@ -102,7 +102,7 @@ Weights weights_of(const json& object, std::string_view data) {
   const auto offset = object.at("offset").get<std::size_t>();
   const int bits = object.value("bits", 16);
   if (bits != 16 && bits != 8)
-    throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not known");
+    throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not supported");
   const std::size_t count = weights.rows * weights.columns;
   const std::size_t bytes = bits == 16 ? 2 * count : count + 4 * weights.columns;
   if (weights.rows > kMaxRows || weights.columns > kMaxRows || offset > data.size() ||

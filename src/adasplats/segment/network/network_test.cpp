@@ -48,7 +48,7 @@ TEST(Network, ReadsFilesAndRejectsInvalidOnes) {
         {"weight", 1, "do not match"},
         {"level", 1, "do not match"},
         {"level", 5, "level 5 does not exist"},
-        {"kind", "dense", "'dense' is not known"}}) {
+        {"kind", "dense", "'dense' is unknown"}}) {
     wrong = pole_network();
     wrong.header["layers"][0][key] = value;
     rejected(wrong.text(), why);

@@ -23,20 +23,20 @@ namespace adasplats {
 // and no ray passes through it and returns from a point behind it. The method makes a small disk
 // (a seed) from every cell of fused points and keeps what the rays support.
 //
-// The steps, in the order of consistent_disks(). What a step does with one element is in the file
-// named last (below src/adasplats/); consistent_steps_on.h runs it on all elements, on CPU or GPU.
-//   fuse             average the points of each grid cell           surface/fused_points.h
-//   fit_seeds        fit planes, make a disk (seed) of each cell    surface/adaptive_planes.h,
-//                                                                   splats/consistent/seed_disk.h
-//   check_origins    compare the sensor positions with shifted ones
-//   splats/consistent/origin_check.h order_rays       sort the measured rays
-//   splats/rays/measured_rays.h balance_seeds    shrink or remove seeds that rays pass through
-//   splats/rays/disk_evidence.h cover            grow each seed over its coplanar neighbours
-//   splats/consistent/seed_growth.h limit_overhangs  shrink grown disks that rays pass through
-//   splats/rays/disk_evidence.h choose           select few large disks that cover all seeds
-//   splats/consistent/surface_cover.h settle           move disks along their normals to the ray
-//   ends splats/rays/disk_shift.h fill_gaps        restore seeds where rays miss all disks
-//   splats/consistent/element_steps.h
+// The steps, in the order of consistent_disks(). The file in brackets has the work for one element
+// (below src/adasplats/); consistent_steps_on.h runs it on all elements, on the CPU or a GPU.
+// - fuse: average the points of each grid cell [surface/fused_points.h]
+// - fit_seeds: fit planes to the cells [surface/adaptive_planes.h] and make a disk, the seed, of
+//   each [splats/consistent/seed_disk.h]
+// - check_origins: compare the sensor positions with shifted ones
+//   [splats/consistent/origin_check.h]
+// - order_rays: sort the measured rays [splats/rays/measured_ray.h]
+// - balance_seeds: shrink or remove seeds that rays pass through [splats/rays/disk_evidence.h]
+// - cover: grow each seed over its coplanar neighbours [splats/consistent/seed_growth.h]
+// - limit_overhangs: shrink grown disks that rays pass through [splats/rays/disk_evidence.h]
+// - choose: select few large disks that cover all seeds [splats/consistent/surface_cover.h]
+// - settle: move disks along their normals to the ends of the rays [splats/rays/disk_shift.h]
+// - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
 // Without sensor positions the steps with rays are skipped, and disks stay smaller.
 
 /// Options of the consistent method; docs/fidelity.md gives the source of each number.

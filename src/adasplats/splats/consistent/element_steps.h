@@ -20,8 +20,8 @@
 
 namespace adasplats {
 
-// What the steps of the consistent method do with one element, in the steps' order. Each reads and
-// writes only what belongs to element `i`, so a loop on any device runs it (for_each of a backend).
+// The work of the consistent method for one element, in the order of the steps. Each functor reads
+// and writes only data of element `i`, so any loop may run it (for_each of a backend).
 
 /// spacing_unit_m() of every cell.
 struct FindSpacingUnit {

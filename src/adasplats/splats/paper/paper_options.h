@@ -31,7 +31,7 @@ struct GroupScale {
   std::array<double, 3> factors() const { return {neighbors, radius, error}; }
 };
 
-/// What the second generation starts from, besides the new points. The paper's text describes the
+/// Input of the second generation, in addition to the new points. The paper's text describes the
 /// points, its figures (fewer points and splats than before) indicate the splats' centers.
 enum class ResampleBase : std::uint8_t {
   points,   ///< all points
@@ -104,7 +104,7 @@ void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
               .max = 100},
       paper.resample_density);
   visit(Setting{.name = "resample_base",
-                .help = "What the second generation starts from, with the new points",
+                .help = "Input of the second generation, in addition to the new points",
                 .group = kCleaning},
         paper.resample_base);
 }
