@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
     total.begin("total");
     steps_timer.begin("start");
     const auto steps =
-        on_gpu ? gpu::make_cuda_consistent_steps(0, executor) : make_cpu_consistent_steps(executor);
+        on_gpu ? gpu::make_cuda_consistent_steps(0) : make_cpu_consistent_steps(executor);
     steps_timer.begin("order");
     steps->load(std::move(copy), {});
     consistent_disks(*steps, !cloud.sensor_positions.empty(), {},

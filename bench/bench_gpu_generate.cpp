@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
   choice.method = value_of(argument(2, "semantic"), kSplatMethods);
   choice.paper.resample = argument(3, "resample") != "no-resample";
   options.recipe = choice.recipe();
-  const auto engine = make_cuda_model_engine(0, executor);
+  const auto engine = make_cuda_model_engine(0);
   std::vector<Run> runs;
   for (int i = 0; i < std::max(1, std::atoi(argument(4, "3").c_str())); ++i) {
     runs.push_back(timed_build(cloud, options, executor, engine.get()));

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "adasplats/jobs/output/output_check.h"
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "crs.h"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "bindings.h"
 

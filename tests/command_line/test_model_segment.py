@@ -106,7 +106,7 @@ class ModelSegmentTest(ProgramTest):
                      says=["--remove moving", "--remove movable"])
         self.run_bad(64, *model, "--method", "semantic", says=["needs labels", "--segment"])
         self.run_bad(66, *model, "--segment", "--network", self.folder / "none", says=["none"])
-        self.run_bad(65, *model, "--segment", "--network", self.cloud, says=["no network"])
+        self.run_bad(65, *model, "--segment", "--network", self.cloud, says=["not a network"])
         odd = self.folder / "odd.network"
         write_network(odd, classes=("road", "dragon"))
         self.run_bad(65, *model, "--segment", "--network", odd,

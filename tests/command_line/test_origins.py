@@ -84,7 +84,7 @@ class WrongOrigins(ProgramTest):
     def test_in_one_piece(self):
         output = self.folder / "m.ply"
         self.run_bad(65, "model", self.mirrored, *self.QUIET, "-o", output,
-                     says=["sensor positions are not those of the points", "--trust-origins"])
+                     says=["sensor positions do not match the points", "--trust-origins"])
         self.assertFalse(output.exists())
         report = self.report("model", self.right, *self.QUIET, "-o", output)
         check = report["origin_check"]
@@ -99,7 +99,7 @@ class WrongOrigins(ProgramTest):
     def test_in_tiles(self):
         city = self.folder / "city"
         self.run_bad(65, "model", self.mirrored, *self.QUIET, "--tile", "64", "-o", city,
-                     says=["sensor positions are not those of the points", "--trust-origins"])
+                     says=["sensor positions do not match the points", "--trust-origins"])
         self.assertFalse(city.exists())
         self.assertFalse((self.folder / ".city.unfinished").exists())
         report = self.report("model", self.right, *self.QUIET, "--tile", "64", "-o",

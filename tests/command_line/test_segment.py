@@ -213,14 +213,14 @@ class SegmentTest(ProgramTest):
             network.write_bytes(network_file({**header, **changes}, data))
             self.run_bad(65, *command, says=["a.network", says])
         network.write_bytes(network_file(header, good)[:40])
-        self.run_bad(65, *command, says=["a.network", "cut off"])
+        self.run_bad(65, *command, says=["a.network", "truncated"])
 
     def test_bad_input(self):
         out = self.folder / "out"
         text = self.folder / "text.network"
         text.write_text("no network\n")
         self.run_bad(65, "segment", self.sequence, "-o", out, "--network", text,
-                     says=["text.network", "no network of adasplats"])
+                     says=["text.network", "not a network file of adasplats"])
         self.run_bad(66, "segment", self.folder / "gone", "-o", out, says=["gone", "no such file"])
         self.run_bad(66, "segment", self.sequence, "-o", out, "--network", self.folder / "none",
                      says=["none"])

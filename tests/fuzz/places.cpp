@@ -6,11 +6,11 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/city/layer_facts.h"
+#include "adasplats/io/text/gltf.h"
 #include "adasplats/levels/level_file.h"
-#include "adasplats/scene/gltf.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/segment/network/network.h"
 #include "adasplats/simulate/world/world_file.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "fuzz_readers.h"
 

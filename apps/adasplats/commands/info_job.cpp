@@ -23,7 +23,7 @@
 #include "adasplats/jobs/model/make_model.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/scan_range.h"
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "cli/text_table.h"
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/baselines/imls.h"
 
+#include "adasplats/core/error.h"
 #ifdef ADASPLATS_HAVE_OPENVDB
 
 #include <openvdb/Grid.h>
@@ -66,7 +67,7 @@ SparseField sparse_field(const ImlsField& field, const ImlsOptions& options,
   return sparse;
 }
 
-/// Which voxels of a leaf are on, and of those next to them upward.
+/// The active voxels of a leaf and of its upper neighbours.
 template <class Tree>
 class UpwardBits {
  public:
@@ -98,7 +99,7 @@ class UpwardBits {
   std::array<const typename Tree::LeafNodeType*, 8> leaves_{};
 };
 
-/// Cells, by their lowest corner, of which all eight corners have values.
+/// Cells, by their lowest corner, with values at all eight corners.
 openvdb::MaskTree whole_cells(const openvdb::FloatTree& tree, const Executor& executor) {
   std::vector<const Leaf*> leaves;
   tree.getNodes(leaves);
@@ -134,9 +135,9 @@ bool is_edge_within(const Accessor& whole, openvdb::Coord voxel, int axis) {
   return true;
 }
 
-/// The voxels whose upward edges OpenVDB shall look at: all of those that the surface crosses have
-/// whole cells around them. OpenVDB makes a face for each edge that changes sides, with a vertex in
-/// each of the four cells; where values end, it would take `outside` for a value.
+/// The voxels with upward edges that OpenVDB may use: the four cells around each crossed edge are
+/// complete. OpenVDB makes a face for each edge with a sign change, with a vertex in each of the
+/// four cells; at the end of the values it would use `outside` as a value.
 openvdb::BoolGrid::Ptr surface_mask(const SparseField& field, const Executor& executor) {
   using Flags = openvdb::BoolTree::LeafNodeType;
   const openvdb::MaskTree whole = whole_cells(field.values->tree(), executor);
@@ -171,7 +172,7 @@ openvdb::BoolGrid::Ptr surface_mask(const SparseField& field, const Executor& ex
   return mask;
 }
 
-/// OpenVDB's points and polygons as triangles over the points that these use, in their order.
+/// Converts OpenVDB's polygons to triangles, and keeps the points that they use.
 TriangleMesh to_triangles(openvdb::tools::VolumeToMesh& extracted, double voxel_m) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> new_index(extracted.pointListSize(), kUnused);
@@ -192,7 +193,7 @@ TriangleMesh to_triangles(openvdb::tools::VolumeToMesh& extracted, double voxel_
       const openvdb::Vec4I& q = polygons.quad(k);
       const std::array<std::uint32_t, 4> v = {vertex(q[0]), vertex(q[1]), vertex(q[2]),
                                               vertex(q[3])};
-      // OpenVDB goes round clockwise.
+      // OpenVDB's faces are clockwise.
       mesh.triangles.push_back({v[0], v[2], v[1]});
       mesh.triangles.push_back({v[0], v[3], v[2]});
     }
@@ -214,12 +215,25 @@ TriangleMesh imls_surface(std::span<const Vec3f> points, std::span<const Vec3f> 
       sparse_field(ImlsField(points, normals, options, executor), options, executor);
   openvdb::tools::VolumeToMesh extracted(0.0, 0.0);
   extracted.setSurfaceMask(surface_mask(field, executor));
-  // OpenVDB works on the threads of its caller: two chunks make the call one of the executor's.
+  // OpenVDB uses the threads of its caller: a loop of two chunks runs the call on the executor's.
   executor.for_chunks(2, 1, [&](std::size_t begin, std::size_t) {
     if (begin == 0) extracted(*field.values);
   });
   field.values->clear();
   return to_triangles(extracted, options.voxel_m);
+}
+
+}  // namespace adasplats
+
+#else
+
+namespace adasplats {
+
+TriangleMesh imls_surface(std::span<const Vec3f>, std::span<const Vec3f>, const ImlsOptions&,
+                          const Executor&) {
+  throw Error(ErrorKind::unavailable,
+              "this program was built without OpenVDB, which IMLS needs; install libopenvdb-dev "
+              "and libboost-dev and build again");
 }
 
 }  // namespace adasplats

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/baselines/imls_field.h"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/baselines/imls.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
@@ -34,7 +33,7 @@ Cell block_of(std::uint64_t key) {
   return block;
 }
 
-/// The block that a place (in voxels) lies in.
+/// The block that contains a position (in voxels).
 Cell block_at(Vec3d voxels) {
   Cell block{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,16 +47,17 @@ void check(const ImlsOptions& options, std::size_t points, std::size_t normals) 
   const auto require = [](bool good, const std::string& what) {
     if (!good) throw Error(ErrorKind::usage, what);
   };
-  if (points != normals) throw std::logic_error("ImlsField: not one normal a point");
-  static_assert(kSide == 8, "the table of settings says so");
+  if (points != normals)
+    throw std::logic_error("ImlsField: the numbers of points and normals differ");
+  static_assert(kSide == 8, "as in the table of settings");
   check_settings(options);
-  // Beyond 3 sigmas a weight is below 0.0002, and weight() was made for what is within.
+  // Beyond 3 sigmas weights are below 0.0002, and weight() is only valid within.
   require(3 * options.sigma_voxels >= options.truncation_voxels,
           "sigma must be at least a third of the truncation");
 }
 
-/// exp(-u) for 0 <= u <= 9 to 1e-4 of it: (exp(-u / 16))^16 with Taylor's sum. Unlike std::exp the
-/// same bits everywhere, and the compiler makes vectors of it.
+/// exp(-u) for 0 <= u <= 9 with a relative error of 1e-4: (exp(-u / 16))^16 with a Taylor series.
+/// Unlike std::exp it gives the same bits everywhere, and the compiler vectorises it.
 inline float weight(float u) {
   const float t = u * (-1.0F / 16.0F);
   float e = 1.0F + t * (1.0F / 6.0F);
@@ -136,13 +136,15 @@ ImlsField::ImlsField(std::span<const Vec3f> points, std::span<const Vec3f> norma
   std::vector<std::uint64_t> keys(points.size());
   executor.for_chunks(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3d place = in_voxels(i);
-      // One block less than fits, for the neighbours.
-      constexpr auto kMost = static_cast<double>((kHalf - 2) * kSide);
-      const bool fits =
-          std::fabs(place.x) < kMost && std::fabs(place.y) < kMost && std::fabs(place.z) < kMost;
-      if (!fits) throw Error(ErrorKind::usage, "the voxels are too small for the cloud's extents");
-      keys[i] = key_of(block_at(place));
+      const Vec3d position = in_voxels(i);
+      // One block less than the maximum, for the neighbours.
+      constexpr auto kMax = static_cast<double>((kHalf - 2) * kSide);
+      const bool fits = std::fabs(position.x) < kMax && std::fabs(position.y) < kMax &&
+                        std::fabs(position.z) < kMax;
+      if (!fits)
+        throw Error(ErrorKind::usage,
+                    "the voxels are too small for the extents of the cloud; use larger ones");
+      keys[i] = key_of(block_at(position));
     }
   });
   executor.sort_keys(keys, order_);
@@ -158,16 +160,16 @@ Vec3d ImlsField::in_voxels(std::size_t point) const {
 }
 
 void ImlsField::find_blocks(const Executor& executor) {
-  // Which of the 27 blocks around it a block's points reach, each as a bit.
+  // The blocks, of the 27 around it, that a block's points reach, one bit each.
   std::vector<std::uint32_t> reached(runs_.size());
   const double reach = options_.truncation_voxels;
   executor.for_chunks(runs_.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const Cell own = block_of(runs_[r].key);
       for (std::uint32_t i = runs_[r].begin; i < runs_[r].end; ++i) {
-        const Vec3d place = in_voxels(order_[i]);
-        const Cell low = block_at(place - Vec3d{reach, reach, reach});
-        const Cell high = block_at(place + Vec3d{reach, reach, reach});
+        const Vec3d position = in_voxels(order_[i]);
+        const Cell low = block_at(position - Vec3d{reach, reach, reach});
+        const Cell high = block_at(position + Vec3d{reach, reach, reach});
         for (std::int64_t x = low[0]; x <= high[0]; ++x)
           for (std::int64_t y = low[1]; y <= high[1]; ++y)
             for (std::int64_t z = low[2]; z <= high[2]; ++z)
@@ -198,7 +200,7 @@ ImlsField::Block ImlsField::block(std::size_t i) const {
   Sums sums(options_);
   for (std::int64_t x = own[0] - 1; x <= own[0] + 1; ++x)
     for (std::int64_t y = own[1] - 1; y <= own[1] + 1; ++y) {
-      // The three blocks along z follow each other in the order of the keys.
+      // The three blocks along z are consecutive in the order of the keys.
       const std::uint64_t low = key_of({x, y, own[2] - 1});
       const std::uint64_t high = key_of({x, y, own[2] + 1});
       auto run = std::lower_bound(runs_.begin(), runs_.end(), low,

@@ -20,7 +20,7 @@ const Executor& executor() {
   return threads;
 }
 
-/// Nothing where this build has no OpenVDB.
+/// nullopt in a build without OpenVDB.
 std::optional<TriangleMesh> surface(const OrientedPoints& points, const ImlsOptions& options = {}) {
   try {
     return imls_surface(points.positions, points.normals, options, executor());

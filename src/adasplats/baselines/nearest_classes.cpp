@@ -13,7 +13,7 @@ std::vector<std::uint16_t> nearest_classes(const TriangleMesh& mesh, std::span<c
                                            std::span<const std::uint16_t> classes,
                                            const Executor& executor) {
   if (points.size() != classes.size())
-    throw std::logic_error("nearest_classes: not one class a point");
+    throw std::logic_error("nearest_classes: the numbers of points and classes differ");
   std::vector<std::uint16_t> found;
   if (points.empty()) return found;
   std::vector<Vec3f> centroids(mesh.triangles.size());
@@ -24,7 +24,7 @@ std::vector<std::uint16_t> nearest_classes(const TriangleMesh& mesh, std::span<c
     }
   });
   const PointIndex index = PointIndex::from_sorted(points, executor);
-  const ProgressPass pass(executor, 2 * centroids.size());  // put in order, then looked up
+  const ProgressPass pass(executor, 2 * centroids.size());  // sorted, then searched
   found.reserve(centroids.size());
   for (const Neighbor& neighbor : index.nearest(centroids, executor))
     found.push_back(classes[neighbor.index]);

@@ -11,8 +11,8 @@
 
 namespace adasplats {
 
-/// For each triangle the class of the point that is nearest to its centroid. `points` in canonical
-/// order, `classes` one a point; without points the result is empty.
+/// For each triangle, the class of the point nearest to its centroid. `points` in canonical order,
+/// `classes` one per point; without points the result is empty.
 std::vector<std::uint16_t> nearest_classes(const TriangleMesh& mesh, std::span<const Vec3f> points,
                                            std::span<const std::uint16_t> classes,
                                            const Executor& executor);

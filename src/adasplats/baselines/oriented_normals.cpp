@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Of the K nearest; signs say nothing.
+/// Normals by PCA of the K nearest points; signs are arbitrary.
 std::vector<Vec3f> normals_of(std::span<const Vec3f> points, const PointIndex& index,
                               std::uint32_t neighbors, const Executor& executor) {
   std::vector<Vec3f> normals(points.size());
@@ -36,7 +36,7 @@ std::vector<Vec3f> normals_of(std::span<const Vec3f> points, const PointIndex& i
   return normals;
 }
 
-/// Neighbours of each point, nearest first: `count` a point, kNone where there are fewer.
+/// Neighbours of each point, nearest first: `count` per point, padded with kNone.
 std::vector<std::uint32_t> neighbor_table(std::size_t points, const PointIndex& index,
                                           std::uint32_t count, const Executor& executor) {
   std::vector<std::uint32_t> table(points * count, kNone);
@@ -54,25 +54,25 @@ std::vector<std::uint32_t> neighbor_table(std::size_t points, const PointIndex& 
   return table;
 }
 
-/// Union-find whose members also know whether they have the sign of their set's root.
+/// Union-find that also stores for each member whether its sign differs from that of its root.
 class SignedSets {
  public:
   explicit SignedSets(std::size_t size) : parents_(size), flips_(size, false), sizes_(size, 1) {
     std::iota(parents_.begin(), parents_.end(), 0U);
   }
-  /// The set's root, and whether i is turned round against it.
+  /// The root of the set, and whether i is flipped relative to it.
   std::pair<std::uint32_t, bool> find(std::uint32_t i) const {
     bool flip = false;
     for (; parents_[i] != i; i = parents_[i]) flip = flip != flips_[i];
     return {i, flip};
   }
-  /// Joins the sets of a and b, whose signs differ or not; false where they are one already.
+  /// Joins the sets of a and b; `differ`: their signs differ. Returns false if they were one set.
   bool join(std::uint32_t a, std::uint32_t b, bool differ) {
     auto [root_a, flip_a] = find(a);
     auto [root_b, flip_b] = find(b);
     if (root_a == root_b) return false;
     if (sizes_[root_a] < sizes_[root_b]) std::swap(root_a, root_b);
-    // By size no path is longer than log2 of the points: nothing needs to be compressed.
+    // Union by size limits paths to log2 of the points, so no path compression is needed.
     parents_[root_b] = root_a;
     flips_[root_b] = (flip_a != flip_b) != differ;
     sizes_[root_a] += sizes_[root_b];
@@ -85,7 +85,7 @@ class SignedSets {
   std::vector<std::uint32_t> sizes_;
 };
 
-/// Kruskal's algorithm: edges by ascending weight, ties by point and nearness.
+/// Kruskal's algorithm: edges by ascending weight, ties by point and distance.
 SignedSets spread_signs(std::span<const Vec3f> normals, std::span<const std::uint32_t> table,
                         std::uint32_t count, const Executor& executor) {
   const auto dot_of = [&](std::size_t edge) {
@@ -97,7 +97,7 @@ SignedSets spread_signs(std::span<const Vec3f> normals, std::span<const std::uin
     const std::uint32_t to = table[edge];
     if (to == kNone) continue;
     const auto back = table.subspan(std::size_t{to} * count, count);
-    // Edges that both ends have are taken once.
+    // An edge in the lists of both ends is used once.
     if (from < to || std::find(back.begin(), back.end(), from) == back.end())
       edges.push_back(static_cast<std::uint32_t>(edge));
   }
@@ -118,7 +118,8 @@ SignedSets spread_signs(std::span<const Vec3f> normals, std::span<const std::uin
   return sets;
 }
 
-/// Turns the normals of each set so that its highest point looks up; gives the number of sets.
+/// Flips the normals of each set so that that of its highest point points up; returns the number of
+/// sets.
 std::size_t apply_signs(std::span<const Vec3f> points, const SignedSets& sets,
                         std::span<Vec3f> normals) {
   std::vector<std::uint32_t> highest(points.size(), kNone);  // by root
@@ -143,11 +144,10 @@ std::size_t apply_signs(std::span<const Vec3f> points, const SignedSets& sets,
 
 void check(std::size_t points, std::size_t sensor_positions, const NormalOptions& options) {
   if (sensor_positions != 0 && sensor_positions != points)
-    throw std::logic_error("oriented_normals: not one sensor position a point");
+    throw std::logic_error("oriented_normals: the numbers of points and sensor positions differ");
   check_settings(options);
   if (sensor_positions == 0 && points * std::uint64_t{options.spread_neighbors} >= kNone)
-    throw Error(ErrorKind::data,
-                "too many points to orient their normals without sensor positions");
+    throw Error(ErrorKind::data, "too many points to orient normals without sensor positions");
 }
 
 }  // namespace

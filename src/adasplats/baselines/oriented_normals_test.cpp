@@ -16,12 +16,12 @@ const Executor& executor() {
   return threads;
 }
 
-/// Least dot product of normals and what they should be.
+/// Minimum dot product of normals and the expected ones.
 float worst(const std::vector<Vec3f>& normals, const OrientedPoints& points, float sign = 1) {
-  float least = 2;
+  float min_dot = 2;
   for (std::size_t i = 0; i < normals.size(); ++i)
-    least = std::min(least, sign * dot(normals[i], points.normals[i]));
-  return least;
+    min_dot = std::min(min_dot, sign * dot(normals[i], points.normals[i]));
+  return min_dot;
 }
 
 // Oracle of the next three: the sphere's normals.

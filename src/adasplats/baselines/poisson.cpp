@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with this object.
+/// A folder that is removed with this object.
 class WorkFolder {
  public:
   explicit WorkFolder(const fs::path& parent) {
@@ -46,7 +46,7 @@ class WorkFolder {
 
 void check(const PoissonOptions& options, std::size_t points) {
   check_settings(options);
-  if (points == 0) throw Error(ErrorKind::data, "no points: there is nothing to reconstruct");
+  if (points == 0) throw Error(ErrorKind::data, "the input has no points to reconstruct from");
 }
 
 void write_points(const fs::path& path, std::span<const Vec3f> points,
@@ -67,7 +67,7 @@ const Column& column_of(const MeshTable& table, const fs::path& path, std::strin
   return *column;
 }
 
-/// A mesh that a program wrote.
+/// Converts a mesh that a program wrote.
 TriangleMesh to_mesh(const MeshTable& table, const fs::path& path) {
   const Column& x = column_of(table, path, "x");
   const Column& y = column_of(table, path, "y");
@@ -83,7 +83,7 @@ TriangleMesh to_mesh(const MeshTable& table, const fs::path& path) {
   return mesh;
 }
 
-/// Numbers as programs read them, whatever the locale.
+/// A number with a decimal point in every locale.
 std::string text_of(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6f", value);
@@ -146,9 +146,9 @@ PoissonPrograms find_poisson_programs(PoissonProvider wanted) {
       return {PoissonProvider::open3d, *own, {}};
   }
   throw Error(ErrorKind::unavailable,
-              "screened Poisson needs a program that is not here: put PoissonRecon and "
-              "SurfaceTrimmer (github.com/mkazhdan/PoissonRecon) on PATH, or install "
-              "libopen3d-dev and build adasplats again, which makes adasplats-poisson beside it");
+              "screened Poisson needs an external program: put PoissonRecon and SurfaceTrimmer "
+              "(github.com/mkazhdan/PoissonRecon) on PATH, or install libopen3d-dev and build "
+              "adasplats again, which adds adasplats-poisson");
 }
 
 PoissonSurface poisson_surface(std::span<const Vec3f> points, std::span<const Vec3f> normals,
@@ -163,9 +163,9 @@ PoissonSurface poisson_surface(std::span<const Vec3f> points, std::span<const Ve
           : by_poisson_recon(options, programs, work.path(), threads, progress);
   progress.end_step();
   if (surface.mesh.triangles.empty())
-    throw Error(ErrorKind::data, "nothing is left of the Poisson surface after trimming at depth " +
+    throw Error(ErrorKind::data, "the Poisson surface is empty after trimming at depth " +
                                      text_of(options.trim_depth()) +
-                                     ": trim less or reconstruct deeper");
+                                     "; decrease trim or increase depth");
   return surface;
 }
 

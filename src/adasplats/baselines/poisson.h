@@ -16,11 +16,11 @@
 
 namespace adasplats {
 
-/// Which program reconstructs.
+/// The program that reconstructs.
 enum class PoissonProvider : std::uint8_t {
-  automatic,      ///< PoissonRecon where it is, else Open3D
+  automatic,      ///< PoissonRecon if installed, else Open3D
   poisson_recon,  ///< its authors' programs PoissonRecon and SurfaceTrimmer, on PATH
-  open3d,         ///< adasplats-poisson beside this program, which links Open3D
+  open3d,         ///< adasplats-poisson next to this program; it links Open3D
 };
 
 inline constexpr std::pair<std::string_view, PoissonProvider> kPoissonProviders[] = {
@@ -29,17 +29,17 @@ inline constexpr std::pair<std::string_view, PoissonProvider> kPoissonProviders[
     {"open3d", PoissonProvider::open3d}};
 inline Words<PoissonProvider> words_of(PoissonProvider) { return kPoissonProviders; }
 
-/// Open3D's, which cannot be changed.
+/// The fixed value of Open3D.
 inline constexpr double kOpen3dSamplesPerNode = 1.5;
 
-/// Screened Poisson reconstruction (Kazhdan and Hoppe 2013); defaults are those of the paper's
-/// section on experiments. The boundary is always Neumann's.
+/// Screened Poisson reconstruction (Kazhdan and Hoppe 2013); the defaults are from the
+/// paper's section on experiments. The boundary condition is always Neumann's.
 struct PoissonOptions {
-  int depth = 13;  ///< of the octree, at most
-  /// Least number of points in a node: 2 by default, 1.5 for Open3D, which has no other.
+  int depth = 13;  ///< maximum depth of the octree
+  /// Minimum number of points in a node; default 2, fixed at 1.5 for Open3D.
   std::optional<double> samples_per_node;
-  /// Parts whose samples lie at a lesser depth of the octree are cut away; without it depth - 3,
-  /// which is the paper's 10 at its depth of 13.
+  /// Cut away parts with samples at a lower depth of the octree; default depth - 3, which gives the
+  /// paper's 10 at its depth of 13.
   std::optional<double> trim;
   PoissonProvider provider = PoissonProvider::automatic;
 
@@ -50,49 +50,49 @@ template <class Visit>
 void visit_settings(PoissonOptions& poisson, Visit&& visit) {
   constexpr const char* kGroup = "Screened Poisson";
   visit(Setting{.name = "depth",
-                .help = "Depth of the octree, at most",
+                .help = "Maximum depth of the octree",
                 .group = kGroup,
                 .min = 1,
                 .max = 16},
         poisson.depth);
   visit(Setting{.name = "samples_per_node",
-                .help = "Least number of points in a node; without it 2, or 1.5 of Open3D, which "
-                        "has no other",
+                .help = "Minimum number of points in a node; default 2, fixed at 1.5 for Open3D",
                 .group = kGroup,
                 .min = 0,
                 .max = 1000,
                 .exclusive_min = true},
         poisson.samples_per_node);
-  visit(Setting{.name = "trim",
-                .help = "Cut away what was measured at a lesser depth; the default is the depth "
-                        "less 3",
-                .group = kGroup},
-        poisson.trim);
+  visit(
+      Setting{.name = "trim",
+              .help = "Cut away parts with samples at a lower depth of the octree; default: depth "
+                      "- 3",
+              .group = kGroup},
+      poisson.trim);
   visit(Setting{.name = "poisson_program",
-                .help = "What reconstructs: PoissonRecon and SurfaceTrimmer on PATH, else Open3D "
+                .help = "Program: PoissonRecon and SurfaceTrimmer on PATH, else Open3D "
                         "(adasplats-poisson)",
                 .group = kGroup},
         poisson.provider);
 }
 
-/// The programs that do the work.
+/// The programs to run.
 struct PoissonPrograms {
-  PoissonProvider provider = PoissonProvider::automatic;  ///< what was found, not automatic
+  PoissonProvider provider = PoissonProvider::automatic;  ///< the one found, not automatic
   std::filesystem::path reconstruct;
-  std::filesystem::path trim;  ///< empty: trimmed here
+  std::filesystem::path trim;  ///< empty: this library trims
 };
 
-/// Errors: unavailable, with what to install.
+/// Errors: unavailable, with the packages to install.
 PoissonPrograms find_poisson_programs(PoissonProvider wanted);
 
 struct PoissonSurface {
   TriangleMesh mesh;                    ///< without classes
-  std::uint64_t peak_memory_bytes = 0;  ///< the largest of the programs
+  std::uint64_t peak_memory_bytes = 0;  ///< maximum over the programs
 };
 
-/// Reconstructs from points and as many unit outward normals. Temporary files lie in a hidden
-/// folder of `folder`, which goes in any case.
-/// Errors: usage (options), data (no points; nothing is left after trimming), unavailable (a
+/// Reconstructs a surface from points with unit outward normals. Temporary files are in a hidden
+/// folder in `folder`, which is always removed.
+/// Errors: usage (options), data (no points; an empty surface after trimming), unavailable (a
 /// program fails), cannot_create, io.
 PoissonSurface poisson_surface(std::span<const Vec3f> points, std::span<const Vec3f> normals,
                                const PoissonOptions& options, const PoissonPrograms& programs,

@@ -14,7 +14,7 @@ std::uint64_t run_program(const std::filesystem::path& program,
                           const std::filesystem::path& log, ProgressSink& progress) {
   ChildProgram child{{program.string()}, {"OMP_NUM_THREADS=" + std::to_string(threads)}, log};
   child.arguments.insert(child.arguments.end(), arguments.begin(), arguments.end());
-  // Its threads spin where they wait, which on cores that others use as well took 4 times as long.
+  // By default its threads spin while they wait, which took 4 times as long on shared cores.
   if (std::getenv("OMP_WAIT_POLICY") == nullptr)
     child.environment.emplace_back("OMP_WAIT_POLICY=passive");
   const ChildResult result = run_child(child, progress);

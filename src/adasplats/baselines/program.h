@@ -11,10 +11,10 @@
 
 namespace adasplats {
 
-/// Private to baselines/. Runs a program to its end, its output in `log`; gives back its largest
-/// resident memory in bytes. One that uses OpenMP runs on `threads` threads, which sleep where they
-/// wait. It is killed where `progress` throws to cancel, and where this process is killed. Errors:
-/// unavailable (it cannot be started or fails; with the last line of its output).
+/// Private to baselines/. Runs a program, with its output in `log`; returns its peak memory in
+/// bytes. OpenMP programs use `threads` threads, which sleep while they wait. The program is killed
+/// if `progress` throws to cancel or if this process is killed. Errors: unavailable (it does not
+/// start or fails; with the last line of its output).
 std::uint64_t run_program(const std::filesystem::path& program,
                           const std::vector<std::string>& arguments, int threads,
                           const std::filesystem::path& log, ProgressSink& progress);

@@ -8,10 +8,9 @@
 
 namespace adasplats {
 
-/// The part of a mesh where a value given at the vertices, linear in between, is at least `least`:
-/// triangles across the bound are cut along it. As PoissonRecon's SurfaceTrimmer does it, except
-/// that small holes and small leftovers (0.1 % of the area) are not merged with what is around
-/// them. Classes are not kept.
-TriangleMesh trimmed(const TriangleMesh& mesh, std::span<const float> values, float least);
+/// The part of a mesh where a value, linear between the vertices, is at least `min`; triangles
+/// across the bound are cut along it. Like PoissonRecon's SurfaceTrimmer, except that small holes
+/// and islands (0.1 % of the area) are not merged with their surroundings. Classes are dropped.
+TriangleMesh trimmed(const TriangleMesh& mesh, std::span<const float> values, float min);
 
 }  // namespace adasplats

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/calibrate/calibration.h"
 #include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/mount.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/calibrate/windows_report.h"
+#include "adasplats/cloud/sequence/calibration.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/setting.h"
 

@@ -14,7 +14,7 @@
 namespace adasplats {
 
 // What the search for planes does with one element, in the order of PlaneSearchOn. Each writes only
-// what belongs to element `i`, so a loop on any device runs it (for_each of a place).
+// what belongs to element `i`, so a loop on any device runs it (for_each of a backend).
 
 inline constexpr int kCellBitsOfAxis = 21;
 inline constexpr double kMaxCellsOfAxis = double{1 << kCellBitsOfAxis} - 1;

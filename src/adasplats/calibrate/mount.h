@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/calibrate/calibration.h"
+#include "adasplats/cloud/sequence/calibration.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/rigid_transform.h"
 

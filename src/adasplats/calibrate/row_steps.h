@@ -17,7 +17,7 @@
 namespace adasplats {
 
 // What calibration does with one point, and with one plane's points. Each writes only what belongs
-// to element `i`, so a loop on any device runs it (for_each of a place).
+// to element `i`, so a loop on any device runs it (for_each of a backend).
 
 /// The rays of a cloud, and the corrections of scans and lasers.
 struct RaysView {

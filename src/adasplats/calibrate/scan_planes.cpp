@@ -9,8 +9,8 @@ namespace adasplats {
 
 ScanPlanes find_scan_planes(std::span<const Vec3d> positions, std::span<const std::uint32_t> scans,
                             const ScanPlaneOptions& options, const Executor& executor) {
-  const CpuArrays place(executor);
-  PlaneSearchOn<CpuArrays> search(place);
+  const CpuArrays backend(executor);
+  PlaneSearchOn<CpuArrays> search(backend);
   search.run(positions.data(), scans.data(), positions.size(), options);
   return {search.take_planes(), search.take_order()};
 }

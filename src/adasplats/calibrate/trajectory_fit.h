@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "adasplats/calibrate/calibration.h"
+#include "adasplats/cloud/sequence/calibration.h"
 
 namespace adasplats {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/calibrate/calibration.h"
 #include "adasplats/calibrate/windows_report.h"
+#include "adasplats/cloud/sequence/calibration.h"
 
 namespace adasplats {
 

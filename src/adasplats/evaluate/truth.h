@@ -11,8 +11,8 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

@@ -13,7 +13,7 @@ namespace {
 
 class CudaModelEngine final : public ModelEngine {
  public:
-  CudaModelEngine(int device, const Executor& executor) : device_(device), executor_(executor) {
+  explicit CudaModelEngine(int device) : device_(device) {
     const GpuSearch found = find_gpus();
     if (found.devices.empty())
       throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + found.reason);
@@ -25,7 +25,7 @@ class CudaModelEngine final : public ModelEngine {
     return gpu::make_cuda_paper_steps(device_);
   }
   std::unique_ptr<ConsistentSteps> consistent_steps() const override {
-    return gpu::make_cuda_consistent_steps(device_, executor_);
+    return gpu::make_cuda_consistent_steps(device_);
   }
   Reflectances measure_reflectances(const std::vector<Disk>& disks,
                                     const std::vector<float>& fallback,
@@ -35,13 +35,12 @@ class CudaModelEngine final : public ModelEngine {
 
  private:
   int device_;
-  const Executor& executor_;
 };
 
 }  // namespace
 
-std::unique_ptr<ModelEngine> make_cuda_model_engine(int device, const Executor& executor) {
-  return std::make_unique<CudaModelEngine>(device, executor);
+std::unique_ptr<ModelEngine> make_cuda_model_engine(int device) {
+  return std::make_unique<CudaModelEngine>(device);
 }
 
 }  // namespace adasplats

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-std::unique_ptr<ModelEngine> make_cuda_model_engine(int, const Executor&) {
+std::unique_ptr<ModelEngine> make_cuda_model_engine(int) {
   throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + find_gpus().reason);
 }
 

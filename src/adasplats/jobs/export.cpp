@@ -20,9 +20,9 @@
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/scan_range.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_ply.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {

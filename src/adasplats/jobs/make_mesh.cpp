@@ -15,8 +15,8 @@
 #include "adasplats/jobs/model/label_use.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/model/canonical_order.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 namespace adasplats {
 namespace {

@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/baselines/imls_field.h"
+#include "adasplats/baselines/imls.h"
 #include "adasplats/baselines/oriented_normals.h"
 #include "adasplats/baselines/poisson.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/session/session.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/build_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 namespace adasplats {
 

@@ -20,8 +20,8 @@
 #include "adasplats/jobs/segment/output_classes.h"
 #include "adasplats/jobs/segment/segment_on_device.h"
 #include "adasplats/jobs/session/inputs.h"
-#include "adasplats/segment/network/matrix_product.h"
 #include "adasplats/segment/network/network.h"
+#include "adasplats/segment/network/run_network.h"
 
 namespace adasplats {
 namespace {

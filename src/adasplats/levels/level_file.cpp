@@ -25,12 +25,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-static_assert(std::endian::native == std::endian::little, "tables are written as they are");
+static_assert(std::endian::native == std::endian::little,
+              "tables are written in the byte order of the machine");
 
 constexpr const char* kFormat = "adasplats levels";
 constexpr int kLevelsVersion = 1;
-/// A line is looked for in pieces that double, up to this: about 400 bytes a part.
-constexpr std::size_t kFirstPiece = 4096;
+/// The header line is searched in chunks of doubling size, up to kLongestLine (400 bytes per part).
+constexpr std::size_t kFirstChunk = 4096;
 constexpr std::size_t kLongestLine = std::size_t{1} << 30;
 
 Error damaged(const fs::path& path, const std::string& what) {
@@ -58,34 +59,34 @@ LevelPart part_of(const Json& json) {
 
 /// The first line of the file without its end.
 std::string first_line(InputFile& file) {
-  std::size_t bytes = kFirstPiece;
+  std::size_t bytes = kFirstChunk;
   for (;;) {
     bytes = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, file.remaining()));
-    const auto piece = file.peek(bytes);
-    const std::string_view text(reinterpret_cast<const char*>(piece.data()), piece.size());
+    const auto chunk = file.peek(bytes);
+    const std::string_view text(reinterpret_cast<const char*>(chunk.data()), chunk.size());
     if (const std::size_t end = text.find('\n'); end != std::string_view::npos) {
       std::string line(text.substr(0, end));
       file.skip(end + 1);
       return line;
     }
-    // What is no line of ours ends it soon.
+    // Stop early if this is not our header.
     if (!text.starts_with("{\"format\":\"adasplats") || bytes == file.remaining() ||
         bytes > kLongestLine)
-      throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
+      throw Error(ErrorKind::data, file.path().string() + ": not a file of levels of detail");
     bytes *= 2;
   }
 }
 
 void check_version(const Json& json, const InputFile& file) {
   if (json.at("format") != kFormat)
-    throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
+    throw Error(ErrorKind::data, file.path().string() + ": not a file of levels of detail");
   if (json.at("version") != kLevelsVersion)
     throw Error(ErrorKind::data, file.path().string() + ": levels of detail of version " +
                                      json.at("version").dump() + "; this program reads version " +
                                      std::to_string(kLevelsVersion));
 }
 
-/// All but the parts, which are added to `parts`: a city has a hundred thousand of them.
+/// The header without the parts, which are appended to `parts`: a city has 100,000 of them.
 Json parsed_head(InputFile& file, std::vector<LevelPart>& parts) {
   const std::string line = first_line(file);
   try {
@@ -94,7 +95,7 @@ Json parsed_head(InputFile& file, std::vector<LevelPart>& parts) {
     check_version(json, file);
     return json;
   } catch (const Json::exception&) {
-    // Parts of another version may be other ones.
+    // Another version may have other parts.
     check_version(Json::parse(line), file);
     throw;
   }
@@ -108,7 +109,7 @@ LevelFacts facts_of(const Json& json, const fs::path& path) {
   facts.intensity_range = {json.at("intensity_range").at(0), json.at("intensity_range").at(1)};
   const auto [low, high] = facts.intensity_range;
   if (!std::isfinite(low) || !std::isfinite(high) || !(low < high))
-    throw damaged(path, "a range of intensities that cannot be");
+    throw damaged(path, "an invalid range of intensities");
   return facts;
 }
 
@@ -121,7 +122,7 @@ bool is_sound(const LevelNode& node) {
          std::isfinite(node.largest_radius_m) && node.largest_radius_m >= 0;
 }
 
-/// A tree: every node but the first is the child of one that stands before it.
+/// Checks the tree: every node except the first is the child of an earlier one.
 void check_tree(const LevelTable& table, const fs::path& path) {
   const std::vector<LevelNode>& nodes = table.nodes;
   std::vector<bool> has_parent(nodes.size(), false);
@@ -129,35 +130,35 @@ void check_tree(const LevelTable& table, const fs::path& path) {
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const LevelNode& node = nodes[n];
     const std::string name = "node " + std::to_string(n);
-    if (!is_sound(node)) throw damaged(path, name + " has a box that cannot be");
+    if (!is_sound(node)) throw damaged(path, name + " has an invalid box");
     if (node.child_count == 0) splats += node.count;
     const std::size_t end = std::size_t{node.first_child} + node.child_count;
     if (node.child_count > 8 || end > nodes.size() ||
         (node.child_count > 0 && node.first_child <= n))
-      throw damaged(path, name + " has children that cannot be");
+      throw damaged(path, name + " has invalid children");
     for (std::size_t child = node.first_child; node.child_count > 0 && child < end; ++child) {
       if (has_parent[child] || nodes[child].level != node.level + 1)
-        throw damaged(path, name + " has children of another node");
+        throw damaged(path, name + " has a child that belongs to another node or level");
       has_parent[child] = true;
     }
   }
   if (std::count(has_parent.begin(), has_parent.end(), false) != 1)
-    throw damaged(path, "nodes that are no children");
+    throw damaged(path, "some nodes have no parent");
   if (splats != table.facts.splats)
-    throw damaged(path, std::to_string(splats) + " splats in the leaves; its first line says " +
+    throw damaged(path, std::to_string(splats) + " splats in the leaves; the header has " +
                             std::to_string(table.facts.splats));
 }
 
-/// Where parts say their nodes are there are nodes, and no two say the same.
+/// Checks that the nodes of parts exist and that no two parts overlap.
 void check_parts(const LevelTable& table, const fs::path& path) {
   std::vector<bool> taken(table.nodes.size(), false);
   const auto take = [&](std::size_t node) {
-    if (node >= taken.size() || taken[node]) throw damaged(path, "parts that cannot be");
+    if (node >= taken.size() || taken[node]) throw damaged(path, "invalid parts");
     taken[node] = true;
   };
   for (const LevelPart& part : table.parts) {
     if (part.nodes == 0 || part.nodes > taken.size() || part.first > taken.size())
-      throw damaged(path, "parts that cannot be");
+      throw damaged(path, "invalid parts");
     take(part.root);
     for (std::size_t k = 1; k < part.nodes; ++k) take(part.first + k - 1);
   }
@@ -219,7 +220,7 @@ std::string level_head(const LevelTable& table) {
 void write_levels(const fs::path& path, const LevelTable& table,
                   std::span<const LevelElement> elements) {
   if (elements.size() != elements_of(table))
-    throw std::logic_error("levels of detail: elements of other nodes");
+    throw std::logic_error("levels of detail: the elements do not fit the nodes");
   std::string bytes = level_head(table);
   const std::size_t head = bytes.size();
   bytes.resize(head + elements.size_bytes());
@@ -255,7 +256,7 @@ std::string read_level_elements(const fs::path& path, std::uint64_t bytes, std::
     const ssize_t got = ::pread(file.get(), elements.data() + done, elements.size() - done,
                                 static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw Error(ErrorKind::io, path.string() + ": cannot be read any more");
+    if (got <= 0) throw Error(ErrorKind::io, path.string() + ": reading failed");
     done += static_cast<std::size_t>(got);
   }
   return elements;

@@ -58,7 +58,7 @@ LevelTree small_tree() {
       splats.input(), {.leaf_size = 200, .intensity_range = kFacts.intensity_range}, Executor(1)};
 }
 
-/// What reading the file says; empty: nothing.
+/// The error of reading the file; empty: none.
 std::string complaint(const fs::path& file) {
   try {
     read_levels(file);
@@ -111,20 +111,20 @@ TEST(LevelFile, DamageIsOneError) {
   write_levels(file, small_tree(), kFacts);
   const std::string good = read_file(file);
   const std::size_t line = good.find('\n') + 1;
-  const auto says = [&](const std::string& bytes) {
+  const auto error_of = [&](const std::string& bytes) {
     write_file(file, bytes);
     return complaint(file);
   };
   const auto with_word = [&](std::size_t node, std::size_t word, std::uint32_t value) {
     std::string bytes = good;
     std::memcpy(bytes.data() + line + node * sizeof(LevelNode) + 4 * word, &value, sizeof(value));
-    return says(bytes);
+    return error_of(bytes);
   };
-  EXPECT_EQ(says(good), "");
+  EXPECT_EQ(error_of(good), "");
   for (const std::size_t size : {std::size_t{1}, line - 1, line, line + 47, good.size() - 1})
-    EXPECT_NE(says(good.substr(0, size)), "") << size;
-  EXPECT_NE(says(good + "x"), "") << "longer than it says";
-  EXPECT_NE(says(std::string(1000, 'x')).find("no levels"), std::string::npos);
+    EXPECT_NE(error_of(good.substr(0, size)), "") << size;
+  EXPECT_NE(error_of(good + "x"), "") << "longer than declared";
+  EXPECT_NE(error_of(std::string(1000, 'x')).find("not a file of levels"), std::string::npos);
   EXPECT_NE(with_word(0, 8, 0), "") << "a node that is its own child";
   EXPECT_NE(with_word(0, 8, 2), "") << "a node that is nobody's child";
   EXPECT_NE(with_word(0, 9, 9), "") << "more than eight children";
@@ -134,7 +134,7 @@ TEST(LevelFile, DamageIsOneError) {
   EXPECT_NE(with_word(0, 6, 0xbf800000U), "") << "a negative spacing";
 }
 
-TEST(LevelFile, AnotherVersionSaysWhichOne) {
+TEST(LevelFile, AnErrorNamesAnotherVersion) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   write_levels(file, small_tree(), kFacts);

@@ -10,8 +10,8 @@ namespace adasplats {
 namespace {
 
 constexpr float kSameFacing = 0.70710678F;  ///< cosine of 45 degrees
-constexpr double kMinShare = 0.1;           ///< of a second facing
-constexpr int kRounds = 2;                  ///< of moving facings to the mean of their disks
+constexpr double kMinShare = 0.1;           ///< of the area, for a second facing
+constexpr int kRounds = 2;                  ///< of moving facings to the means of their disks
 
 /// Over pi.
 double area_of(const Disk& disk) {

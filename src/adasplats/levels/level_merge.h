@@ -13,7 +13,7 @@
 
 namespace adasplats {
 
-/// Private to levels/: attributes of a run of elements; element k has those of sources[k].
+/// Private to levels/. Attributes of a run of elements; element k has those of sources[k].
 struct ElementValues {
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;
@@ -22,22 +22,22 @@ struct ElementValues {
 
   std::uint16_t class_id(std::size_t k) const { return classes.empty() ? 0 : classes[sources[k]]; }
   float intensity(std::size_t k) const;  ///< NaN: 0
-  float error_m(std::size_t k) const;    ///< NaN: not known
+  float error_m(std::size_t k) const;    ///< NaN: unknown
   ElementValues run(std::size_t begin, std::size_t end) const;
 };
 
-/// Element k as it stands in the input.
+/// Element k, unchanged from the input.
 LevelSample sample_of(const Disk& disk, const ElementValues& values, std::size_t k);
 LevelSample sample_of(Vec3f position, const ElementValues& values, std::size_t k);
 
-/// Makes one disk, or two, of the disks of a cell. Normals of clouds have no reliable sign, so both
-/// sides of a wall are one facing, and disks 45 degrees or more apart are two, if either has a
-/// tenth of the area. Of each facing: the means of centers and normals, weighted by area, the sum
-/// of the areas as far as the circle around the disks reaches, the class of most area, the mean
-/// intensity, and the mean of the errors that are known.
+/// Merges the disks of a cell into one or two. Signs of normals are unreliable, so both sides of a
+/// wall are one facing. Disks at least 45 degrees apart form two facings if each has a tenth of the
+/// area. The disk of a facing has the mean center and normal, weighted by area; the sum of the
+/// areas, limited by the circle around the disks; the class with the largest area; the mean
+/// intensity; and the mean of the known errors.
 class CellMerger {
  public:
-  /// Adds to `merged`. `disks` are the cell's, one or more.
+  /// Appends the merged disks of a cell with at least one disk.
   void merge(std::span<const Disk> disks, const ElementValues& values,
              std::vector<LevelSample>& merged);
 
@@ -50,7 +50,7 @@ class CellMerger {
   };
 
   void find_facings(std::span<const Disk> disks);
-  /// Every disk to the facing it is nearest to, and the facings' sums.
+  /// Assigns every disk to the nearest facing and sums up the facings.
   void assign(std::span<const Disk> disks);
   LevelSample merged_facing(std::size_t facing, std::span<const Disk> disks,
                             const ElementValues& values);

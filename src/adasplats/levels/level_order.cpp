@@ -5,48 +5,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace adasplats {
 namespace {
 
-/// Of a box that has cells: below, their number a metre is no float.
+/// Minimum side of a box with cells: below it, cells per metre overflow.
 constexpr float kMinSide_m = 1e-25F;
 constexpr std::size_t kMaxChildren = 8;
 
-struct Extent {
-  Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
-            std::numeric_limits<float>::max()};
-  Vec3f high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
-             std::numeric_limits<float>::lowest()};
-  Extent& operator+=(const Extent& other) {
-    low = min(low, other.low);
-    high = max(high, other.high);
-    return *this;
-  }
-};
-
-/// Over the box of position_of(0 .. count - 1); without cells where that is a point or no float.
+/// Grid over the box of position_of(0 .. count - 1); without cells if the box is a point or not
+/// finite.
 template <class PositionOf>
 HilbertGrid grid_over(std::size_t count, const PositionOf& position_of, const Executor& executor) {
-  const Extent extent =
-      executor.sum_chunks(count, kCoarseGrain, Extent{}, [&](std::size_t begin, std::size_t end) {
-        Extent part;
-        for (std::size_t i = begin; i < end; ++i) {
-          part.low = min(part.low, position_of(i));
-          part.high = max(part.high, position_of(i));
-        }
-        return part;
-      });
-  const Vec3f size = extent.high - extent.low;
+  const CurveBox box = curve_box_of(count, position_of, executor);
+  const Vec3f size = box.high - box.low;
   const bool has_cells = is_finite(size) && std::max({size.x, size.y, size.z}) > kMinSide_m;
-  return has_cells ? HilbertGrid(extent.low, extent.high) : HilbertGrid({}, {});
+  return has_cells ? HilbertGrid(box.low, box.high) : HilbertGrid({}, {});
 }
 
 struct CurveOrder {
   std::vector<std::uint64_t> keys;   ///< ascending
-  std::vector<std::uint32_t> order;  ///< order[k]: which one has keys[k]
+  std::vector<std::uint32_t> order;  ///< order[k]: index of the element with keys[k]
 };
 
 template <class PositionOf>
@@ -76,7 +56,7 @@ std::vector<T> gathered(std::span<const T> values, const std::vector<std::uint32
   return result;
 }
 
-/// values[begin + k] becomes what values[begin + order[k]] was.
+/// Moves values[begin + order[k]] to values[begin + k].
 template <class T>
 void permute(std::vector<T>& values, std::size_t begin, const std::vector<std::uint32_t>& order,
              const Executor& executor) {
@@ -110,7 +90,7 @@ LevelOrder::LevelOrder(std::span<const Disk> disks, std::span<const Vec3f> posit
 std::size_t LevelOrder::run_end(std::size_t i, std::size_t end, int level) const {
   const int shift = 3 * (kHilbertBits - level);
   const std::uint64_t cube = keys_[i] >> shift;
-  // Runs are short, or as long as the block: steps that double meet both.
+  // Runs are short, or as long as the block: doubling steps suit both.
   std::size_t step = 1;
   while (i + step < end && keys_[i + step] >> shift == cube) step *= 2;
   const auto first = keys_.begin() + static_cast<std::ptrdiff_t>(i + step / 2);
@@ -121,12 +101,9 @@ std::size_t LevelOrder::run_end(std::size_t i, std::size_t end, int level) const
 }
 
 float LevelOrder::box_side_m(const LevelBlock& block) const {
-  Extent extent;
-  for (std::size_t i = block.begin; i < block.end; ++i) {
-    extent.low = min(extent.low, position(i));
-    extent.high = max(extent.high, position(i));
-  }
-  const Vec3f size = extent.high - extent.low;
+  CurveBox box = CurveBox::empty();
+  for (std::size_t i = block.begin; i < block.end; ++i) box.add(position(i));
+  const Vec3f size = box.high - box.low;
   return std::max({size.x, size.y, size.z, 0.0F});
 }
 
@@ -146,7 +123,7 @@ void LevelOrder::tighten(LevelBlock& block, const Executor& executor) {
   block.level = shared_levels(keys_[block.begin], keys_[block.end - 1]);
 }
 
-std::vector<LevelBlock> LevelOrder::split(const LevelBlock& block, std::size_t most) const {
+std::vector<LevelBlock> LevelOrder::split(const LevelBlock& block, std::size_t max_joined) const {
   std::vector<LevelBlock> parts;
   const auto add = [&](std::size_t begin, std::size_t end) {
     parts.push_back({begin, end, block.grid, block.level});
@@ -161,7 +138,7 @@ std::vector<LevelBlock> LevelOrder::split(const LevelBlock& block, std::size_t m
   }
   for (std::size_t begin = block.begin; begin < block.end;) {
     const std::size_t end = run_end(begin, block.end, block.level + 1);
-    if (!parts.empty() && end - parts.back().begin <= most)
+    if (!parts.empty() && end - parts.back().begin <= max_joined)
       parts.back().end = end;
     else
       add(begin, end);
@@ -172,7 +149,7 @@ std::vector<LevelBlock> LevelOrder::split(const LevelBlock& block, std::size_t m
 
 std::vector<std::size_t> LevelOrder::occupied(const LevelBlock& block,
                                               const Executor& executor) const {
-  // How many elements begin a new cube first at this level.
+  // Number of elements that begin a new cube at each level, but not above it.
   struct Counts {
     std::array<std::size_t, kHilbertBits + 1> first{};
     Counts& operator+=(const Counts& other) {

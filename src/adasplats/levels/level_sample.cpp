@@ -8,20 +8,20 @@
 namespace adasplats {
 namespace {
 
-constexpr double kMost16 = 65535;
-constexpr float kMost15 = 32767;
+constexpr double kMax16 = 65535;
+constexpr float kMax15 = 32767;
 
-/// `share` of 0..1, in 0..most.
+/// Maps 0..1 to 0..max.
 template <class T>
-T quantized(double share, double most) {
-  return static_cast<T>(std::lround(std::clamp(share, 0.0, 1.0) * most));
+T quantized(double share, double max) {
+  return static_cast<T>(std::lround(std::clamp(share, 0.0, 1.0) * max));
 }
 
-std::uint16_t place(float value, float low, float high) {
+std::uint16_t position_code(float value, float low, float high) {
   const double size = static_cast<double>(high) - static_cast<double>(low);
   if (!(size > 0)) return 0;
   return quantized<std::uint16_t>((static_cast<double>(value) - static_cast<double>(low)) / size,
-                                  kMost16);
+                                  kMax16);
 }
 
 double share_of(float value, ByteRange range) {
@@ -33,7 +33,7 @@ std::uint8_t intensity_byte(float value, ByteRange range) {
   return quantized<std::uint8_t>(share_of(value, range), 255);
 }
 
-/// 0 says that it is not known.
+/// 0: unknown.
 std::uint8_t error_byte(float value, ByteRange range) {
   if (std::isnan(value)) return 0;
   return static_cast<std::uint8_t>(1 + quantized<std::uint8_t>(share_of(value, range), 254));
@@ -51,13 +51,13 @@ OctahedralNormal octahedral(Vec3f normal) {
     x = folded_x;
   }
   const auto code = [](float v) {
-    return static_cast<std::int16_t>(std::lround(std::clamp(v, -1.0F, 1.0F) * kMost15));
+    return static_cast<std::int16_t>(std::lround(std::clamp(v, -1.0F, 1.0F) * kMax15));
   };
   return {code(x), code(y)};
 }
 
 Vec3f normal_of(OctahedralNormal code) {
-  float x = static_cast<float>(code.u) / kMost15, y = static_cast<float>(code.v) / kMost15;
+  float x = static_cast<float>(code.u) / kMax15, y = static_cast<float>(code.v) / kMax15;
   const float z = 1 - std::fabs(x) - std::fabs(y);
   if (z < 0) {
     const float unfolded_x = (1 - std::fabs(y)) * (x < 0 ? -1.0F : 1.0F);
@@ -82,9 +82,11 @@ std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange
   for (const LevelSample& sample : samples) {
     LevelElement element{};
     for (int axis = 0; axis < 3; ++axis)
-      element.position[axis] = place(sample.position[axis], node.low[axis], node.high[axis]);
+      element.position[axis] =
+          position_code(sample.position[axis], node.low[axis], node.high[axis]);
     if (sample.radius_m > 0)
-      element.radius = std::max<std::uint16_t>(1, place(sample.radius_m, 0, node.largest_radius_m));
+      element.radius =
+          std::max<std::uint16_t>(1, position_code(sample.radius_m, 0, node.largest_radius_m));
     const OctahedralNormal normal = octahedral(sample.normal);
     element.normal[0] = normal.u;
     element.normal[1] = normal.v;

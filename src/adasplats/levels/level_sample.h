@@ -11,19 +11,18 @@
 
 namespace adasplats {
 
-/// Private to levels/: one element of a node before it becomes bytes.
+/// Private to levels/. One element of a node before it is encoded.
 struct LevelSample {
   Vec3f position;
   float radius_m = 0;  ///< of a splat
   Vec3f normal{0, 0, 1};
   std::uint16_t class_id = 0;
   float intensity = 0;
-  float error_m = 0;  ///< signed, NaN: not known
+  float error_m = 0;  ///< signed; NaN: unknown
 };
 
-/// Fills box and largest radius of a node that holds `samples`, and gives their bytes. A position
-/// is off by at most half a 65535th of the box (and the rounding of a float), a radius likewise of
-/// the largest, which is never less than one step.
+/// Encodes the samples of a node, and sets its box and largest radius. Positions are rounded to
+/// 1/65535 of the box, radii to 1/65535 of the largest; a radius is at least one step.
 std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange intensities,
                                  ByteRange errors_m, LevelNode& node);
 

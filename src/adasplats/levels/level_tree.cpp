@@ -16,13 +16,13 @@
 namespace adasplats {
 namespace {
 
-/// Nodes whose elements are made at the same time.
+/// Number of nodes that are encoded in parallel.
 constexpr std::size_t kBatch = 64;
-/// A node is to have at most this share of the elements that it stands for.
+/// A node has at most 1/kMinReduction of the elements that it represents.
 constexpr std::size_t kMinReduction = 2;
 constexpr float kMinErrorRange_m = 1e-3F;
 constexpr float kMaxSignedErrorRange_m = 0.5F;
-/// Leaves are not wider, so that 16 bits hold their positions to 2 mm.
+/// Maximum width of leaves, so that 16 bits give positions to 2 mm.
 constexpr float kWidestLeaf_m = 256;
 
 void check(const LevelInput& input, const LevelOptions& options) {
@@ -30,12 +30,14 @@ void check(const LevelInput& input, const LevelOptions& options) {
   const auto fits = [size](std::size_t values) { return values == 0 || values == size; };
   if ((!input.disks.empty() && !input.positions.empty()) || !fits(input.classes.size()) ||
       !fits(input.intensities.size()) || !fits(input.errors_m.size()))
-    throw std::logic_error("level tree: attributes of another size than the elements");
+    throw std::logic_error(
+        "level tree: the size of an attribute differs from the number of elements");
   if (options.leaf_size < 1 || options.cells_per_side < 2)
-    throw std::logic_error("level tree: leaves of no elements or nodes of one cell");
+    throw std::logic_error(
+        "level tree: leaf_size must be at least 1 and cells_per_side at least 2");
 }
 
-/// The finite values, by magnitude where `magnitudes`.
+/// The finite values; their magnitudes if `magnitudes`.
 std::vector<float> finite_values(std::span<const float> values, bool magnitudes) {
   std::vector<float> finite;
   finite.reserve(values.size());
@@ -44,7 +46,7 @@ std::vector<float> finite_values(std::span<const float> values, bool magnitudes)
   return finite;
 }
 
-/// The smallest value that `percent` of all do not exceed. Reorders them.
+/// The percentile of the values, which it reorders.
 float percentile(std::vector<float>& values, std::size_t percent) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
   std::nth_element(values.begin(), at, values.end());
@@ -53,10 +55,10 @@ float percentile(std::vector<float>& values, std::size_t percent) {
 
 ByteRange range_of_errors(std::span<const float> errors_m) {
   std::vector<float> values = finite_values(errors_m, true);
-  const float most =
+  const float max_m =
       values.empty() ? kMinErrorRange_m : std::max(kMinErrorRange_m, percentile(values, 98));
-  if (std::ranges::none_of(errors_m, [](float error_m) { return error_m < 0; })) return {0, most};
-  const float reach = std::min(most, kMaxSignedErrorRange_m);
+  if (std::ranges::none_of(errors_m, [](float error_m) { return error_m < 0; })) return {0, max_m};
+  const float reach = std::min(max_m, kMaxSignedErrorRange_m);
   return {-reach, reach};
 }
 
@@ -97,17 +99,17 @@ class NodeMaker {
             order_.sources().subspan(begin, end - begin)};
   }
 
-  /// How many halvings make a cell: the finest of the options that merges enough.
+  /// Level of the grid's cells: the finest that merges enough elements.
   int cell_level(const LevelBlock& block) const {
     const std::vector<std::size_t> cells = order_.occupied(block, executor_);
-    const std::size_t most = std::min(options_.leaf_size, block.size() / kMinReduction);
+    const std::size_t max_cells = std::min(options_.leaf_size, block.size() / kMinReduction);
     const int finest = std::bit_width(static_cast<unsigned>(options_.cells_per_side)) - 1;
     int level = std::min(block.level + finest, kHilbertBits);
-    while (level > block.level + 1 && cells[static_cast<std::size_t>(level)] > most) --level;
+    while (level > block.level + 1 && cells[static_cast<std::size_t>(level)] > max_cells) --level;
     return level;
   }
 
-  /// Of the cells that begin within [begin, end).
+  /// Merges the cells that begin within [begin, end).
   std::vector<LevelSample> merged_cells(const LevelBlock& block, int level, std::size_t begin,
                                         std::size_t end) const {
     std::vector<LevelSample> samples;
@@ -127,7 +129,7 @@ class NodeMaker {
     return samples;
   }
 
-  /// Of the points of one cell.
+  /// The point of a cell that is nearest to its centre.
   std::size_t nearest_to_middle(const LevelBlock& block, int level, std::size_t begin,
                                 std::size_t end) const {
     const float side_m = block.side_m(level);
@@ -136,12 +138,12 @@ class NodeMaker {
     for (int axis = 0; axis < 3; ++axis)
       middle[axis] += (static_cast<float>(cell[axis] >> (kHilbertBits - level)) + 0.5F) * side_m;
     std::size_t nearest = begin;
-    float least = HUGE_VALF;
+    float min_squared = HUGE_VALF;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f offset = order_.position(i) - middle;
       const float squared = dot(offset, offset);
-      if (squared < least) {
-        least = squared;
+      if (squared < min_squared) {
+        min_squared = squared;
         nearest = i;
       }
     }
@@ -175,7 +177,7 @@ LevelTree::LevelTree(const LevelInput& input, const LevelOptions& options, const
   nodes_.resize(1);
   firsts_ = {0};
   while (firsts_.size() <= blocks.size()) {
-    // Blocks of a batch lie in none of each other: ordering one anew leaves the others as they are.
+    // Blocks of a batch are disjoint: sorting one does not change the others.
     const std::size_t first = firsts_.size() - 1;
     const std::size_t last = std::min(first + kBatch, blocks.size());
     for (std::size_t n = first; n < last; ++n) {
@@ -213,7 +215,7 @@ LevelPiece merged_node(const LevelInput& input, const LevelOptions& options,
                        const Executor& executor) {
   check(input, options);
   if (input.disks.empty() || !options.intensity_range)
-    throw std::logic_error("merged node: no splats, or no range of intensities");
+    throw std::logic_error("merged node: no splats, or no intensity_range");
   LevelOrder order(input.disks, input.positions, executor);
   LevelBlock block = order.whole();
   order.tighten(block, executor);
@@ -242,7 +244,7 @@ void add_splats(const LevelNode& node, std::span<const LevelElement> elements,
 }
 
 std::string nodes_bytes(std::span<const LevelNode> nodes) {
-  // Bytes as characters: what a reply's body is made of.
+  // As characters, for the body of a reply.
   return {reinterpret_cast<const char*>(nodes.data()), nodes.size_bytes()};
 }
 

@@ -272,7 +272,7 @@ TEST(LevelTree, APlaneStaysAPlaneWithoutHolesOrOverhang) {
   }
 }
 
-// Oracle: the two planes that the disks lie on.
+// Oracle: the two planes of the disks.
 TEST(LevelTree, ACornerHasTwoFacingsAndAWallOne) {
   std::vector<Disk> corner = plane(10'000, 16, 3);
   for (std::size_t i = 0; i < corner.size(); ++i)
@@ -298,7 +298,7 @@ TEST(LevelTree, ACornerHasTwoFacingsAndAWallOne) {
 }
 
 // Oracle: by hand; 300 disks in one place, so that all are one cell.
-TEST(LevelTree, AMergedDiskHasTheClassOfMostAreaAndMeans) {
+TEST(LevelTree, AMergedDiskHasTheClassWithTheLargestAreaAndMeans) {
   std::vector<Disk> disks(300, {{1, 2, 3}, 0.1F, {0, 0, 1}});
   std::vector<std::uint16_t> classes(300, 7);
   std::vector<float> intensities(300, 0), errors_m(300, kNaN);
@@ -447,7 +447,7 @@ TEST(LevelTree, RangesOfAttributes) {
   EXPECT_EQ(dark.elements(0)[0].intensity, 0);
 }
 
-TEST(LevelTree, RefusesWhatDoesNotBelongTogether) {
+TEST(LevelTree, RejectsAttributesOfTheWrongSize) {
   const std::vector<Disk> disks = random_disks(3);
   const std::vector<Vec3f> points = centers_of(disks);
   const std::vector<std::uint16_t> ids = numbers(2);

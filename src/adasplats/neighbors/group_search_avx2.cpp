@@ -109,9 +109,9 @@ inline Nearest nearest_of_leaf(const float* x, const float* y, const float* z, f
     const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(z + 8 * half), _mm256_set1_ps(qz));
     d2[half] = squared_norm(dx, dy, dz);
   }
-  const __m256 least = min_of_lanes(_mm256_min_ps(d2[0], d2[1]));
-  const unsigned lanes = mask_within(d2[0], least) | mask_within(d2[1], least) << 8;
-  return {_mm256_cvtss_f32(least), static_cast<unsigned>(__builtin_ctz(lanes | 1U << 16))};
+  const __m256 minimum = min_of_lanes(_mm256_min_ps(d2[0], d2[1]));
+  const unsigned lanes = mask_within(d2[0], minimum) | mask_within(d2[1], minimum) << 8;
+  return {_mm256_cvtss_f32(minimum), static_cast<unsigned>(__builtin_ctz(lanes | 1U << 16))};
 }
 
 /// For every mask of 8 lanes the lanes that are set, first ones first.

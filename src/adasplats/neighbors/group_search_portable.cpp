@@ -148,7 +148,7 @@ void prepare(QueryGroup& group, std::span<const NeighborLimit> limits) {
     group.found[q] = 0;
     most = std::max(most, group.wanted[q]);
   }
-  // Three times what is wanted: few selections, each throws half away.
+  // Room for three times the wanted number: few selections, each drops half.
   const std::uint32_t capacity = (3 * most + 4 * PointIndex::kLeafPoints) / 8 * 8;
   if (group.capacity < capacity) {
     group.capacity = capacity;

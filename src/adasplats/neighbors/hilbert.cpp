@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -24,7 +23,7 @@ constexpr std::uint64_t spread(std::uint64_t v) {
   return v;
 }
 
-/// For each of the turns that occur and one bit of x, y and z: next turn << 3 | bits of the key.
+/// Entry of a turn and one bit of x, y and z: next turn << 3 | bits of the key.
 constexpr std::size_t kTurns = 24;
 using LevelTable = std::array<std::array<std::uint16_t, 8>, kTurns>;
 
@@ -71,31 +70,11 @@ struct StepTable {
 constexpr StepTable kSteps;
 static_assert(kBits % StepTable::kLevels == 0);
 
-struct Extent {
-  Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
-            std::numeric_limits<float>::max()};
-  Vec3f high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
-             std::numeric_limits<float>::lowest()};
-  Extent& operator+=(const Extent& other) {
-    low = min(low, other.low);
-    high = max(high, other.high);
-    return *this;
-  }
-};
-
 }  // namespace
 
 CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor) {
-  const Extent all = executor.sum_chunks(points.size(), kCoarseGrain, Extent{},
-                                         [&](std::size_t begin, std::size_t end) {
-                                           Extent extent;
-                                           for (std::size_t i = begin; i < end; ++i) {
-                                             extent.low = min(extent.low, points[i]);
-                                             extent.high = max(extent.high, points[i]);
-                                           }
-                                           return extent;
-                                         });
-  return {all.low, all.high};
+  return curve_box_of(
+      points.size(), [&](std::size_t i) { return points[i]; }, executor);
 }
 
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -127,8 +106,8 @@ std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Cu
   });
   std::vector<std::uint32_t> order;
   executor.sort_keys(keys, order);
-  // Within a cell the curve says nothing: coordinates decide. Runs are short, or one long run of
-  // equal points (a degenerate cloud), which std::sort takes in n log n.
+  // Within a cell coordinates decide. Runs are short, or one long run of equal points (a degenerate
+  // cloud), which std::sort sorts in n log n.
   const auto by_coordinates = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3f p = points[a], q = points[b];
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,17 +17,17 @@ namespace adasplats {
 
 inline constexpr int kHilbertBits = 21;  ///< of a cell's number along one axis
 
-/// Skilling's algorithm level by level, from the top bit down. What the levels above did to the
-/// axes of this one is a permutation with inversions. His last step inverts all three bits of the
-/// key at once; since the Gray code passes an inversion of the first axis on to all three, that is
-/// one more inversion of the first axis.
+/// Skilling's algorithm level by level, from the top bit down. The effect of the levels above on
+/// the axes of a level is a permutation with inversions. His last step inverts all three bits of
+/// the key at once; since the Gray code passes an inversion of the first axis on to all three, that
+/// is one more inversion of the first axis.
 struct HilbertTurn {
-  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< which coordinate stands on the i-th axis
+  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< the coordinate on the i-th axis
   std::array<bool, 3> inverted{};
 
   constexpr bool operator==(const HilbertTurn&) const = default;
 
-  /// Takes one bit of x, y and z (x is the highest of the three) and gives three bits of the key.
+  /// Converts one bit of x, y and z (x is the highest of the three) to three bits of the key.
   ADASPLATS_HD constexpr std::uint32_t step(std::uint32_t bits) {
     std::array<bool, 3> set{};
     for (std::size_t i = 0; i < 3; ++i) set[i] = ((bits >> (2 - axis[i]) & 1U) != 0) != inverted[i];
@@ -57,14 +58,38 @@ ADASPLATS_HD constexpr std::uint64_t hilbert_key_by_turns(std::uint32_t x, std::
   return key;
 }
 
-/// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the whole
-/// come in the order that they have in the whole. Beyond its cube the curve begins anew in cube
-/// after cube, so that a box can be kept when points are added outside.
+/// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the full cloud
+/// are in the same order as there. Beyond its cube the curve repeats cube by cube, so a box can be
+/// kept when points are added outside.
 struct CurveBox {
   Vec3f low, high;
+
+  /// Holds nothing: low is above high.
+  static CurveBox empty() {
+    constexpr float kFar = std::numeric_limits<float>::max();
+    return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  }
+  void add(Vec3f point) {
+    low = min(low, point);
+    high = max(high, point);
+  }
+  CurveBox& operator+=(const CurveBox& other) {
+    low = min(low, other.low);
+    high = max(high, other.high);
+    return *this;
+  }
 };
 
-/// Of the points; an empty one is inverted.
+/// The box of position_of(0 .. count - 1); CurveBox::empty() without any.
+template <class PositionOf>
+CurveBox curve_box_of(std::size_t count, const PositionOf& position_of, const Executor& executor) {
+  return executor.sum_chunks(count, kCoarseGrain, CurveBox::empty(),
+                             [&](std::size_t begin, std::size_t end) {
+                               CurveBox box = CurveBox::empty();
+                               for (std::size_t i = begin; i < end; ++i) box.add(position_of(i));
+                               return box;
+                             });
+}
 CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor);
 
 /// The cells of the curve over a bounding box: those of the cube over its longest side.
@@ -94,16 +119,16 @@ struct HilbertGrid {
   }
 };
 
-/// Position of a cell along the Hilbert curve of 2^21 cells a side (63 bits). Skilling 2004,
+/// Position of a cell on the Hilbert curve of 2^21 cells a side (63 bits). Skilling 2004,
 /// "Programming the Hilbert curve": transpose form, then the bits of the axes interleaved.
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
 /// The order of points along a Hilbert curve over their bounding cube: `order[i]` is the index of
 /// the i-th point. Points in the same cell of the curve (2^-21 of the cube's side) are ordered by
-/// x, y, z and then by index. Consecutive points are near each other, and runs of them fill
-/// compact boxes, which Morton order does not give.
+/// x, y, z and then by index. Consecutive points are close, and runs of them fill compact boxes,
+/// unlike in Morton order.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor);
-/// The same over another box, which need not hold them.
+/// The same for a curve over another box, which need not contain the points.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const CurveBox& box,
                                          const Executor& executor);
 

@@ -38,7 +38,7 @@ TEST(HilbertKey, OfConsecutiveCellsAreNeighbors) {
 }
 
 // A box is kept when points are added outside it: near points stay near along the curve there, too.
-TEST(HilbertGrid, BeginsAnewBeyondItsCube) {
+TEST(HilbertGrid, RepeatsBeyondItsCube) {
   const HilbertGrid grid({0, 0, 0}, {16, 8, 4});
   const float period_m = 16.0F * (1U << kHilbertBits) / HilbertGrid::kCells;
   const Vec3f p = {3.3F, 7.9F, 15.1F};

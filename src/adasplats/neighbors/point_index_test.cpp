@@ -177,7 +177,7 @@ TEST(PointIndex, EquallyNearPointsAreChosenByRank) {
   expect_nearest(lattice, middles);
 }
 
-TEST(PointIndex, QueriesWithoutADistanceFindNothing) {
+TEST(PointIndex, QueriesWithoutAFiniteDistanceFindNoPoint) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Executor executor(1);
   const PointIndex index(random_points(100, 1), executor);
@@ -227,7 +227,7 @@ TEST(PointIndex, PortableAndVectorNearestAgree) {
 #endif
 }
 
-TEST(PointIndex, EmptyIndexFindsNothing) {
+TEST(PointIndex, EmptyIndexFindsNoPoint) {
   const Executor executor(1);
   const PointIndex index(std::vector<Vec3f>{}, executor);
   const std::vector<Neighbor> found = index.nearest(random_points(3, 1), executor);

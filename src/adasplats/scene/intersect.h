@@ -36,19 +36,19 @@ ADASPLATS_HD inline float intersect_disk(const Ray& ray, const Disk& disk) {
   return (t > ray.t_min && t <= ray.t_max && inside) ? t : HUGE_VALF;
 }
 
-/// Distance along the ray to the triangle, or +infinity. Both sides and the rim count; a triangle
-/// seen edge-on and NaN are misses. THE triangle intersection. Woop, Benthin and Wald 2013,
-/// "Watertight ray/triangle intersection": the corners are sheared so that the ray becomes an axis,
-/// and the signs of three 2D edge functions decide; neighbours compute the same number for their
-/// common edge, so no ray slips between them. The edge functions are in double, where the products
-/// of floats are exact and so are the signs. So a hit is off by a few ulps of the distance across
-/// the ray at most, even at grazing incidence, and a padded box never loses one (with Moeller and
-/// Trumbore's test the error grows with 1 / cos of the incidence).
+/// Distance along the ray to the triangle, or +infinity for a miss. Both sides and the rim count; a
+/// triangle seen edge-on and NaN are misses. THE triangle intersection. Woop, Benthin and Wald
+/// 2013, "Watertight ray/triangle intersection": the corners are sheared so that the ray becomes an
+/// axis, and the signs of three 2D edge functions decide; neighbours compute the same number for
+/// their common edge, so no ray slips between them. The edge functions are in double, where the
+/// products of floats are exact and so are the signs. So a hit is off by a few ulps of the distance
+/// across the ray at most, even at grazing incidence, and a padded box never loses one (with
+/// Moeller and Trumbore's test the error grows with 1 / cos of the incidence).
 ADASPLATS_HD inline float intersect_triangle(const Ray& ray, const Triangle& triangle) {
   const Vec3f d = ray.direction;
   const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-  // The longest component of the direction comes last. Choices instead of indices and & instead of
-  // &&: no branches, so that loops over rays become vector code.
+  // The longest component of the direction comes last. Selections instead of indices, and & instead
+  // of &&: without branches the compiler vectorises loops over rays.
   const bool x_last = (ax >= ay) & (ax >= az);
   const bool y_last = !x_last & (ay >= az);
   const auto turned = [&](Vec3f v) {
@@ -78,12 +78,12 @@ ADASPLATS_HD inline float intersect_triangle(const Ray& ray, const Triangle& tri
   return (inside & (t > ray.t_min) & (t <= ray.t_max)) ? t : HUGE_VALF;
 }
 
-/// Rays up to this long never lose a hit to the rounding of a box test; beyond it, only hits within
-/// rounding of a primitive's rim are in doubt.
+/// Up to this ray length, rounding of box tests never loses a hit; beyond it, only hits within
+/// rounding of a primitive's rim are uncertain.
 inline constexpr float kExactReach_m = 1024.0F;
 
-/// How much wider than exact a bounding box must be so that a point which an intersection function
-/// above took as a hit lies inside. With unit roundoff e = 2^-24 and a ray of length T the point
+/// Margin of a bounding box so that it contains every point that an intersection function above
+/// accepts as a hit. With unit roundoff e = 2^-24 and a ray of length T the point
 /// is off the disk's plane by up to 8 e T (two dot products and a division) and across the rim by
 /// 2 e T; box and traversal add ulps of the coordinates. 16 e of their sum covers all.
 ADASPLATS_HD inline float box_margin(float largest_coordinate) {

@@ -30,7 +30,7 @@ Vec3d random_unit(Random& random) {
   return normalized(v);
 }
 
-// Oracle of the tests here where nothing else is said: analytic.
+// Oracle of the tests here, unless stated otherwise: analytic.
 
 TEST(IntersectDisk, HitsInsideTheRadiusFromBothSides) {
   const Disk disk = {{0, 0, 5}, 2.0F, {0, 0, 1}};
@@ -118,7 +118,7 @@ TEST(DiskHalfExtent, HoldsEveryPointOfTheRimAndIsTight) {
   }
 }
 
-// Why the margin is what it is: every point that intersect_disk takes lies in the padded box.
+// The margin suffices: every hit of intersect_disk is in the padded box.
 TEST(DiskHalfExtent, HoldsEveryHitOfGrazingRays) {
   int hits = 0;
   for (std::uint64_t i = 0; i < 200'000; ++i) {

@@ -12,11 +12,11 @@
 
 namespace adasplats {
 
-/// Triangles with one semantic class each.
+/// Triangles, with a semantic class each.
 struct TriangleMesh {
   std::vector<Vec3f> vertices;                          ///< relative to the scene's origin, m
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices
-  std::vector<std::uint16_t> classes;                   ///< one a triangle, or empty
+  std::vector<std::uint16_t> classes;                   ///< one per triangle, or empty
 
   Triangle triangle(std::size_t i) const {
     const auto& t = triangles[i];
@@ -24,8 +24,8 @@ struct TriangleMesh {
   }
 };
 
-/// The geometry that backends build their structures from; views only, the owner outlives them.
-/// Primitive index: splats first, then triangles.
+/// The geometry that tracers build their trees from. Holds views; the owner must outlive it.
+/// Primitive indices: splats first, then triangles.
 struct SceneView {
   std::span<const Disk> disks;
   const TriangleMesh* mesh = nullptr;

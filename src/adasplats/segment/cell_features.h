@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// What the network is told of a cell.
+/// Attributes of a cell for the network.
 struct CellFacts {
   float height_m = 0;  ///< above the ground
   float intensity = 0;
@@ -30,14 +30,14 @@ ADASPLATS_HD inline float feature_of(PointFeature feature, const CellFacts& cell
   return 0;
 }
 
-/// A point's intensity as a share of the highest, 0 to 1; 0: not known.
+/// A point's intensity divided by `full`, clamped to 0..1; 0 if it is unknown.
 ADASPLATS_HD inline float intensity_share(float intensity, float full) {
   const float share = intensity / full;
   if (!(std::fabs(share) <= 3e38F)) return 0;
   return share < 0 ? 0.0F : (share > 1 ? 1.0F : share);
 }
 
-/// The first of the largest logits of a cell.
+/// Index of the largest logit of a cell; the first of equal ones.
 ADASPLATS_HD inline std::uint8_t class_of_logits(const float* logits, std::size_t classes) {
   std::size_t best = 0;
   for (std::size_t c = 1; c < classes; ++c)
@@ -45,8 +45,8 @@ ADASPLATS_HD inline std::uint8_t class_of_logits(const float* logits, std::size_
   return static_cast<std::uint8_t>(best);
 }
 
-/// Probability of the class with the largest logit; 0: the logits say nothing, as weights too large
-/// for floats make them.
+/// Probability of the class with the largest logit; 0 if the logits are not finite (weights that
+/// overflow floats).
 ADASPLATS_HD inline float confidence_of_logits(const float* logits, std::size_t classes,
                                                std::size_t best) {
   float sum = 0;
@@ -54,7 +54,7 @@ ADASPLATS_HD inline float confidence_of_logits(const float* logits, std::size_t 
   return std::fabs(sum) <= 3e38F ? 1 / sum : 0;
 }
 
-/// Of class c, given that of the best.
+/// Probability of class c, given that of the best class.
 ADASPLATS_HD inline float probability_of_logits(const float* logits, std::size_t c,
                                                 std::size_t best, float confidence) {
   return confidence > 0 ? confidence * exp_of_negative(logits[c] - logits[best]) : 0;

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/segment/cell_features.h"
-#include "adasplats/segment/network/matrix_product.h"
 #include "adasplats/segment/network/run_network.h"
-#include "adasplats/segment/pyramid/heights_above_ground.h"
+#include "adasplats/segment/pyramid/pyramid.h"
 #include "adasplats/segment/segment_engine.h"
 
 namespace adasplats {

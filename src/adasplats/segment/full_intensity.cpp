@@ -11,7 +11,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kFull = 0.99;
-constexpr float kLeast = 1e-6F;
+constexpr float kMinFull = 1e-6F;
 
 /// Which of so many, sorted, is the quantile.
 std::size_t rank_of(std::size_t known) {
@@ -27,7 +27,7 @@ float of_sortable(std::uint32_t number) {
   return std::bit_cast<float>((number >> 31) != 0 ? number & 0x7fffffffU : ~number);
 }
 
-/// The first number up to which the counts have more than `rank`, which becomes that among its own.
+/// The first index with a cumulative count above `rank`; `rank` becomes the rank within it.
 std::uint32_t find(const std::vector<std::uint64_t>& counts, std::uint64_t& rank) {
   std::uint32_t number = 0;
   for (; rank >= counts[number]; ++number) rank -= counts[number];
@@ -41,9 +41,9 @@ float full_intensity(std::span<const float> intensities) {
   for (const float value : intensities)
     if (std::isfinite(value)) known.push_back(value);
   if (known.empty()) return 1;
-  const auto place = static_cast<std::ptrdiff_t>(rank_of(known.size()));
-  std::nth_element(known.begin(), known.begin() + place, known.end());
-  return std::max(kLeast, known[static_cast<std::size_t>(place)]);
+  const auto rank = static_cast<std::ptrdiff_t>(rank_of(known.size()));
+  std::nth_element(known.begin(), known.begin() + rank, known.end());
+  return std::max(kMinFull, known[static_cast<std::size_t>(rank)]);
 }
 
 void FullIntensitySearch::add_first(std::span<const float> intensities) {
@@ -68,7 +68,7 @@ void FullIntensitySearch::add_second(std::span<const float> intensities) {
 float FullIntensitySearch::value() const {
   if (known_ == 0) return 1;
   std::uint64_t rank = rank_;
-  return std::max(kLeast, of_sortable(upper_ << 16 | find(low_, rank)));
+  return std::max(kMinFull, of_sortable(upper_ << 16 | find(low_, rank)));
 }
 
 }  // namespace adasplats

@@ -45,7 +45,7 @@ TEST(FullIntensity, IsTheSameWholeAndInParts) {
   }
 }
 
-TEST(FullIntensity, WhatIsNotKnownDoesNotCount) {
+TEST(FullIntensity, UnknownIntensitiesAreIgnored) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const std::vector<float>& values : {std::vector<float>{}, {kNaN, kInfinity, -kInfinity}}) {

@@ -13,13 +13,13 @@
 namespace adasplats {
 namespace {
 
-void require_places(const PointCloud& cloud) {
+void require_positions(const PointCloud& cloud) {
   const auto is_near = [](float value) { return std::fabs(value) <= kSegmentReach_m; };  // no NaN
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3f p = cloud.positions[i];
     if (!is_near(p.x) || !is_near(p.y) || !is_near(p.z))
       throw Error(ErrorKind::data, "point " + std::to_string(i) +
-                                       " is not finite or farther than 100 km from the others");
+                                       " is not finite or more than 100 km from the origin");
   }
 }
 
@@ -39,7 +39,7 @@ class Segmenter {
           options_.full_intensity ? *options_.full_intensity : full_intensity(cloud_.intensities);
     const std::unique_ptr<TileSegmenter> tiles = engine.start(task);
     sort_into_tiles();
-    // The points of a tile are in their order.
+    // The points of a tile are in ascending order.
     for (std::size_t t = 0; t < begins_.size(); ++t)
       if (core_of(t).front() < wanted_) segment(t, *tiles);
     tiles->finish(result_);
@@ -48,14 +48,14 @@ class Segmenter {
 
  private:
   void sort_into_tiles() {
-    const auto key_of = [](std::int32_t place) {  // sorts as the places do
-      return static_cast<std::uint32_t>(place) ^ 0x80000000U;
+    const auto key_of = [](std::int32_t index) {  // in ascending order of indices
+      return static_cast<std::uint32_t>(index) ^ 0x80000000U;
     };
     std::vector<std::uint64_t> keys(cloud_.size());
     executor_.for_chunks(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const SegmentSquare place = square_of(cloud_.positions[i], options_);
-        keys[i] = std::uint64_t{key_of(place.x)} << 32 | key_of(place.y);
+        const SegmentSquare square = square_of(cloud_.positions[i], options_);
+        keys[i] = std::uint64_t{key_of(square.x)} << 32 | key_of(square.y);
       }
     });
     executor_.sort_keys(keys, order_);
@@ -71,19 +71,19 @@ class Segmenter {
     return std::span(order_).subspan(begins_[tile], end - begins_[tile]);
   }
 
-  /// The points of the tile first, then those of its neighbours that lie in its margin.
+  /// The points of the tile first, then those of its neighbours in its margin.
   std::vector<std::uint32_t> points_of(std::size_t tile) const {
-    const SegmentSquare place = tiles_[tile];
+    const SegmentSquare square = tiles_[tile];
     const std::span<const std::uint32_t> core = core_of(tile);
     std::vector<std::uint32_t> indices(core.begin(), core.end());
-    const double low_x = place.x * options_.tile_m - options_.margin_m;
-    const double low_y = place.y * options_.tile_m - options_.margin_m;
+    const double low_x = square.x * options_.tile_m - options_.margin_m;
+    const double low_y = square.y * options_.tile_m - options_.margin_m;
     const double size = options_.tile_m + 2 * options_.margin_m;
     const auto reach = static_cast<std::int32_t>(std::ceil(options_.margin_m / options_.tile_m));
     for (std::int32_t dx = -reach; dx <= reach; ++dx) {
       for (std::int32_t dy = -reach; dy <= reach; ++dy) {
         if (dx == 0 && dy == 0) continue;
-        const SegmentSquare other{place.x + dx, place.y + dy};
+        const SegmentSquare other{square.x + dx, square.y + dy};
         const auto found = std::lower_bound(tiles_.begin(), tiles_.end(), other);
         if (found == tiles_.end() || !(*found == other)) continue;
         for (const std::uint32_t i : core_of(static_cast<std::size_t>(found - tiles_.begin()))) {
@@ -140,7 +140,7 @@ SegmentSquare square_of(Vec3f position, const SegmentOptions& options) {
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const SegmentEngine& engine,
                            const Executor& executor) {
-  require_places(cloud);
+  require_positions(cloud);
   return Segmenter(cloud, network, options, executor).run(engine);
 }
 

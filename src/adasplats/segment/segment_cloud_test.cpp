@@ -33,7 +33,7 @@ PointCloud ground_and_pole() {
   return cloud;
 }
 
-TEST(SegmentCloud, SeesWhatIsHigh) {
+TEST(SegmentCloud, ClassifiesByHeight) {
   if (!has_products()) GTEST_SKIP() << "built without OpenBLAS";
   const Network network = parse_network(pole_network().text(), "n");
   const PointCloud cloud = ground_and_pole();
@@ -118,7 +118,7 @@ TEST(SegmentCloud, LogitsBeyondFloatsAreSoundLabels) {
   for (const float value : found.probabilities) EXPECT_EQ(value, 0);
 }
 
-TEST(SegmentCloud, RefusesPlacesThatGridsCannotHold) {
+TEST(SegmentCloud, RejectsPositionsOutOfRange) {
   const Network network = parse_network(pole_network().text(), "n");
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 1e6F}) {

@@ -15,43 +15,43 @@
 
 namespace adasplats {
 
-/// A square of a cloud and what lies around it.
+/// A tile of a cloud with its margin.
 struct SegmentTile {
-  std::span<const std::uint32_t> indices;  ///< of points of the cloud, those of the square first...
-  std::size_t wanted = 0;                  ///< ...of which so many get classes
-  Vec3f corner;                            ///< of grids, near the square
-  float width_m = 0;                       ///< of the square with what lies around it
+  std::span<const std::uint32_t> indices;  ///< of points of the cloud, those of the tile first
+  std::size_t wanted = 0;                  ///< number of points, from the first on, to classify
+  Vec3f corner;                            ///< origin of grids, near the tile
+  float width_m = 0;                       ///< of the tile with its margin
 };
 
-/// What all tiles of a cloud have in common.
+/// Common data of all tiles of a cloud.
 struct SegmentTask {
   const PointCloud& cloud;
   const Network& network;
   const SegmentOptions& options;
   bool has_intensity = false;
-  float full_intensity = 1;  ///< intensities are shares of it
+  float full_intensity = 1;  ///< scaled to 1
 };
 
-/// Gives the points of tiles classes, one tile after the other.
+/// Classifies the points of tiles, one tile after another.
 class TileSegmenter {
  public:
   virtual ~TileSegmenter() = default;
-  /// Gives how many cells the network saw. `tile` is not used after the call.
+  /// Returns the number of cells that the network processed. `tile` is not used after the call.
   virtual std::size_t segment(const SegmentTile& tile) = 0;
-  /// After the last tile: writes classes, confidences and probabilities, whose sizes are right.
+  /// Call after the last tile: stores classes, confidences and probabilities.
   virtual void finish(Segmentation& result) = 0;
 };
 
-/// What networks are run on. Thread-safe.
+/// A device that runs networks. Thread-safe.
 class SegmentEngine {
  public:
   virtual ~SegmentEngine() = default;
   virtual std::string_view name() const = 0;
-  /// The task outlives what is made. Errors: unavailable.
+  /// `task` must outlive the result. Errors: unavailable.
   virtual std::unique_ptr<TileSegmenter> start(const SegmentTask& task) const = 0;
 };
 
-/// Errors on start: unavailable (built without OpenBLAS). `executor` outlives the engine.
+/// Errors on start: unavailable (built without OpenBLAS). `executor` must outlive the engine.
 std::unique_ptr<SegmentEngine> make_cpu_segment_engine(const Executor& executor);
 
 }  // namespace adasplats

@@ -10,12 +10,12 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/splats/model_engine.h"
-#include "adasplats/surface/fusion_cell.h"
+#include "adasplats/surface/fused_points.h"
 
 namespace adasplats {
 namespace {
 
-/// Times the steps and passes them on to the progress sink.
+/// Times the steps and reports them to the progress sink.
 class StepClock {
  public:
   StepClock(std::vector<StepTime>& steps, ProgressSink& progress)
@@ -50,7 +50,7 @@ class StepClock {
   Clock::time_point start_;
 };
 
-/// The class of a point; an id that the scheme does not know is the input's fault.
+/// The class of an id. Errors: data (the scheme lacks it).
 const SemanticClass& class_of(const LabelScheme& labels, std::uint16_t id) {
   const SemanticClass* found = labels.find(id);
   if (found == nullptr)
@@ -59,7 +59,7 @@ const SemanticClass& class_of(const LabelScheme& labels, std::uint16_t id) {
   return *found;
 }
 
-/// One table entry for each of the 65,536 ids, so that 12 M points need no search.
+/// A table over all 65,536 ids, so that 12 M points need no search.
 template <class T, class F>
 std::vector<T> table_by_id(const std::vector<bool>& used, F&& value_of) {
   std::vector<T> table(used.size());
@@ -85,10 +85,10 @@ ClassTables class_tables(const PointCloud& cloud, const LabelScheme* labels,
 }
 
 void require_points(std::size_t points) {
-  if (points == 0) throw Error(ErrorKind::data, "no points are left to model");
+  if (points == 0) throw Error(ErrorKind::data, "no points remain to model");
 }
 
-/// Moves what steps made into a model.
+/// Moves the results of the steps into a model.
 void put_splats(PaperSplats made, SplatModel& model, BuildReport& report) {
   model.disks = std::move(made.disks);
   model.classes = std::move(made.classes);
@@ -114,7 +114,7 @@ bool shows_reflectances(const PointCloud& cloud) {
   return cloud.has_beams() && !cloud.intensities.empty();
 }
 
-/// What measuring reflectances needs of a cloud; nothing where it cannot be.
+/// The attributes that measuring reflectances needs; empty if the cloud lacks them.
 PointCloud rays_with_intensities(const PointCloud& cloud) {
   PointCloud rays;
   rays.origin = cloud.origin;
@@ -126,7 +126,7 @@ PointCloud rays_with_intensities(const PointCloud& cloud) {
   return rays;
 }
 
-/// The paper's methods.
+/// Runs a method of the paper.
 void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
                  const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
   const std::unique_ptr<PaperSteps> made = engine.paper_steps();
@@ -152,7 +152,8 @@ void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCl
   put_splats(steps.take_splats(), model, report);
 }
 
-/// Their steps change the points that they have, so those that were measured are kept beside them.
+/// Runs a method of the paper and measures reflectances. Its steps change the points, so a copy of
+/// the measured ones is kept.
 void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
          const ClassTables& tables, const BuildOptions& build, StepSink step, SplatModel& model,
          BuildReport& report) {
@@ -164,7 +165,7 @@ void run(const PaperOptions& options, const ModelEngine& engine, PointCloud clou
                    report);
 }
 
-/// Takes out points that no cell of the consistent method is for, and gives their number.
+/// Removes points out of range of the consistent method's cells; returns their number.
 std::size_t remove_beyond(double reach_m, PointCloud& cloud, const Executor& executor) {
   const auto is_near = [&](std::size_t i) {
     const Vec3f p = cloud.positions[i];
@@ -186,20 +187,19 @@ std::size_t remove_beyond(double reach_m, PointCloud& cloud, const Executor& exe
   return removed;
 }
 
-/// Says what was removed; throws data where that is no single fault, but a second place.
+/// Warns about removed points; throws data if they are too many to be outliers.
 void report_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressSink& progress) {
   constexpr double kMaxRemoved = 0.01;  // as LoadOptions::max_dropped
   if (removed == 0) return;
-  const std::string what =
-      std::to_string(removed) + (removed == 1 ? " point lies" : " points lie") + " more than " +
-      std::to_string(std::lround(reach_m / 1000)) +
-      " km from the middle of the cloud, farther than cells reach (larger ones reach farther)";
+  const std::string what = std::to_string(removed) + " of " + std::to_string(all) +
+                           " points are more than " + std::to_string(std::lround(reach_m / 1000)) +
+                           " km from the centre of the cloud";
   if (static_cast<double>(removed) > kMaxRemoved * static_cast<double>(all))
-    throw Error(ErrorKind::data, "of " + std::to_string(all) + " points " + what);
-  progress.warn(what + ": left out");
+    throw Error(ErrorKind::data, what + ", the range of its cells; use larger cells");
+  progress.warn(what + ", the range of its cells, and are skipped");
 }
 
-/// Ours.
+/// Runs the consistent method and measures reflectances.
 void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud cloud,
          const ClassTables& tables, const BuildOptions& build, StepSink step, SplatModel& model,
          BuildReport& report) {
@@ -227,7 +227,7 @@ std::size_t count_of(const OriginCounts& counts, OriginKind kind) {
   return counts[static_cast<std::size_t>(kind)];
 }
 
-/// What a model cannot have for want of origins; empty where nothing is missing.
+/// Warning about the effects of missing sensor positions; empty if none are missing.
 std::string origin_warning(bool checks, const OriginCounts& counts) {
   const std::size_t unknown = count_of(counts, OriginKind::none);
   const std::size_t guessed = count_of(counts, OriginKind::guessed);
@@ -236,16 +236,15 @@ std::string origin_warning(bool checks, const OriginCounts& counts) {
   const std::size_t lacking = checks ? unknown + guessed : unknown;
   if (lacking == 0) return {};
   const std::string which =
-      lacking == all ? "no"
+      lacking == all ? "the input has no"
                      : std::to_string(lacking) + " of " + std::to_string(all) + " points have no";
   if (!checks)
     return which +
-           " sensor positions: normals there are not oriented (a viewpoint or a trajectory "
-           "would orient them)";
-  const std::string guesses = " measured sensor positions (those of " + std::to_string(guessed) +
-                              " points are guessed, which orients normals alone)";
+           " sensor positions: their normals are not oriented (supply `trajectory` or `viewpoint`)";
+  const std::string guesses = " measured sensor positions (" + std::to_string(guessed) +
+                              " points have guessed ones, which only orient normals)";
   return which + (guessed == 0 ? " sensor positions" : guesses) +
-         ": splats there are not checked against rays";
+         ": their splats cannot be checked against rays";
 }
 
 }  // namespace
@@ -257,15 +256,15 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   check(options.recipe);
   const SplatMethod method = method_of(options.recipe);
   const auto* ours = std::get_if<ConsistentOptions>(&options.recipe);
-  if (cloud.empty()) throw Error(ErrorKind::data, "no points: there is nothing to model");
+  if (cloud.empty()) throw Error(ErrorKind::data, "the input has no points to model");
   if (options.whole != nullptr && ours == nullptr)
     throw Error(ErrorKind::usage,
-                "pieces of a place are modelled by the method consistent alone, not by " +
+                "only the method consistent can model the tiles of a city, not the method " +
                     std::string(word_of(method, kSplatMethods)));
   if (method == SplatMethod::semantic && (labels == nullptr || cloud.classes.empty()))
     throw Error(ErrorKind::data,
-                "the semantic method needs labels, and the input has none; "
-                "the descriptors method does without");
+                "the method semantic needs labels, and the input has none; "
+                "use the method descriptors instead");
   std::pair<SplatModel, BuildReport> result;
   SplatModel& model = result.first;
   BuildReport& report = result.second;

@@ -20,19 +20,19 @@
 namespace adasplats {
 
 struct BuildOptions {
-  MethodOptions recipe;  ///< ours without options, else a method of the paper
+  MethodOptions recipe;  ///< by default the consistent method
   DynamicRemoval remove = DynamicRemoval::movable;
-  /// Intensities become reflectances with the sensor's response, where points have known beams and
-  /// intensities (ReflectancesOn); else they stay as measured.
+  /// Convert intensities to reflectances with the sensor's response, if points have beams and
+  /// intensities (ReflectancesOn); else keep them as measured.
   bool reflectances = true;
-  /// Beams are taken to have started where they are said to, whatever the points say of it.
+  /// Accept the sensor positions without a check.
   bool trust_origins = false;
-  /// The cloud is a piece of this place (method consistent alone), whose origins were checked;
-  /// nullptr: it is all there is.
+  /// Facts about the city that the cloud is a tile of (method consistent only), whose sensor
+  /// positions were checked; nullptr: the cloud is the whole scene.
   const GlobalContext* whole = nullptr;
 };
 
-/// One step of the work and what it took.
+/// Duration of one step.
 struct StepTime {
   std::string name;
   double seconds;
@@ -41,28 +41,29 @@ struct StepTime {
 struct BuildReport {
   std::size_t points_in = 0;
   std::size_t points_dynamic = 0;                       ///< removed by label
-  std::vector<RemovedPoints::OfClass> removed_classes;  ///< these points by class
-  std::size_t points_noise = 0;      ///< removed by denoising; consistent: beyond all cells
-  std::size_t points_used = 0;       ///< that the (last) generation started from
+  std::vector<RemovedPoints::OfClass> removed_classes;  ///< those points, by class
+  std::size_t points_noise = 0;  ///< removed by denoising; consistent: out of range of the cells
+  std::size_t points_used = 0;   ///< input of the (last) generation
   std::size_t points_resampled = 0;  ///< new points from resampling
   std::size_t primitives = 0;
   double radius_m = 0;                         ///< the paper's methods: R of the last generation
   double error_m = 0;                          ///< the paper's methods: E of the last generation
-  std::optional<ConsistentReport> consistent;  ///< of that method
+  std::optional<ConsistentReport> consistent;  ///< of the consistent method
   bool ray_checked = false;           ///< consistent: splats were checked against measured rays
-  bool reflectance_measured = false;  ///< enough rays show reflectances
+  bool reflectance_measured = false;  ///< enough rays to measure reflectances
   OriginCounts origins{};             ///< of the points, by OriginKind
-  bool oriented = true;  ///< normals face the sensors; false: not all origins are known
+  bool oriented = true;  ///< normals face the sensors; false: some sensor positions are unknown
   std::vector<StepTime> steps;
 };
 
 class ModelEngine;
 
-/// Point cloud in, splat model out. The result depends on the set of points alone: not on their
-/// order, the threads or the machine. Semantic needs `labels` and cloud.classes; dynamic removal
-/// is skipped without them. `engine` does the steps (model_engine.h; nullptr: `executor`'s
-/// threads); engines give the same bytes. Errors: data ("no points"; no labels for `semantic`; an
-/// id that the scheme does not know; origin_objection()), usage (options out of range).
+/// Builds a splat model from a point cloud. The result depends only on the set of points, not on
+/// their order, the threads or the machine. The semantic method needs `labels` and cloud.classes;
+/// without them dynamic objects are not removed. `engine` runs the steps (model_engine.h; nullptr:
+/// on the threads of `executor`); all engines give the same bytes. Errors: data (no points; no
+/// labels for `semantic`; an id that the scheme lacks; origin_objection()), usage (options out of
+/// range).
 std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
                                                const BuildOptions& options,
                                                const Executor& executor, ProgressSink& progress,

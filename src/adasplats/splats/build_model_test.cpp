@@ -139,7 +139,7 @@ TEST(BuildModel, AdaptsTheNumberOfSplats) {
   EXPECT_LT(build(small_place(60000, 0.005), options).first.size(), basic);
 }
 
-TEST(BuildModel, RemovesWhatMovesByLabel) {
+TEST(BuildModel, RemovesDynamicObjectsByLabel) {
   PointCloud cloud = small_place(5000, 0.005);
   for (std::size_t i = 0; i < cloud.size(); i += 10) cloud.classes[i] = i % 20 == 0 ? 252 : 10;
   PaperOptions options;

@@ -15,7 +15,7 @@ struct MethodOf {
       case PaperVariant::descriptors: return SplatMethod::descriptors;
       case PaperVariant::semantic: return SplatMethod::semantic;
     }
-    throw std::logic_error("a variant without a method");
+    throw std::logic_error("an unknown variant");
   }
 };
 
@@ -39,7 +39,7 @@ MethodOptions MethodChoice::recipe() const {
     case SplatMethod::descriptors: return with_variant(paper, PaperVariant::descriptors);
     case SplatMethod::semantic: return with_variant(paper, PaperVariant::semantic);
   }
-  throw std::logic_error("a method without a recipe");
+  throw std::logic_error("an unknown method");
 }
 
 }  // namespace adasplats

@@ -13,10 +13,10 @@
 
 namespace adasplats {
 
-/// How splats are made of points: a method with its options, each beside its steps.
+/// A method of making splats from points, with its options.
 using MethodOptions = std::variant<ConsistentOptions, PaperOptions>;
 
-/// The words for methods: the paper's variants, and ours.
+/// Names of the methods: the consistent method and the paper's variants.
 enum class SplatMethod : std::uint8_t { consistent, basic, descriptors, semantic };
 inline constexpr std::pair<std::string_view, SplatMethod> kSplatMethods[] = {
     {"consistent", SplatMethod::consistent},
@@ -29,17 +29,17 @@ SplatMethod method_of(const MethodOptions& recipe);
 /// Errors: usage (an option out of range).
 void check(const MethodOptions& recipe);
 
-/// A recipe as users choose one: a word, and options of every method.
+/// A method as users choose it: its name, and the options of every method.
 struct MethodChoice {
   SplatMethod method = SplatMethod::consistent;
-  PaperOptions paper;  ///< without the variant, which the method says
+  PaperOptions paper;  ///< `variant` is ignored: `method` decides it
   ConsistentOptions consistent;
 
-  /// That of the method; the options of others have no effect (unused_settings()).
+  /// The chosen method with its options; those of the others have no effect (unused_settings()).
   MethodOptions recipe() const;
 };
 
-/// Calls visit(options, who they are for) for the options of every method.
+/// Calls visit(options, name of their methods) for the options of every method.
 template <class Choice, class Visit>
 void visit_methods(Choice& choice, Visit&& visit) {
   visit(choice.paper, "the paper's methods");
@@ -49,8 +49,8 @@ void visit_methods(Choice& choice, Visit&& visit) {
 template <class Visit>
 void visit_settings(MethodChoice& choice, Visit&& visit) {
   visit(Setting{.name = "method",
-                .help = "consistent agrees with the measured rays; the others are the paper's "
-                        "variants, of which semantic needs labels"},
+                .help = "Method: consistent agrees with the measured rays; the others are the "
+                        "paper's variants, of which semantic needs labels"},
         choice.method);
   visit_methods(choice, [&](auto& options, const char*) { visit_settings(options, visit); });
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/model_engine.h"
 
-#include "adasplats/splats/model/rays_on_cpu.h"
+#include "adasplats/splats/model/cpu_backend.h"
 #include "adasplats/splats/reflectance/reflectances_on.h"
 
 namespace adasplats {
@@ -22,11 +22,11 @@ class CpuModelEngine final : public ModelEngine {
   Reflectances measure_reflectances(const std::vector<Disk>& disks,
                                     const std::vector<float>& fallback,
                                     const PointCloud& cloud) const override {
-    const RaysOnCpu place(executor_);
+    const RaysOnCpu backend(executor_);
     if (!cloud.has_beams() || cloud.intensities.empty()) return {fallback, {}};
     const MeasuredRays rays(cloud, kMinReflectanceRange_m, executor_);
     const RaysWithIntensities<RaysOnCpu> measured = {&rays, &cloud.intensities};
-    return ReflectancesOn<RaysOnCpu>(place, disks, fallback).run({&measured, 1});
+    return ReflectancesOn<RaysOnCpu>(backend, disks, fallback).run({&measured, 1});
   }
 
  private:

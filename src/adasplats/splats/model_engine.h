@@ -21,7 +21,7 @@ class ModelEngine {
   virtual std::string_view name() const = 0;
   virtual std::unique_ptr<PaperSteps> paper_steps() const = 0;
   virtual std::unique_ptr<ConsistentSteps> consistent_steps() const = 0;
-  /// Of disks by the measured rays of a cloud. See ReflectancesOn.
+  /// Measures the reflectances of disks with the rays of a cloud. See ReflectancesOn.
   virtual Reflectances measure_reflectances(const std::vector<Disk>& disks,
                                             const std::vector<float>& fallback,
                                             const PointCloud& cloud) const = 0;

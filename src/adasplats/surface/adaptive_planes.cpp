@@ -17,8 +17,7 @@ namespace {
 
 constexpr std::size_t kBins = 256;
 
-/// Which of the bins, up to the largest of the squared distances, each lies in: never a lower one
-/// for a larger distance. Nothing where they cannot be told apart.
+/// Factor from squared distances to bins, monotonic in the distance; nullopt if it is not finite.
 std::optional<float> bins_per_m2(const NeighborList& neighbors) {
   float largest = 0;
   for (std::uint32_t k = 0; k < neighbors.size; ++k)
@@ -27,8 +26,8 @@ std::optional<float> bins_per_m2(const NeighborList& neighbors) {
   return std::isfinite(bins) && std::isfinite(largest) ? std::optional(bins) : std::nullopt;
 }
 
-/// The keys of neighbours, ascending. On a surface as many cells are within each part of the
-/// squared distance, so that bins put nearly all in order, several times as fast as sorting does.
+/// The keys of neighbours, ascending. On a surface cells are distributed evenly over the squared
+/// distance, so bins sort nearly all of them, several times faster than std::sort.
 void sorted_keys(const NeighborList& neighbors, std::vector<std::uint64_t>& keys) {
   keys.resize(neighbors.size);
   const std::optional<float> per_m2 = bins_per_m2(neighbors);
@@ -81,12 +80,12 @@ std::vector<LocalPlane> adaptive_planes(const FusedPoints& cells, const PointInd
                                         const AdaptivePlaneOptions& options,
                                         const Executor& executor) {
   std::vector<LocalPlane> planes(cells.size());
-  const std::uint32_t most = options.scales.back();
+  const std::uint32_t max_neighbors = options.scales.back();
   const ProgressPass pass(executor, cells.size());
   index.for_each_neighborhood(
-      executor, [&](std::uint32_t) { return NeighborLimit{most}; },
+      executor, [&](std::uint32_t) { return NeighborLimit{max_neighbors}; },
       [&](std::uint32_t cell, const NeighborList& neighbors) {
-        thread_local std::vector<std::uint64_t> keys;  // its memory is used again
+        thread_local std::vector<std::uint64_t> keys;  // reused memory
         planes[cell] =
             local_plane(cells.positions[cell], Neighborhood(cells, keys, cell, neighbors), options);
       });

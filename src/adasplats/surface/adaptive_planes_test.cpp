@@ -196,8 +196,8 @@ TEST(AdaptivePlanes, MeansMoveToTheirPlaneByALimitedDistance) {
 
 TEST(AdaptivePlanes, TrimmingNeverLeavesTooFewCellsForAPlane) {
   // Two cells of 1000 points hold nearly all weight, so the deviation across any plane through
-  // them is small; ten cells of one point stand 4 cm on either side of the plane x = const. All of
-  // them say x is the normal; the two heavy ones alone, a line along y, say nothing.
+  // them is small; ten cells of one point are 4 cm on either side of the plane x = const. Together
+  // they give the normal x; the two heavy ones alone are a line along y without a normal.
   std::vector<Vec3f> points;
   const Vec3f heavy = cell_middle(0, 0, 0);
   points.insert(points.end(), 1000, heavy);

@@ -41,7 +41,7 @@ void add_relaxed(std::uint32_t& counter, std::uint32_t value) {
   std::atomic_ref<std::uint32_t>(counter).fetch_add(value, std::memory_order_relaxed);
 }
 
-/// Computes neighbourhood after neighbourhood into a BaseNeighborhoods.
+/// Computes the neighbourhoods one by one.
 class Pass {
  public:
   Pass(std::span<const Vec3f> points, const BaseNeighborhoodOptions& options,
@@ -52,7 +52,7 @@ class Pass {
         error_sums_(points.size()),
         error_counts_(points.size()) {}
 
-  /// Takes the neighbourhood of a point.
+  /// Sets the results of a point and counts its votes.
   void set(std::uint32_t rank, const NeighborList& neighbors) {
     const LocalShape shape = shape_of(points_, rank, neighbors);
     const PlaneDistances distances = plane_distances(points_, rank, neighbors, shape.normal);
@@ -63,7 +63,7 @@ class Pass {
     vote(rank, neighbors, shape.normal, distances.sigma(), 1);
   }
 
-  /// Takes back what set() counted for this point and these neighbours.
+  /// Reverts the votes of set() for this point and these neighbours.
   void unset(std::uint32_t rank, const NeighborList& neighbors) {
     if (options_.denoise_sigmas <= 0) return;
     const Vec3f normal = result_.normals[rank];
@@ -71,7 +71,7 @@ class Pass {
     vote(rank, neighbors, normal, distances.sigma(), static_cast<std::uint32_t>(-1));
   }
 
-  /// E: mean over all pairs of point and neighbour (algorithm notes, point 4).
+  /// E: mean over all pairs of point and neighbour.
   double mean_error(const Executor& executor) const {
     struct Sum {
       double error = 0, count = 0;
@@ -127,11 +127,10 @@ double mean_of(const std::vector<float>& values, const Executor& executor) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// R is known only after all K-th distances are, but for most points the K nearest lie within it
-/// anyway. So one search takes the K nearest of every point at face value, and those few that R
-/// cuts are searched again.
-void speculate_then_mend(const PointIndex& index, std::uint32_t neighbors, Pass& pass,
-                         BaseNeighborhoods& result, const Executor& executor) {
+/// R depends on all K-th distances, but for most points the K nearest are within it. So the first
+/// search assumes that they are, and the few neighbourhoods that R cuts are searched again.
+void speculate_then_correct(const PointIndex& index, std::uint32_t neighbors, Pass& pass,
+                            BaseNeighborhoods& result, const Executor& executor) {
   std::vector<float> kth_distances(index.size());
   {
     const ProgressPass speculating(executor, index.size());
@@ -147,7 +146,7 @@ void speculate_then_mend(const PointIndex& index, std::uint32_t neighbors, Pass&
   }
   result.radius_m = mean_of(kth_distances, executor);
   const float squared_radius = squared_radius_of(result.radius_m);
-  const ProgressPass mending(executor, index.size());
+  const ProgressPass correcting(executor, index.size());
   index.for_each_neighborhood(
       executor,
       [&](std::uint32_t rank) {
@@ -189,7 +188,7 @@ BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointI
         executor, [&](std::uint32_t) { return limit; },
         [&](std::uint32_t rank, const NeighborList& found) { pass.set(rank, found); });
   } else {
-    speculate_then_mend(index, options.neighbors, pass, result, executor);
+    speculate_then_correct(index, options.neighbors, pass, result, executor);
   }
   result.error_m = pass.mean_error(executor);
   return result;

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 
-#include "adasplats/surface/fusion_cell.h"
-
 namespace adasplats {
 namespace {
 
-/// Points sorted by cell, and where each cell begins.
+/// Points sorted by cell.
 struct Cells {
   std::vector<std::uint32_t> begins;  ///< one more than cells
   std::vector<std::uint32_t> members;
@@ -47,7 +45,7 @@ std::vector<Vec3f> means_of(std::span<const Vec3f> points, const Cells& cells,
   return means;
 }
 
-/// Cells with their means, along the curve.
+/// Sorts cells along the curve.
 template <class PointsOf>
 FusedPoints in_curve_order(const std::vector<Vec3f>& means, std::size_t points,
                            const PointsOf& points_of, const CurveBox& box,
@@ -88,15 +86,15 @@ FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
 FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
                         std::span<const std::uint8_t> split, double cell_m, const CurveBox& box,
                         const Executor& executor) {
-  // The points of the split cells in ascending order, so that small cells list theirs so too.
+  // The points of split cells, sorted, so that the members of small cells are ascending, too.
   std::vector<std::uint32_t> loose;
-  std::vector<std::uint32_t> whole;  // cells that stay
+  std::vector<std::uint32_t> kept;  // cells that are not split
   for (std::size_t cell = 0; cell < fused.size(); ++cell) {
     const auto members = fused.points_of(cell);
     if (split[cell] != 0) {
       loose.insert(loose.end(), members.begin(), members.end());
     } else {
-      whole.push_back(static_cast<std::uint32_t>(cell));
+      kept.push_back(static_cast<std::uint32_t>(cell));
     }
   }
   std::sort(loose.begin(), loose.end());
@@ -107,10 +105,10 @@ FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
 
   std::vector<Vec3f> means = means_of(loose_points, small, executor);
   const std::size_t small_count = means.size();
-  for (const std::uint32_t cell : whole) means.push_back(fused.positions[cell]);
+  for (const std::uint32_t cell : kept) means.push_back(fused.positions[cell]);
   for (std::uint32_t& member : small.members) member = loose[member];
   const auto points_of = [&](std::size_t cell) {
-    return cell < small_count ? small.points_of(cell) : fused.points_of(whole[cell - small_count]);
+    return cell < small_count ? small.points_of(cell) : fused.points_of(kept[cell - small_count]);
   };
   return in_curve_order(means, points.size(), points_of, box, executor);
 }

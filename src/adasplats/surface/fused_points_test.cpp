@@ -110,7 +110,7 @@ TEST(FusePoints, SameForEveryNumberOfThreads) {
   }
 }
 
-TEST(FusePoints, OrderOfPointsChangesTheRoundingOfMeansAtMost) {
+TEST(FusePoints, OrderOfPointsOnlyChangesTheRoundingOfMeans) {
   // Sums of doubles that hold floats: the rounded means of both orders agree to a float's ulp.
   const std::vector<Vec3f> points = random_points(5000, -0.5, 0.5);
   const std::vector<Vec3f> reversed(points.rbegin(), points.rend());

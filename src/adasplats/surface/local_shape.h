@@ -11,27 +11,27 @@
 
 namespace adasplats {
 
-/// The largest component of an offset, in size.
+/// The largest absolute component of an offset.
 ADASPLATS_HD inline float extent(Vec3f offset) {
   const float x = std::fabs(offset.x), y = std::fabs(offset.y), z = std::fabs(offset.z);
   const float larger = x > y ? x : y;
   return larger > z ? larger : z;
 }
 
-/// How Moments are rounded so that the order of the points does not matter.
+/// Rounding of Moments that makes them independent of the order of the points.
 struct ExactMoments {
   ExactAddends offsets;
   ExactAddends squares;
 
-  /// Of `count` offsets, none of which has a larger extent().
+  /// For `count` offsets with an extent() of at most `extent_m`.
   ADASPLATS_HD ExactMoments(std::uint32_t count, float extent_m)
       : offsets(count, static_cast<double>(extent_m)),
         squares(count, static_cast<double>(extent_m) * static_cast<double>(extent_m)) {}
 };
 
-/// Sums over the offsets of a neighbourhood's points from one of them. Offsets are exact enough in
-/// float; their products and sums are kept in double, so the order of the points changes the
-/// result by some 1e-15 of its size at most; not at all where they are added as ExactMoments.
+/// Sums over the offsets of a neighbourhood's points from one of them. Float is precise enough for
+/// offsets; products and sums are in double, so the order of the points changes the result by at
+/// most about 1e-15 of its size, and not at all with ExactMoments.
 struct Moments {
   double count = 0;
   Vec3d sum;
@@ -61,13 +61,13 @@ struct Moments {
   }
 };
 
-/// What the principal components of a neighbourhood say (paper section "Adaptive Splatting Using
-/// Local Descriptors").
+/// Principal components of a neighbourhood (paper section "Adaptive Splatting Using Local
+/// Descriptors").
 struct LocalShape {
-  Vec3f normal;      ///< unit, e_3; its sign says nothing
+  Vec3f normal;      ///< unit, e_3; its sign is arbitrary
   double lambda[3];  ///< variances along e_1, e_2, e_3 in m^2, descending, not negative
 
-  /// (lambda_1 - lambda_2) / lambda_1; 0 for a single point. Likewise the other two.
+  /// (lambda_1 - lambda_2) / lambda_1; like the other two, 0 for a single point.
   ADASPLATS_HD double linearity() const { return share(lambda[0] - lambda[1]); }
   ADASPLATS_HD double planarity() const { return share(lambda[1] - lambda[2]); }
   ADASPLATS_HD double sphericity() const { return share(lambda[2]); }
@@ -76,8 +76,8 @@ struct LocalShape {
   ADASPLATS_HD double share(double v) const { return lambda[0] > 0.0 ? v / lambda[0] : 0.0; }
 };
 
-/// PCA of a neighbourhood. Fewer than three points give a unit normal all the same, but one that
-/// no data supports.
+/// PCA of a neighbourhood. With fewer than three points the normal has unit length but is
+/// arbitrary.
 ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
   const double n = m.count > 0.0 ? m.count : 1.0;
   const Vec3d mean = m.sum / n;
@@ -92,7 +92,7 @@ ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
   return shape;
 }
 
-/// Which descriptor is the largest (paper section "Adaptive Splatting Using Local Descriptors").
+/// The largest descriptor (paper section "Adaptive Splatting Using Local Descriptors").
 enum class ShapeKind : std::uint8_t { linear, planar, spherical };
 
 ADASPLATS_HD inline ShapeKind kind_of(const LocalShape& shape) {
@@ -108,12 +108,12 @@ ADASPLATS_HD inline float distance_to_plane(Vec3f offset, Vec3f normal) {
   return std::fabs(dot(normal, offset));
 }
 
-/// How PlaneDistances are rounded so that the order of the points does not matter.
+/// Rounding of PlaneDistances that makes them independent of the order of the points.
 struct ExactDistances {
   ExactAddends distances;
   ExactAddends squares;
 
-  /// Of `count` distances, none of which is larger.
+  /// For `count` distances of at most `largest_m`.
   ADASPLATS_HD ExactDistances(std::uint32_t count, float largest_m)
       : distances(count, static_cast<double>(largest_m)),
         squares(count, static_cast<double>(largest_m) * static_cast<double>(largest_m)) {}
@@ -140,13 +140,13 @@ struct PlaneDistances {
   }
 };
 
-/// The normal turned to the side of `to_sensor` (a vector from the point to the sensor).
+/// The normal oriented towards the sensor; `to_sensor` is the vector from the point to the sensor.
 ADASPLATS_HD inline Vec3f oriented(Vec3f normal, Vec3f to_sensor) {
   return dot(normal, to_sensor) < 0.0F ? -normal : normal;
 }
 
-/// A sign for normals where nothing is known: the largest component is positive, so that the
-/// result does not depend on how the eigenvectors were found.
+/// The normal with a canonical sign: the largest component is positive, so the result does not
+/// depend on the eigensolver.
 ADASPLATS_HD inline Vec3f with_canonical_sign(Vec3f normal) {
   const float ax = std::fabs(normal.x), ay = std::fabs(normal.y), az = std::fabs(normal.z);
   const float largest = az >= ax && az >= ay ? normal.z : (ax >= ay ? normal.x : normal.y);

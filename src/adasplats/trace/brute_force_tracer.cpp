@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/trace/castable.h"
-#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/tracer.h"
 
@@ -14,11 +13,6 @@ class BruteForceTracer final : public Tracer {
   explicit BruteForceTracer(const SceneView& scene) : scene_(scene) {}
 
   std::string_view name() const override { return "brute force"; }
-
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    nearest_hits(rays, 1, hits, executor);
-  }
 
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {

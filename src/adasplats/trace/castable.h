@@ -9,8 +9,8 @@
 namespace adasplats {
 
 /// Whether a ray can hit anything: its components are finite and its direction is not zero. Private
-/// to tracers: every backend asks it first. Embree asserts finite rays (and Debian's build aborts);
-/// beyond 1e18 squares overflow, and Embree's own limit for coordinates is 1.8e18.
+/// to tracers, which all check it first. Embree asserts finite rays (Debian's build aborts); beyond
+/// 1e18 squares overflow, and Embree's limit for coordinates is 1.8e18.
 ADASPLATS_HD inline bool castable(const Ray& ray) {
   constexpr float kLargest = 1e18F;
   const auto usable = [](Vec3f v) {
@@ -21,7 +21,7 @@ ADASPLATS_HD inline bool castable(const Ray& ray) {
   return usable(ray.origin) && usable(ray.direction) && has_direction && ray.t_min <= ray.t_max;
 }
 
-/// Where the search begins: nothing behind a ray's origin counts, whatever t_min says.
+/// Begin of the search: t_min, but not behind the ray's origin.
 ADASPLATS_HD inline float first_t(const Ray& ray) { return ray.t_min > 0.0F ? ray.t_min : 0.0F; }
 
 }  // namespace adasplats

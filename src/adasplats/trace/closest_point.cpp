@@ -7,15 +7,15 @@
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
-#include "adasplats/trace/embree_handles.h"
 
 namespace adasplats {
 
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 1024;
-constexpr float kFarthest_m = 1e18F;  // as for rays: beyond, squares overflow
+constexpr float kFarthest_m = 1e18F;  // as in castable(): beyond, squares overflow
 
 double squared_to_segment(Vec3d point, Vec3d a, Vec3d b) {
   const Vec3d edge = b - a;
@@ -25,7 +25,7 @@ double squared_to_segment(Vec3d point, Vec3d a, Vec3d b) {
   return dot(offset, offset);
 }
 
-/// What one query looks for.
+/// State of one query.
 struct Search {
   const TriangleMesh& mesh;
   Vec3f point;
@@ -33,7 +33,7 @@ struct Search {
   std::uint32_t triangle = SurfaceDistance::kNone;
 };
 
-/// Called for triangles whose box the query's sphere touches; true where the sphere shrank.
+/// Called for triangles with a box that touches the query's sphere; true if the sphere shrank.
 bool offer(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const std::uint32_t triangle = arguments->primID;
@@ -42,8 +42,8 @@ bool offer(RTCPointQueryFunctionArguments* arguments) {
   if (!(squared_m2 < search.squared_m2 || first_of_equals)) return false;
   search.squared_m2 = squared_m2;
   search.triangle = triangle;
-  // A little wider, and the boxes are wider than their triangles, too: what is equally far but for
-  // the rounding of box distances is still met.
+  // Slightly wider, as are the boxes: triangles at the same distance are visited despite the
+  // rounding of box distances.
   arguments->query->radius = std::sqrt(squared_m2) * (1.0F + 0x1.0p-20F);
   return true;
 }
@@ -86,7 +86,7 @@ ClosestPoint::ClosestPoint(const TriangleMesh& mesh, const Executor& executor)
     : impl_(std::make_unique<Impl>(mesh)) {
   if (mesh.triangles.size() >= SurfaceDistance::kNone)
     throw Error(ErrorKind::data, "a mesh of " + std::to_string(mesh.triangles.size()) +
-                                     " triangles; at most 2^32 - 2 can be told apart");
+                                     " triangles; the maximum is 2^32 - 2");
   if (mesh.triangles.empty()) return;
   impl_->device = start_embree(impl_->errors);
   impl_->scene.reset(rtcNewScene(impl_->device.get()));

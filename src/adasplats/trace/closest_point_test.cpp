@@ -21,7 +21,7 @@ Vec3f random_point(Random& random, double half_m, Vec3d center = {}) {
   return vec_cast<float>(center + Vec3d{x, y, random.uniform(-half_m, half_m)});
 }
 
-/// Triangles of all sizes around `center`; a part of them has no area, and some stand twice.
+/// Triangles of all sizes around `center`; a part of them has no area, and some occur twice.
 TriangleMesh random_mesh(std::size_t count, Vec3d center) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -148,7 +148,7 @@ TEST(ClosestPoint, ManyEqualTriangles) {
   expect_brute_force(mesh, {{0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}, {5, 5, 5}});
 }
 
-TEST(ClosestPoint, NothingToFind) {
+TEST(ClosestPoint, MeshesWithoutTrianglesAndPointsOutOfRange) {
   const Executor executor(1);
   const TriangleMesh empty;
   const SurfaceDistance none =

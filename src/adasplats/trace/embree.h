@@ -2,10 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Private to trace/: what differs between Embree 3 and 4, so that nothing else has to know.
+// Private to trace/. Hides the differences between Embree 3 and 4, owns handles, throws errors.
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <type_traits>
+
+#include "adasplats/core/executor.h"
 
 #ifndef ADASPLATS_EMBREE_MAJOR
-#error "who includes this needs the version that CMake found"
+#error "the includer must define the Embree version that CMake found"
 #endif
 #if ADASPLATS_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -73,3 +80,37 @@ inline void intersect(RTCScene scene, QueryContext& context, const int* valid, R
 #endif
 
 }  // namespace adasplats::embree
+
+namespace adasplats {
+
+/// Stores the first error that Embree reports; it reports on any thread and must not see
+/// exceptions.
+class ErrorLog {
+ public:
+  static void report(void* log, RTCError code, const char* text);
+  /// Throws Error (no memory, unsupported CPU) or std::logic_error.
+  void throw_if_any() const;
+
+ private:
+  mutable std::mutex mutex_;
+  RTCError code_ = RTC_ERROR_NONE;
+  std::string text_;
+};
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+/// Creates a device that reports to `errors`, which must outlive it. Errors: software.
+DeviceHandle start_embree(ErrorLog& errors);
+
+/// Builds a scene on the executor's threads: Embree uses the thread pool of its caller. (The device
+/// setting `threads` would limit the entire process.)
+void commit(RTCScene scene, const Executor& executor);
+
+}  // namespace adasplats

@@ -9,8 +9,8 @@ namespace adasplats {
 
 namespace {
 
-// always_inline: what is below must be compiled anew inside each function with a target attribute,
-// or it would be baseline code.
+// always_inline: each function with a target attribute needs its own copy of the code below, which
+// would otherwise be compiled for the baseline.
 
 struct DiskPrimitive {
   Disk disk;
@@ -45,15 +45,15 @@ struct TrianglePrimitive {
       RTCRayN_tfar(rays, lanes, i)};
 }
 
-/// One primitive against all rays of a packet. No branches: lanes that are not valid are computed
-/// and dropped, and the compiler makes vector code of it.
+/// Intersects one primitive with all rays of a packet. No branches, so that the compiler vectorises
+/// it: invalid lanes are computed and dropped.
 template <unsigned kLanes, class Primitive>
 [[gnu::always_inline]] inline void intersect_packet(const RTCIntersectFunctionNArguments& arguments,
                                                     const Primitive& primitive) {
   RTCRayN* const rays = RTCRayHitN_RayN(arguments.rayhit, kLanes);
   RTCHitN* const hits = RTCRayHitN_HitN(arguments.rayhit, kLanes);
   float t[kLanes];
-  int valid[kLanes];  // a copy: Embree's array could overlap the packet as far as a compiler knows
+  int valid[kLanes];  // a copy: for the compiler, Embree's array could overlap the packet
   for (unsigned i = 0; i < kLanes; ++i) t[i] = primitive.intersect(ray_of(rays, kLanes, i));
   for (unsigned i = 0; i < kLanes; ++i) valid[i] = arguments.valid[i];
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -67,7 +67,7 @@ template <unsigned kLanes, class Primitive>
   }
 }
 
-/// One primitive against a single ray, or a packet of an unusual size.
+/// Intersects one primitive with a single ray, or a packet of an unusual size.
 template <class Primitive>
 [[gnu::always_inline]] inline void intersect_singly(const RTCIntersectFunctionNArguments& arguments,
                                                     const Primitive& primitive) {
@@ -86,7 +86,7 @@ template <class Primitive>
       nearest_primitive = hit.primitive;
     } else {
       list->insert(hit);
-      // The ray stays long until nothing behind its farthest hit can matter.
+      // The ray is shortened only when the list is full.
       if (list->full()) {
         nearest_t = list->farthest().t;
         nearest_primitive = list->farthest().primitive;

@@ -13,7 +13,7 @@ namespace adasplats {
 
 /// Private to trace/: the user geometry that Embree sees.
 
-/// What the callbacks of one geometry need: its user data.
+/// User data of the callbacks of one geometry.
 struct DiskGeometry {
   std::span<const Disk> disks;
 };
@@ -22,10 +22,10 @@ struct TriangleGeometry {
   std::uint32_t first_primitive = 0;  ///< primitive index of triangle 0
 };
 
-/// One query: Embree hands its context through to the callbacks.
+/// One query. Embree passes its context to the callbacks.
 struct Query {
   embree::QueryContext context;     ///< first member: the callbacks cast back
-  HitList* nearest_hits = nullptr;  ///< for single rays: where all hits go; nullptr: nearest only
+  HitList* nearest_hits = nullptr;  ///< for single rays: collects all hits; nullptr: nearest only
 };
 
 /// Bounds and intersection of one kind of primitive. `intersect` is compiled for the machine's

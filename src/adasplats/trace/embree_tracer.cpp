@@ -6,10 +6,9 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/trace/castable.h"
-#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
-#include "adasplats/trace/embree_handles.h"
+#include "adasplats/trace/hit_list.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -20,8 +19,8 @@ template <unsigned kLanes>
 using Packet = std::conditional_t<kLanes == 16, RTCRayHit16,
                                   std::conditional_t<kLanes == 8, RTCRayHit8, RTCRayHit4>>;
 
-/// The widest packet that Embree traverses as it is on this machine. Wider ones it takes apart, and
-/// then it keeps only hits with a geometry id, which our callbacks do not write.
+/// The widest packet that Embree traverses natively on this machine. It splits wider ones and then
+/// keeps only hits with a geometry id, which our callbacks do not write.
 int native_packet_size(RTCDevice device) {
   const auto has = [&](RTCDeviceProperty property) {
     return rtcGetDeviceProperty(device, property) != 0;
@@ -38,7 +37,7 @@ class EmbreeTracer final : public Tracer {
         triangles_{scene.mesh, static_cast<std::uint32_t>(scene.disk_count())} {
     if (scene.primitive_count() >= Hit::kNone)
       throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
-                                       " primitives; at most 2^32 - 2 can be told apart");
+                                       " primitives; the maximum is 2^32 - 2");
     device_ = start_embree(errors_);
     build(scene, executor);
     errors_.throw_if_any();

@@ -11,7 +11,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/memory.h"
-#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/wide_bvh.h"
 #include "adasplats/trace/wide_kernel.h"
 
@@ -20,18 +19,18 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// A tile's tree in the arrays that all share.
+/// A tile's tree within the shared arrays.
 struct TileTree {
-  std::size_t first = 0;  ///< splat, block of splats and node of the tile, of all tiles
+  std::size_t first = 0;  ///< index of the tile's first splat, block and node
   std::size_t splats = 0;
   std::size_t nodes = 0, blocks = 0;
-  WideChild root{{}, {}, {}};  ///< `nothing` where no ray can hit its splats
+  WideChild root{{}, {}, {}};  ///< `nothing` if no ray can hit its splats
   float margin_m = 0;
   bool has_unit_normals = true;
   bool is_built = false;
 };
 
-/// The box of what a reference points at.
+/// Sets the box of a child to that of a tree.
 void set_box(const WideBvh& bvh, WideChild& child) {
   child.low = {kFar, kFar, kFar};
   child.high = -child.low;
@@ -54,8 +53,8 @@ void set_box(const WideBvh& bvh, WideChild& child) {
   }
 }
 
-/// Children in `parts` groups or fewer of neighbours: the largest group is cut in the middle of its
-/// longer side until there are enough.
+/// Divides children into at most kWide groups of neighbours: splits the largest group at the middle
+/// of its longer side until there are enough.
 std::vector<std::span<WideChild>> groups_of(std::span<WideChild> children) {
   std::vector<std::span<WideChild>> groups = {children};
   while (groups.size() < kWide) {
@@ -90,12 +89,12 @@ class WideTiledTracer final : public TiledTracer {
       tiles_[k].splats = splats[k];
       all += splats[k];
     }
-    // Numbers of nodes and blocks have 30 bits. A tree has no more blocks than splats, and fewer
-    // nodes than blocks.
+    // Indices of nodes and blocks have 30 bits. A tree has at most as many blocks as splats, and
+    // fewer nodes than blocks.
     top_ = all;
     if (top_ + splats.size() >= (std::size_t{1} << 30U))
-      throw Error(ErrorKind::data, "a city of " + std::to_string(all) +
-                                       " splats; at most 2^30 are cast tile by tile");
+      throw Error(ErrorKind::data,
+                  "a city of " + std::to_string(all) + " splats; the maximum is 2^30");
     nodes_ = SparseArray<WideNode>(top_ + splats.size() + 1);
     blocks_ = SparseArray<DiskBlock>(all);
   }
@@ -105,7 +104,8 @@ class WideTiledTracer final : public TiledTracer {
   void build(std::size_t tile, std::span<const Disk> disks, const Executor& executor) override {
     TileTree& tree = tiles_.at(tile);
     if (tree.is_built || disks.size() != tree.splats)
-      throw std::logic_error("TiledTracer: not a tile that is to be built");
+      throw std::logic_error(
+          "TiledTracer: the tile is built already or has another number of splats");
     tree.is_built = true;
     const WideBvh bvh = build_wide_bvh({disks, nullptr}, executor);
     tree.nodes = bvh.nodes.size();
@@ -144,7 +144,7 @@ class WideTiledTracer final : public TiledTracer {
     std::vector<WideChild> roots;
     for (const std::size_t tile : tiles) {
       const TileTree& tree = tiles_.at(tile);
-      if (!tree.is_built) throw std::logic_error("TiledTracer: a tile is shown before it is built");
+      if (!tree.is_built) throw std::logic_error("TiledTracer: a shown tile is not built");
       shown_.margin_m = std::max(shown_.margin_m, tree.margin_m);
       shown_.has_unit_normals = shown_.has_unit_normals && tree.has_unit_normals;
       if (tree.root.ref.kind() != WideRef::Kind::nothing) roots.push_back(tree.root);
@@ -153,21 +153,9 @@ class WideTiledTracer final : public TiledTracer {
     if (!roots.empty()) shown_.root = add_top(roots, next).ref;
   }
 
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    nearest_hits(rays, 1, hits, executor);
-  }
-
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
-    const auto slots = static_cast<std::size_t>(depth);
-    require_slots(rays, depth, hits);
-    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-      const auto own = hits.subspan(begin * slots, (end - begin) * slots);
-      std::ranges::fill(own, Hit{});
-      if (shown_.root.kind() == WideRef::Kind::nothing) return;
-      cast_(shown_, rays.subspan(begin, end - begin), slots, own);
-    });
+    detail::cast_in_chunks(cast_, shown_, rays, depth, hits, executor);
   }
 
  private:
@@ -175,7 +163,7 @@ class WideTiledTracer final : public TiledTracer {
     return ref.kind() == WideRef::Kind::nothing ? ref : WideRef::to(ref.kind(), ref.index() + by);
   }
 
-  /// The node above some trees; their own root where it is one.
+  /// Makes the node above some trees; for a single tree, returns its root.
   WideChild add_top(std::span<WideChild> roots, std::size_t& next) {
     if (roots.size() == 1) return roots.front();
     const std::size_t at = next++;
@@ -193,7 +181,7 @@ class WideTiledTracer final : public TiledTracer {
 
   detail::WideCast cast_;
   std::vector<TileTree> tiles_;
-  std::size_t top_ = 0;  ///< first node of the tree over trees
+  std::size_t top_ = 0;  ///< first node of the tree over the tiles
   SparseArray<WideNode> nodes_;
   SparseArray<DiskBlock> blocks_;
   WideView shown_;

@@ -12,25 +12,25 @@
 
 namespace adasplats {
 
-/// A tracer over the splats of a city of which some tiles are in memory: a tree a tile, and a small
-/// tree over those that are shown. Hits are those of a tracer over all splats where what a ray
-/// meets is shown: primitives are numbered through the whole city, tile after tile.
+/// A tracer for a city with some of its tiles in memory: one tree per tile, and a small tree over
+/// the shown tiles. Hits equal those of a tracer over all splats if the tiles that a ray crosses
+/// are shown. Primitive indices count through the entire city, tile after tile.
 class TiledTracer : public Tracer {
  public:
-  /// Builds the tree of a tile that has none. May run beside casts, and for several tiles at once.
-  /// Throws std::logic_error where it has another number of splats than was said.
+  /// Builds the tree of a tile that has none. May run during casts, and for several tiles at once.
+  /// Throws std::logic_error if the number of splats differs from that in make_tiled_tracer().
   virtual void build(std::size_t tile, std::span<const Disk> disks, const Executor& executor) = 0;
-  /// Gives back the memory of a tile that is not shown.
+  /// Frees the memory of a tile that is not shown.
   virtual void drop(std::size_t tile) = 0;
-  /// Which of the tiles that are built rays meet from now on. Not beside casts.
+  /// Sets the tiles that rays can hit, which must be built. Must not run during casts.
   virtual void show(std::span<const std::size_t> tiles) = 0;
 };
 
-/// About how much memory a tile takes for each splat, bytes.
+/// Approximate memory of a tile per splat, bytes.
 inline constexpr std::size_t kTiledTracerBytesASplat = 80;
 
-/// `splats`: of each tile. Errors: data (more splats than can be told apart), unavailable (no room
-/// for their addresses).
+/// `splats`: number of splats of each tile. Errors: data (more than 2^30 splats), unavailable (no
+/// address space).
 std::unique_ptr<TiledTracer> make_tiled_tracer(std::span<const std::size_t> splats);
 
 }  // namespace adasplats

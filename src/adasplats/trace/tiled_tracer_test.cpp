@@ -23,7 +23,7 @@ constexpr std::size_t kColumns = 5, kRows = 4;
 constexpr double kSide_m = 20;
 
 /// Disks of a field of tiles, tile after tile. Some tiles are empty, one has a single disk, and
-/// some disks stand twice: in neighbouring tiles, where the first must win.
+/// some disks occur twice: in neighbouring tiles, where the first must win.
 struct Field {
   std::vector<Disk> disks;
   std::vector<std::size_t> counts;
@@ -157,7 +157,7 @@ TEST(TiledTracer, TilesAreBuiltWhileOthersAreCast) {
   expect_same(hits_of(*tracer, 1), expected_hits(field, all, 1));
 }
 
-TEST(TiledTracer, WhatItWasNotToldIsAFault) {
+TEST(TiledTracer, MisuseThrowsLogicError) {
   const Field field = random_field();
   const Executor executor(1);
   const std::unique_ptr<TiledTracer> tracer = make_tiled_tracer(field.counts);

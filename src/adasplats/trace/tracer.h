@@ -13,23 +13,24 @@
 
 namespace adasplats {
 
-/// Finds what rays hit in a scene. One interface for all backends; a tracer keeps views of the
-/// scene it was made from. Calls are const and may come from several threads.
+/// Finds the hits of rays in a scene; one interface for all backends. A tracer keeps views of its
+/// scene. Calls are const and thread-safe.
 class Tracer {
  public:
   virtual ~Tracer() = default;
 
   virtual std::string_view name() const = 0;
 
-  /// Nearest hit of every ray: hits[i] of rays[i]. Rays that are near each other in direction and
-  /// stand side by side in the span (a laser row) are faster. A ray with a component that is not
-  /// finite or beyond 1e18, or with no direction, hits nothing; a t_min below 0 counts as 0. Equal
-  /// distances go to the smaller primitive index. Throws std::logic_error where there is not one
-  /// hit a ray.
+  /// Nearest hit of every ray: hits[i] of rays[i]. Consecutive rays with similar directions (a
+  /// laser row) are faster. A ray with a component that is not finite or beyond 1e18, or without a
+  /// direction, hits nothing; a t_min below 0 counts as 0. Ties go to the smaller primitive index.
+  /// Throws std::logic_error if the numbers of rays and hits differ.
   virtual void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-                       const Executor& executor) const = 0;
+                       const Executor& executor) const {
+    nearest_hits(rays, 1, hits, executor);
+  }
 
-  /// The nearest `depth` hits of every ray in ascending order: hits[i * depth + k]; entries behind
+  /// The nearest `depth` hits of every ray in ascending order: hits[i * depth + k]; entries after
   /// the last hit are Hit{} (not valid()).
   virtual void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                             const Executor& executor) const = 0;
@@ -38,20 +39,20 @@ class Tracer {
 /// Tests every primitive for every ray: the oracle of the tests. The scene's data must outlive it.
 std::unique_ptr<Tracer> make_brute_force_tracer(const SceneView& scene);
 
-/// Embree 3 or 4 with user geometry and exact disk bounds. Hits are those of brute force bit by bit
-/// for rays up to kExactReach_m. Builds on the executor's threads; the scene's data must outlive
-/// it. Errors: data (2^32 - 1 primitives or more), software (Embree does not start or has no
-/// memory).
+/// Embree 3 or 4 with user geometry and exact disk bounds. Hits equal those of brute force bit by
+/// bit for rays up to kExactReach_m. Builds on the executor's threads; the scene's data must
+/// outlive it. Errors: data (2^32 - 1 primitives or more), software (Embree does not start or has
+/// no memory).
 std::unique_ptr<Tracer> make_embree_tracer(const SceneView& scene, const Executor& executor);
 
-/// A tree of our own, 16 children a node, in the machine's widest vectors (AVX-512, AVX2 or
-/// portable code, with the same bits). Rays near each other that stand side by side go down the
-/// tree together. Hits are those of brute force bit by bit for rays up to kExactReach_m. Builds on
-/// the executor's threads; the scene's data must outlive it. Errors: data (2^32 - 1 primitives or
-/// more).
+/// Our own tree with 16 children per node, for the machine's widest vectors (AVX-512, AVX2 or
+/// portable code, with the same bits). Consecutive similar rays traverse the tree together. Hits
+/// are those of brute force bit by bit for rays up to kExactReach_m. Builds on the executor's
+/// threads; the scene's data must outlive it. Errors: data (2^32 - 1 primitives or more).
 std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const Executor& executor);
 
-/// The fastest tracer on this machine's CPU: ours for disks alone, else Embree. Errors: of either.
+/// The fastest tracer on this CPU: our tree for disks, Embree with triangles. Errors: those of
+/// either.
 std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& executor);
 
 }  // namespace adasplats

@@ -37,7 +37,7 @@ Vec3d random_in_box(Random& random, Vec3d center, double half) {
 constexpr std::array<Vec3f, 6> kAxes = {
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-/// Where a random scene lies and how large its primitives are.
+/// Position of a random scene and size of its primitives.
 struct Place {
   std::uint64_t seed;
   Vec3d center;
@@ -50,7 +50,7 @@ double random_size(const Place& place, Random& random) {
   return std::exp(random.uniform(std::log(place.smallest_m), std::log(place.largest_m)));
 }
 
-/// A fifth of the disks faces an axis exactly; some stand twice at the same place.
+/// A fifth of the disks faces an axis exactly; some are duplicates.
 std::vector<Disk> random_disks(const Place& place, std::size_t count) {
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < count; ++i) {

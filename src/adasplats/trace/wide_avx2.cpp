@@ -16,8 +16,8 @@
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
 
-// Only what follows is compiled for AVX2; headers above stay at the baseline, so that no shared
-// inline function of theirs is emitted with instructions an older CPU lacks.
+// Only what follows is compiled for AVX2; headers above stay at the baseline, so that none of their
+// shared inline functions is emitted with instructions that an older CPU lacks.
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,bmi,bmi2,popcnt")
 
@@ -81,7 +81,7 @@ inline void store(std::uint32_t* p, U16 v) {
   _mm256_store_si256(reinterpret_cast<__m256i*>(p + 8), v.b);
 }
 inline unsigned at_least(__m256i x, __m256i y) {
-  // There is no unsigned comparison: x >= y where max(x, y) is x.
+  // There is no unsigned comparison: x >= y if max(x, y) is x.
   return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_max_epu32(x, y), x)));
 }
 inline unsigned less(U16 x, U16 y) {
@@ -90,22 +90,6 @@ inline unsigned less(U16 x, U16 y) {
 inline U16 choose(unsigned mask, U16 x, U16 y) {
   return {_mm256_blendv_epi8(x.a, y.a, lanes_of(mask)),
           _mm256_blendv_epi8(x.b, y.b, lanes_of(mask >> 8))};
-}
-
-/// Without branches that depend on the mask: each child is written, and the next one over it where
-/// it does not count.
-inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 from, float* to_from,
-                     WideRef* to_refs) {
-  alignas(64) float begin[kWide];
-  store(begin, from);
-  unsigned count = 0;
-  for (unsigned i = 0; i < kWide; ++i) {
-    const unsigned child = node.far_first[octant][i];
-    to_from[count] = begin[child];
-    to_refs[count] = node.children[child];
-    count += mask >> child & 1U;
-  }
-  return count;
 }
 
 #include "adasplats/trace/wide_kernel.inc"

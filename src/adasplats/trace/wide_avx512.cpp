@@ -16,11 +16,11 @@
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
 
-// Only what follows is compiled for AVX-512; headers above stay at the baseline, so that no shared
-// inline function of theirs is emitted with instructions an older CPU lacks.
+// Only what follows is compiled for AVX-512; headers above stay at the baseline, so that none of
+// their shared inline functions is emitted with instructions that an older CPU lacks.
 #pragma GCC push_options
 #if !defined(__clang__)
-// gcc 12 gives these for its own header, the second one with its sanitizers.
+// gcc 12 warns about its own header, with sanitizers also about uninitialized values.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
@@ -65,7 +65,9 @@ inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 f
   return static_cast<unsigned>(__builtin_popcount(kept));
 }
 
+#define ADASPLATS_WIDE_PUSH  // push() is defined above
 #include "adasplats/trace/wide_kernel.inc"
+#undef ADASPLATS_WIDE_PUSH
 
 }  // namespace
 

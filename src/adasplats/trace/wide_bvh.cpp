@@ -64,7 +64,7 @@ struct Range {
   }
 };
 
-/// Where items fall along the three axes.
+/// Assigns items to bins along the three axes.
 struct Binning {
   Float4 low, scale;
   unsigned bins;
@@ -103,22 +103,22 @@ struct Bins {
   }
 };
 
-/// Items with bins below `bin` along `axis` go to the left; axis -1: the first half does.
+/// Items in bins below `bin` along `axis` go left; axis -1: the first half does.
 struct Split {
   int axis = -1;
   unsigned bin = 0;
 };
 
-/// Primitives are tested 16 at a time, so it is blocks that cost.
+/// Cost of a leaf: primitives are tested in blocks of 16.
 float blocks(std::size_t count) {
   const std::size_t whole = (count + kWide - 1) / kWide;
   return static_cast<float>(whole);
 }
 
-/// The split with the least surface area heuristic; the first of equal ones.
+/// The split with the lowest surface area cost; the first of equal ones.
 Split best_split(const Bins& bins, unsigned used) {
   Split best;
-  float least = kInfinity;
+  float min_cost = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     std::array<float, kBins> right_cost{};
     Box right;
@@ -135,8 +135,8 @@ Split best_split(const Bins& bins, unsigned used) {
       left_count += bins.counts[axis][bin - 1];
       if (left_count == 0) continue;
       const float cost = left.half_area() * blocks(left_count) + right_cost[bin];
-      if (cost < least) {
-        least = cost;
+      if (cost < min_cost) {
+        min_cost = cost;
         best = {axis, bin};
       }
     }
@@ -145,7 +145,7 @@ Split best_split(const Bins& bins, unsigned used) {
 }
 
 Vec3f clamped(Vec3f v) {
-  // Embree's limit. Rays end long before it, and products of bounds stay finite.
+  // Embree's limit. Rays are shorter, and products of bounds stay finite.
   constexpr float kLargest = 1.844e18F;
   return max(min(v, {kLargest, kLargest, kLargest}), {-kLargest, -kLargest, -kLargest});
 }
@@ -181,8 +181,8 @@ class Builder {
   }
 
  private:
-  /// A range that is built by itself; its root goes to children[child] of the top node, or is the
-  /// root of all.
+  /// A range that one thread builds; its root becomes children[child] of `node`, or the root of the
+  /// tree.
   struct Subtree {
     Range range;
     std::size_t node;
@@ -240,7 +240,7 @@ class Builder {
         high = max(max(triangle.a, triangle.b), triangle.c);
         const float margin = box_margin(largest_of(low, high));
         const Vec3f margins = {margin, margin, margin};
-        // min and max drop some NaN, so the sum of all is asked too.
+        // min and max drop some NaN, so the sum of all corners is checked.
         const Vec3f sum = triangle.a + triangle.b + triangle.c;
         low = has_nan(sum) ? sum : low - margins;
         high = high + margins;
@@ -266,7 +266,7 @@ class Builder {
 
   bool is_leaf(const Range& range) const { return range.size() <= kWide && !has_both_kinds(range); }
 
-  /// Two parts of a range that is no leaf.
+  /// Splits a range that is not a leaf.
   std::array<Range, 2> split(const Range& range) {
     if (range.size() <= kWide) {
       return partition(range, [&](const Item& item) { return is_disk(item.index()); });
@@ -296,7 +296,7 @@ class Builder {
                                 });
   }
 
-  /// Items with equal middles: any split is as good as another.
+  /// For items with equal middles, where all splits are equally good.
   std::array<Range, 2> halves(const Range& range) const {
     const std::size_t middle = range.begin + range.size() / 2;
     Range left, right;
@@ -326,7 +326,7 @@ class Builder {
     return {left, right};
   }
 
-  /// Chunks of fixed size, so that the order of items does not depend on threads.
+  /// Uses chunks of fixed size, so that the order of items does not depend on threads.
   template <class Predicate>
   std::array<Range, 2> partition_in_parallel(const Range& range, const Predicate& goes_left) {
     const std::size_t chunks = (range.size() + kBuildGrain - 1) / kBuildGrain;
@@ -363,7 +363,7 @@ class Builder {
     return sides;
   }
 
-  /// Up to 16 parts of a range: the one with the largest surface is split until there are 16.
+  /// Up to 16 parts of a range: the part with the largest surface is split until there are 16.
   std::vector<Range> wide_split(const Range& range) {
     std::vector<Range> parts = {range};
     while (parts.size() < kWide) {
@@ -396,7 +396,7 @@ class Builder {
     return bvh.nodes.size() - 1;
   }
 
-  /// The top of the tree, one range after the other, each in parallel.
+  /// Builds the top of the tree one range after another, each in parallel.
   WideRef add_top(const Range& range, WideBvh& bvh) {
     if (range.size() <= subtree_size_) {
       subtrees_.push_back({range, kNoNode, 0, {}});
@@ -530,7 +530,7 @@ class Builder {
   bool has_unit_normals_ = true;
 };
 
-/// By the boxes' middles along the octant's diagonal.
+/// Sorts children by their middles along the diagonal of each octant.
 void set_order(std::span<const WideChild> children, WideNode& node) {
   for (unsigned octant = 0; octant < 8; ++octant) {
     std::array<float, kWide> keys{};

@@ -11,14 +11,13 @@
 
 namespace adasplats {
 
-/// Private to trace/: a tree whose nodes have up to 16 children and whose leaves up to 16
-/// primitives, for one vector instruction each (two with AVX2). Nodes of 8 have half the boxes but
-/// were slower, with AVX-512 by a fifth: most of a visit's time goes to the decision what to visit
-/// next.
+/// Private to trace/: a tree with up to 16 children per node and up to 16 primitives per leaf, so
+/// that one vector instruction (two with AVX2) tests all. Nodes of 8 were slower, with AVX-512 by a
+/// fifth: most of the time of a visit is spent on choosing the next one.
 
 inline constexpr unsigned kWide = 16;
 
-/// What a reference in the tree points at: an inner node, or up to 16 primitives of one kind.
+/// A reference in the tree: to an inner node, or to up to 16 primitives of one kind.
 struct WideRef {
   enum class Kind : std::uint32_t { node = 0, disks = 1, triangles = 2, nothing = 3 };
   std::uint32_t bits = 0xffffffffU;  ///< kind in the 2 highest bits, index below
@@ -30,30 +29,30 @@ struct WideRef {
   std::uint32_t index() const { return bits & 0x3fffffffU; }
 };
 
-/// Boxes of up to 16 children; those not there have a box that is inside out. bounds[0] are the low
-/// ends, bounds[1] the high ends: [end][axis][child].
+/// Boxes of up to 16 children; missing ones have an inverted box. bounds[0] are the low ends,
+/// bounds[1] the high ends: [end][axis][child].
 struct alignas(64) WideNode {
   float bounds[2][3][kWide];
   WideRef children[kWide];
-  /// Children in the order in which rays of an octant leave them behind, the last one first.
+  /// Children from far to near for rays of each octant.
   std::uint8_t far_first[8][kWide];
 };
 
-/// Up to 16 disks, in lanes; lanes behind the last have a squared radius below 0 and are never hit.
+/// Up to 16 disks in lanes; unused lanes have a negative squared radius and are never hit.
 struct alignas(64) DiskBlock {
   float center[3][kWide];
   float normal[3][kWide];
-  float radius2[kWide];  ///< the float that intersect_disk calculates
+  float radius2[kWide];  ///< rounded as in intersect_disk
   std::uint32_t primitive[kWide];
 };
 
-/// Up to 16 triangles, in lanes; lanes behind the last hold NaN and are never hit.
+/// Up to 16 triangles in lanes; unused lanes hold NaN and are never hit.
 struct alignas(64) TriangleBlock {
   float corners[3][3][kWide];  ///< [corner][axis][lane]
   std::uint32_t primitive[kWide];
 };
 
-/// What a traversal needs of a tree, whoever holds its parts.
+/// A view of a tree for traversal.
 struct WideView {
   const WideNode* nodes = nullptr;
   const DiskBlock* disks = nullptr;
@@ -69,7 +68,7 @@ struct WideBvh {
   std::vector<TriangleBlock> triangles;
   WideRef root;                  ///< `nothing` in an empty scene
   float margin_m = 0.0F;         ///< box_margin of the largest coordinate
-  bool has_unit_normals = true;  ///< to 1e-5; else a disk's extent must be taken for a sphere's
+  bool has_unit_normals = true;  ///< to 1e-5; else a disk is culled as a sphere
 
   WideView view() const {
     return {nodes.data(), disks.data(), triangles.data(), root, margin_m, has_unit_normals};
@@ -82,12 +81,12 @@ struct WideChild {
   WideRef ref;
 };
 
-/// The node of up to 16 children.
+/// Makes the node of up to 16 children.
 WideNode wide_node(std::span<const WideChild> children);
 
 /// Builds the tree over the disks' exact boxes and the triangles' boxes, both with box_margin.
-/// Primitives whose box is NaN can never be hit and are left out. Splits are those of the surface
-/// area heuristic over 16 bins, for ranges of any size; equal for any number of threads.
+/// Primitives with NaN in their box can never be hit and are omitted. Splits use the surface area
+/// heuristic with 16 bins; the tree is equal for any number of threads.
 WideBvh build_wide_bvh(const SceneView& scene, const Executor& executor);
 
 }  // namespace adasplats

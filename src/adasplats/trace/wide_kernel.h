@@ -24,16 +24,20 @@ WideCast avx2_wide_cast();
 WideCast avx512_wide_cast();
 #endif
 
-/// A traversal compiled for one kind of vectors.
+/// A traversal compiled for one vector instruction set.
 struct WideVersion {
   std::string_view name;
   WideCast cast;
 };
 
-/// Those that this machine can run, the fastest first. All give the same bits.
+/// The versions that this machine can run, the fastest first. All give the same bits.
 std::vector<WideVersion> wide_versions();
 
-/// make_wide_tracer with a version of the caller's choice.
+/// Tracer::nearest_hits() for a tree.
+void cast_in_chunks(WideCast cast, const WideView& tree, std::span<const Ray> rays, int depth,
+                    std::span<Hit> hits, const Executor& executor);
+
+/// make_wide_tracer with the given version.
 std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const WideVersion& version,
                                          const Executor& executor);
 

@@ -97,22 +97,6 @@ inline float smallest(const F16& v) {
   return result;
 }
 
-/// Without branches that depend on the mask: each child is written, and the next one over it where
-/// it does not count.
-inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, const F16& from,
-                     float* to_from, WideRef* to_refs) {
-  alignas(64) float begin[kWide];
-  store(begin, from);
-  unsigned count = 0;
-  for (unsigned i = 0; i < kWide; ++i) {
-    const unsigned child = node.far_first[octant][i];
-    to_from[count] = begin[child];
-    to_refs[count] = node.children[child];
-    count += mask >> child & 1U;
-  }
-  return count;
-}
-
 #include "adasplats/trace/wide_kernel.inc"
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/base/sort_keys.h"
 #include "adasplats/gpu/consistent/consistent_cells.h"
-#include "adasplats/surface/fusion_cell.h"
+#include "adasplats/surface/fused_points.h"
 
 namespace adasplats::gpu {
 namespace {

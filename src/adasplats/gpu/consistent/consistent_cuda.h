@@ -6,17 +6,16 @@
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/core/executor.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 
 namespace adasplats::gpu {
 
 /// The steps of the ray-consistent method in the memory of one GPU: the cloud goes there in load(),
 /// the splats come back in take_splats(). The steps also show their state (consistent_state.h).
-/// Everything is the CPU's bit by bit. `executor` would do what is left on the CPU; nothing is.
+/// All results are those of the CPU, bit by bit.
 /// Errors: unavailable (no such GPU, not enough memory), usage (neighbourhoods of more than 512
 /// cells), with what helps; after one, the steps can only be destroyed.
-std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor& executor);
+std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device);
 
 /// ModelEngine::measure_reflectances() on one GPU. Errors: unavailable (no such GPU, not enough
 /// memory), with what helps.

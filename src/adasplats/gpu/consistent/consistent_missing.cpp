@@ -7,7 +7,7 @@
 
 namespace adasplats::gpu {
 
-std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int, const Executor&) {
+std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int) {
   throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + find_gpus().reason);
 }
 

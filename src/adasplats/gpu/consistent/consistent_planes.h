@@ -5,7 +5,7 @@
 #include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/gpu/consistent/consistent_cells.h"
 #include "adasplats/gpu/neighbors/neighborhoods.h"
-#include "adasplats/surface/plane_fit.h"
+#include "adasplats/surface/adaptive_planes.h"
 
 namespace adasplats::gpu {
 

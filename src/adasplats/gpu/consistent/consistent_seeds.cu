@@ -5,7 +5,7 @@
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/base/sort_keys.h"
 #include "adasplats/gpu/consistent/consistent_seeds.h"
-#include "adasplats/splats/consistent/cell_attributes.h"
+#include "adasplats/splats/consistent/element_steps.h"
 
 namespace adasplats::gpu {
 namespace {

@@ -76,7 +76,7 @@ class ConsistentOnGpu : public RaysOnGpu {
 
 }  // namespace
 
-std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor&) {
+std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device) {
   const DeviceGuard guard(device);
   return std::make_unique<ConsistentStepsOn<ConsistentOnGpu>>(device);
 }

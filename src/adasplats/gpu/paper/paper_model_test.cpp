@@ -356,7 +356,7 @@ std::pair<SplatModel, BuildReport> build(const PointCloud& cloud, const PaperOpt
                                          bool on_gpu) {
   ProgressSink quiet;
   const Executor executor(0);
-  const auto engine = on_gpu ? make_cuda_model_engine(0, executor) : nullptr;
+  const auto engine = on_gpu ? make_cuda_model_engine(0) : nullptr;
   return build_model(cloud, &semantickitti_labels(), {options, DynamicRemoval::moving}, executor,
                      quiet, engine.get());
 }

@@ -6,7 +6,7 @@
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/base/warp.cuh"
 #include "adasplats/gpu/segment/device_network.h"
-#include "adasplats/segment/network/kernel_influence.h"
+#include "adasplats/segment/network/run_network.h"
 
 namespace adasplats::gpu {
 namespace {

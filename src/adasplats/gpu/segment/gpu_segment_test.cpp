@@ -10,7 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
-#include "adasplats/segment/network/matrix_product.h"
+#include "adasplats/segment/network/run_network.h"
 
 namespace adasplats {
 namespace {

@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "adasplats/gpu/base/device_memory.h"
-#include "adasplats/trace/clear_hits.h"
+#include "adasplats/trace/hit_list.h"
 
 namespace adasplats::gpu {
 namespace {

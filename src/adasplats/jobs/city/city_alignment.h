@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/calibrate/calibration.h"
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/sequence/calibration.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/evaluate/point_fit.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/sequence/calibration.h"
 #include "adasplats/jobs/model/make_model.h"
 #include "adasplats/jobs/session/session.h"
 

@@ -6,8 +6,8 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/io/text/gltf.h"
 #include "adasplats/jobs/session/inputs.h"
-#include "adasplats/scene/gltf.h"
 #include "adasplats/simulate/world/world_file.h"
 
 namespace adasplats {

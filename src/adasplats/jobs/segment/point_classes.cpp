@@ -8,7 +8,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/jobs/segment/segment_on_device.h"
-#include "adasplats/segment/network/matrix_product.h"
+#include "adasplats/segment/network/run_network.h"
 
 namespace adasplats {
 

@@ -21,10 +21,10 @@ using nlohmann::json;
 
 constexpr std::string_view kMagic = "adasplats-network\n";
 constexpr int kVersion = 1;
-constexpr std::uint64_t kMaxRows = std::uint64_t{1} << 31;  // a product of two fits 64 bits
+constexpr std::uint64_t kMaxRows = std::uint64_t{1} << 31;  // products of two fit 64 bits
 constexpr std::size_t kMaxWidth = 65536;
 
-/// A number of 16 bits (IEEE 754 binary16) as one of 32.
+/// Converts IEEE 754 binary16 to float.
 float from_half(std::uint16_t half) {
   const std::uint32_t sign = std::uint32_t{half & 0x8000U} << 16;
   const std::uint32_t exponent = half >> 10 & 0x1fU, fraction = half & 0x3ffU;
@@ -43,7 +43,7 @@ const std::vector<std::string_view> kFeatures = {"one", "height", "intensity", "
 template <class T>
 T word_in(const std::vector<std::string_view>& words, const std::string& word) {
   const auto found = std::ranges::find(words, word);
-  if (found == words.end()) throw std::runtime_error("'" + word + "' is not known");
+  if (found == words.end()) throw std::runtime_error("'" + word + "' is unknown");
   return static_cast<T>(found - words.begin());
 }
 
@@ -81,13 +81,13 @@ T number_at(std::string_view data, std::size_t offset) {
   return number;
 }
 
-/// Of 16 bits each.
+/// Reads weights of 16 bits.
 void read_halves(Weights& weights, std::string_view data) {
   for (std::size_t i = 0; i < weights.values.size(); ++i)
     weights.values[i] = from_half(number_at<std::uint16_t>(data, 2 * i));
 }
 
-/// Steps of the columns (32 bits each), then how many of these each weight is (8 bits, signed).
+/// Reads weights of 8 bits: the step of each column (float), then the multiples of it (signed).
 void read_steps(Weights& weights, std::string_view data) {
   const std::string_view counts = data.substr(4 * weights.columns);
   for (std::size_t i = 0; i < weights.values.size(); ++i)
@@ -102,12 +102,12 @@ Weights weights_of(const json& object, std::string_view data) {
   const auto offset = object.at("offset").get<std::size_t>();
   const int bits = object.value("bits", 16);
   if (bits != 16 && bits != 8)
-    throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not known");
+    throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not supported");
   const std::size_t count = weights.rows * weights.columns;
   const std::size_t bytes = bits == 16 ? 2 * count : count + 4 * weights.columns;
   if (weights.rows > kMaxRows || weights.columns > kMaxRows || offset > data.size() ||
       bytes > data.size() - offset)
-    throw std::runtime_error("weights lie beyond its end");
+    throw std::runtime_error("weights are beyond the end of the file");
   weights.values.resize(count);
   (bits == 16 ? read_halves : read_steps)(weights, data.substr(offset));
   for (const float value : weights.values)
@@ -117,8 +117,8 @@ Weights weights_of(const json& object, std::string_view data) {
 
 void require_shape(const Network& network) {
   const PyramidShape& shape = network.shape;
-  const auto within = [](auto value, auto least, auto most) {
-    return value >= least && value <= most;  // not so for NaN
+  const auto within = [](auto value, auto min, auto max) {
+    return value >= min && value <= max;  // false for NaN
   };
   const bool fits =
       within(shape.cell_m, 0.01F, 100.0F) && within(shape.radius, 0.5F, 8.0F) &&
@@ -129,14 +129,14 @@ void require_shape(const Network& network) {
       within(network.values, std::size_t{2}, std::size_t{100'000}) && !network.features.empty();
   const bool is_finite_kernel =
       std::ranges::all_of(network.kernel, [](Vec3f p) { return is_finite(p); });
-  if (!fits || !is_finite_kernel) throw std::runtime_error("a value of its shape is out of range");
+  if (!fits || !is_finite_kernel) throw std::runtime_error("a value of the shape is out of range");
   std::vector<std::string> names = network.classes;
   std::ranges::sort(names);
   if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
-    throw std::runtime_error("class '" + *twice + "' is there twice");
+    throw std::runtime_error("class '" + *twice + "' occurs twice");
 }
 
-/// Widths and levels of the values, layer by layer.
+/// Tracks widths and levels of the values, layer by layer.
 class LayerCheck {
  public:
   explicit LayerCheck(const Network& network)
@@ -171,7 +171,7 @@ class LayerCheck {
 
  private:
   static void require(bool fits) {
-    if (!fits) throw std::runtime_error("its layers do not fit each other");
+    if (!fits) throw std::runtime_error("the layers do not match");
   }
   std::size_t width_of(std::size_t value) const {
     require(widths_[value] > 0);
@@ -219,7 +219,7 @@ Network network_of(const json& header, std::string_view data) {
   for (const json& weights : header.at("weights"))
     network.weights.push_back(weights_of(weights, data));
   for (const json& layer : header.at("layers")) network.layers.push_back(layer_of(layer, network));
-  if (network.layers.empty()) throw std::runtime_error("has no layers");
+  if (network.layers.empty()) throw std::runtime_error("the network has no layers");
   LayerCheck check(network);
   for (const Layer& layer : network.layers) check.check(layer);
   check.check_logits(network.layers.back());
@@ -234,15 +234,15 @@ Network parse_network(std::string_view content, const std::string& name) {
   };
   const std::size_t ahead = kMagic.size() + 8;
   if (!content.starts_with(kMagic) || content.size() < ahead)
-    throw fail("is no network of adasplats");
+    throw fail("not a network file of adasplats");
   std::uint64_t length = 0;
   std::memcpy(&length, content.data() + kMagic.size(), 8);
-  if (length > content.size() - ahead) throw fail("is cut off in its header");
+  if (length > content.size() - ahead) throw fail("the header is truncated");
   try {
     const json header = json::parse(content.substr(ahead, length));
     const int version = header.at("version").get<int>();
     if (version != kVersion)
-      throw std::runtime_error("is of version " + std::to_string(version) + ", expected " +
+      throw std::runtime_error("version " + std::to_string(version) + ", expected " +
                                std::to_string(kVersion));
     Network network = network_of(header, content.substr(ahead + length));
     Sha256 hash;
@@ -250,7 +250,7 @@ Network parse_network(std::string_view content, const std::string& name) {
     network.sha256 = hash.digest();
     return network;
   } catch (const json::exception& error) {
-    throw fail(std::string("its header is damaged: ") + error.what());
+    throw fail(std::string("the header is damaged: ") + error.what());
   } catch (const std::runtime_error& error) {
     throw fail(error.what());
   }

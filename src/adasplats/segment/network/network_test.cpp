@@ -22,7 +22,7 @@ using network_test::pole_network;
 using network_test::pole_network_of_8_bits;
 using nlohmann::json;
 
-TEST(Network, IsReadAndRefusedWhereItIsWrong) {
+TEST(Network, ReadsFilesAndRejectsInvalidOnes) {
   const Network network = parse_network(pole_network().text(), "n");
   EXPECT_EQ(network.classes, (std::vector<std::string>{"road", "pole"}));
   Sha256 hash;
@@ -30,46 +30,46 @@ TEST(Network, IsReadAndRefusedWhereItIsWrong) {
   EXPECT_EQ(network.sha256, hash.digest());
   EXPECT_EQ(network.weights[0].values, (std::vector<float>{1, 0, 0, 1}));
 
-  const auto refused = [](const std::string& text, const std::string& why) {
+  const auto rejected = [](const std::string& text, const std::string& why) {
     expect_error(ErrorKind::data, {"n: ", why}, [&] { parse_network(text, "n"); });
   };
-  refused("", "is no network");
-  refused("adasplats-network\n\1\0\0\0", "is no network");
-  refused(pole_network().text().substr(0, 60), "cut off");
+  rejected("", "not a network");
+  rejected("adasplats-network\n\1\0\0\0", "not a network");
+  rejected(pole_network().text().substr(0, 60), "truncated");
   NetworkText wrong = pole_network();
   wrong.header["version"] = 2;
-  refused(wrong.text(), "version 2, expected 1");
+  rejected(wrong.text(), "version 2, expected 1");
   wrong = pole_network();
-  refused(wrong.text().substr(0, wrong.text().size() - 2), "beyond its end");
+  rejected(wrong.text().substr(0, wrong.text().size() - 2), "beyond the end");
   wrong.data[1] = 0x7c;  // infinity
-  refused(wrong.text(), "not finite");
+  rejected(wrong.text(), "not finite");
   for (const auto& [key, value, why] :
        {std::tuple<std::string, json, std::string>{"input", 7, "input 7 does not exist"},
-        {"weight", 1, "do not fit"},
-        {"level", 1, "do not fit"},
+        {"weight", 1, "do not match"},
+        {"level", 1, "do not match"},
         {"level", 5, "level 5 does not exist"},
-        {"kind", "dense", "'dense' is not known"}}) {
+        {"kind", "dense", "'dense' is unknown"}}) {
     wrong = pole_network();
     wrong.header["layers"][0][key] = value;
-    refused(wrong.text(), why);
+    rejected(wrong.text(), why);
   }
   wrong = pole_network();
   wrong.header.erase("classes");
-  refused(wrong.text(), "damaged");
+  rejected(wrong.text(), "damaged");
   wrong = pole_network();
   wrong.header["layers"][0]["slope"] = 1e300;
-  refused(wrong.text(), "slope is not finite");
+  rejected(wrong.text(), "slope is not finite");
   wrong = pole_network();
   wrong.header["weights"][0]["shape"] = {std::uint64_t{1} << 32, std::uint64_t{1} << 32};
-  refused(wrong.text(), "beyond its end");
+  rejected(wrong.text(), "beyond the end");
 }
 
-TEST(Network, WeightsOf8BitsAreReadAndRefusedWhereTheyAreWrong) {
+TEST(Network, ReadsWeightsOf8BitsAndRejectsInvalidOnes) {
   EXPECT_EQ(parse_network(pole_network_of_8_bits().text(), "n").weights[0].values,
             (std::vector<float>{1, 0, 0, 1}));
   NetworkText wrong = pole_network_of_8_bits();
   const std::string text = wrong.text();
-  expect_error(ErrorKind::data, {"n: ", "beyond its end"},
+  expect_error(ErrorKind::data, {"n: ", "beyond the end"},
                [&] { parse_network(text.substr(0, text.size() - 1), "n"); });
   wrong.header["weights"][0]["bits"] = 4;
   expect_error(ErrorKind::data, {"n: ", "of 4 bits"}, [&] { parse_network(wrong.text(), "n"); });
@@ -79,26 +79,26 @@ TEST(Network, WeightsOf8BitsAreReadAndRefusedWhereTheyAreWrong) {
   expect_error(ErrorKind::data, {"n: ", "not finite"}, [&] { parse_network(wrong.text(), "n"); });
 }
 
-TEST(Network, ShapesOutOfRangeAreRefused) {
-  const auto refused = [](const char* key, const json& value, const std::string& why) {
+TEST(Network, RejectsShapesOutOfRange) {
+  const auto rejected = [](const char* key, const json& value, const std::string& why) {
     NetworkText wrong = pole_network();
     (wrong.header["shape"].contains(key) ? wrong.header["shape"] : wrong.header)[key] = value;
     expect_error(ErrorKind::data, {"n: ", why}, [&] { parse_network(wrong.text(), "n"); });
   };
   for (const char* const key : {"cell_m", "radius", "height_unit_m"})
     for (const json& value : {json(0), json(-1), json(1e9), json(1e-9)})
-      refused(key, value, "out of range");
-  for (const json& value : {json(0), json(-1), json(9)}) refused("levels", value, "out of range");
-  refused("neighbors", 0, "out of range");
-  refused("neighbors", 100'000, "out of range");
-  refused("kernel", json::array(), "out of range");
-  refused("kernel", {{0, 0, 1e300}}, "out of range");
-  refused("features", json::array(), "out of range");
-  refused("layers", json::array(), "no layers");
-  refused("classes", {"road", "road"}, "'road' is there twice");
-  refused("classes", {"road", "pole", "tree"}, "do not fit");
-  refused("classes", "road", "damaged");
-  refused("values", 1, "out of range");
+      rejected(key, value, "out of range");
+  for (const json& value : {json(0), json(-1), json(9)}) rejected("levels", value, "out of range");
+  rejected("neighbors", 0, "out of range");
+  rejected("neighbors", 100'000, "out of range");
+  rejected("kernel", json::array(), "out of range");
+  rejected("kernel", {{0, 0, 1e300}}, "out of range");
+  rejected("features", json::array(), "out of range");
+  rejected("layers", json::array(), "no layers");
+  rejected("classes", {"road", "road"}, "'road' occurs twice");
+  rejected("classes", {"road", "pole", "tree"}, "do not match");
+  rejected("classes", "road", "damaged");
+  rejected("values", 1, "out of range");
 }
 
 /// A value that every layer makes twice as wide.
@@ -110,7 +110,7 @@ TEST(Network, WidthsAreBounded) {
         {{"kind", "join"}, {"level", 0}, {"input", k}, {"second", k}, {"output", k + 1}});
   wide.header["layers"] = layers;
   wide.header["values"] = 71;
-  expect_error(ErrorKind::data, {"do not fit"}, [&] { parse_network(wide.text(), "n"); });
+  expect_error(ErrorKind::data, {"do not match"}, [&] { parse_network(wide.text(), "n"); });
 }
 
 TEST(Network, TheDefaultOneIsSound) {

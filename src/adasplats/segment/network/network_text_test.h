@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/segment/network/matrix_product.h"
+#include "adasplats/segment/network/run_network.h"
 
 // Small network files for tests.
 namespace adasplats::network_test {
 
 using nlohmann::json;
 
-/// Numbers of 16 bits that small networks need.
+/// Converts a float to IEEE 754 binary16, for values that small networks need.
 inline std::uint16_t half_of(float value) {
   const float size = std::fabs(value);
   if (size == 0) return 0;
@@ -55,7 +55,7 @@ struct NetworkText {
 
   std::string text() const { return text_of(header.dump(), data); }
 
-  /// A file of that header, whatever it says.
+  /// A file with the given header, which may be invalid.
   static std::string text_of(const std::string& head, const std::string& data) {
     const std::uint64_t length = head.size();
     std::string text = "adasplats-network\n";
@@ -64,7 +64,7 @@ struct NetworkText {
   }
 };
 
-/// What is higher than a metre is a pole.
+/// Classifies points above one metre as pole.
 inline NetworkText pole_network() {
   NetworkText network;
   const std::size_t weight = network.weights(2, {1, 0, 0, 1}), bias = network.weights(1, {0, 0});

@@ -7,13 +7,50 @@
 #include <cmath>
 #include <limits>
 
-#include "adasplats/segment/network/kernel_influence.h"
-#include "adasplats/segment/network/matrix_product.h"
+#include "adasplats/core/error.h"
+
+#ifdef ADASPLATS_OPENBLAS
+#include <cblas.h>
+#endif
 
 namespace adasplats {
+
+#ifdef ADASPLATS_OPENBLAS
+
+void require_products() {
+  // Its own threads would compete with ours, and the order of sums would depend on them.
+  static const bool kAlone = [] {
+    openblas_set_num_threads(1);
+    return true;
+  }();
+  static_cast<void>(kAlone);
+}
+
+void multiply(const float* a, const float* b, float* c, std::size_t rows, std::size_t inner,
+              std::size_t columns) {
+  require_products();
+  const auto m = static_cast<blasint>(rows), k = static_cast<blasint>(inner),
+             n = static_cast<blasint>(columns);
+  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, n, k, 1.0F, a, k, b, n, 0.0F, c, n);
+}
+
+#else
+
+void require_products() {
+  throw Error(ErrorKind::unavailable,
+              "this program was built without OpenBLAS, which networks need; install "
+              "libopenblas-dev and build again");
+}
+
+void multiply(const float*, const float*, float*, std::size_t, std::size_t, std::size_t) {
+  require_products();
+}
+
+#endif
+
 namespace {
 
-constexpr std::size_t kRows = 256;  // points of a product
+constexpr std::size_t kRows = 256;  // points per product
 constexpr std::size_t kMaxKernel = 64;
 
 /// Numbers of the points of a level, point by point.
@@ -95,7 +132,7 @@ class Run {
     return result;
   }
 
-  /// Neighbours of a layer's points and the level that these are of.
+  /// Neighbours of a layer's points, and their level.
   struct Reach {
     const NeighborTable* table;
     const PyramidLevel* supports;
@@ -125,7 +162,7 @@ class Run {
     return result;
   }
 
-  /// What each point of the kernel takes of the neighbours (KPConv, equations 2 and 3).
+  /// Adds the neighbours, weighted for each kernel point (KPConv, equations 2 and 3).
   void add_neighbors(Vec3f point, const Reach& reach, std::span<const std::uint32_t> neighbors,
                      const Values& input, float* weighted) const {
     const float cell_m = reach.supports->cell_m;
@@ -186,7 +223,7 @@ class Run {
   std::span<const PyramidLevel> levels_;
   const Executor& executor_;
   std::vector<Values> values_;
-  std::vector<std::size_t> last_use_;  ///< layer after which a value goes
+  std::vector<std::size_t> last_use_;  ///< layer after which a value is freed
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace adasplats {
 
-/// Cells of a grid with a corner in the origin, as keys that sort by x, then y, then z; counted
+/// Cells of a grid with a corner at the origin, as keys that sort by x, then y, then z; counted
 /// from the cell `first`, which is below all points.
 struct CellGrid {
   static constexpr int kAxisBits = 21;
@@ -18,7 +18,7 @@ struct CellGrid {
   Vec3<std::int64_t> first;
   float cell_m = 1;
 
-  /// `low`: a corner of all points.
+  /// `low`: the lower corner of all points.
   static CellGrid from(Vec3f low, float cell_m) {
     CellGrid grid{{}, cell_m};
     for (int axis = 0; axis < 3; ++axis) grid.first[axis] = grid.number(low[axis]);

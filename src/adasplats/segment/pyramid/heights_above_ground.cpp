@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/segment/pyramid/heights_above_ground.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "adasplats/segment/pyramid/pyramid.h"
 
 namespace adasplats {
 namespace {
@@ -12,16 +12,16 @@ namespace {
 constexpr float kColumn_m = 1;
 constexpr int kReach = 4;  // columns each way
 
-/// A number a column of a rectangle.
+/// One number per column of a rectangle.
 struct Columns {
   int width = 0, height = 0;
   std::vector<float> numbers;
 
-  float& at(int x, int y) { return numbers[place(x, y)]; }
-  float at(int x, int y) const { return numbers[place(x, y)]; }
+  float& at(int x, int y) { return numbers[index(x, y)]; }
+  float at(int x, int y) const { return numbers[index(x, y)]; }
 
  private:
-  std::size_t place(int x, int y) const {
+  std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }

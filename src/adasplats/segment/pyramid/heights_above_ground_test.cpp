@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/segment/pyramid/heights_above_ground.h"
-
 #include <gtest/gtest.h>
+
+#include "adasplats/segment/pyramid/pyramid.h"
 
 namespace adasplats {
 namespace {

@@ -38,7 +38,7 @@ std::vector<std::uint64_t> keys_of(std::span<const Vec3f> points, const CellGrid
   return keys;
 }
 
-/// Points sorted into cells as wide as the radius: what is near lies in nine runs.
+/// Points sorted into cells as wide as the radius: all neighbours are in nine runs.
 class CellSearch {
  public:
   CellSearch(std::span<const Vec3f> supports, Vec3f low, float radius_m, const Executor& executor)
@@ -55,7 +55,7 @@ class CellSearch {
     }
   };
 
-  /// All within the radius, in no order.
+  /// Collects all points within the radius, unordered.
   void collect(Vec3f query, std::vector<Candidate>& found) const {
     found.clear();
     const std::int64_t x = grid_.cell(query, 0), y = grid_.cell(query, 1), z = grid_.cell(query, 2);
@@ -72,8 +72,8 @@ class CellSearch {
   }
 
  private:
-  void add(std::ptrdiff_t place, Vec3f query, std::vector<Candidate>& found) const {
-    const std::uint32_t index = order_[static_cast<std::size_t>(place)];
+  void add(std::ptrdiff_t position, Vec3f query, std::vector<Candidate>& found) const {
+    const std::uint32_t index = order_[static_cast<std::size_t>(position)];
     const Vec3f way = supports_[index] - query;
     const float squared_m = dot(way, way);
     if (squared_m < radius_m_ * radius_m_) found.push_back({squared_m, index});
@@ -98,7 +98,7 @@ CellMeans means_by_cell(std::span<const Vec3f> points, float cell_m, const Execu
   result.cell_of.resize(points.size());
   for (std::size_t begin = 0; begin < keys.size();) {
     std::size_t end = begin;
-    // From one of the points: sums of large coordinates lose what distinguishes points.
+    // Relative to one of the points: sums of large coordinates lose precision.
     const Vec3f first = points[order[begin]];
     Vec3f sum;
     for (; end < keys.size() && keys[end] == keys[begin]; ++end) {
@@ -145,7 +145,7 @@ std::vector<PyramidLevel> make_pyramid(std::vector<Vec3f> points, const PyramidS
     if (k + 1 == shape.levels) break;
     points = means_by_cell(level.points, 2 * cell_m, executor).means;
     level.pooled = find_neighbors(points, level.points, radius_m, shape.neighbors, executor);
-    // The mean of a point's own cell is nearer than the cell's diagonal, 3.5 of these.
+    // The mean of a point's own cell is within the cell's diagonal, 3.5 * cell_m.
     level.coarser = find_neighbors(level.points, points, 4 * cell_m, 1, executor).indices;
   }
   return levels;

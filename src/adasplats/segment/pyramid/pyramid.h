@@ -11,9 +11,9 @@
 
 namespace adasplats {
 
-/// Neighbours of some points, as many slots for each: indices of others, the nearest first.
+/// Neighbours of points, with the same number of slots for each: indices, nearest first.
 struct NeighborTable {
-  static constexpr std::uint32_t kNone = 0xffffffffU;  ///< in slots that are left over
+  static constexpr std::uint32_t kNone = 0xffffffffU;  ///< in unused slots
   std::uint32_t slots = 0;
   std::vector<std::uint32_t> indices;
 
@@ -23,13 +23,13 @@ struct NeighborTable {
   }
 };
 
-/// One grid of a cloud: a point a cell, the mean of what lies in it.
+/// One grid of a cloud, with one point per cell: the mean of the points in it.
 struct PyramidLevel {
   float cell_m = 0;
   std::vector<Vec3f> points;
-  NeighborTable neighbors;             ///< of its points among themselves, each with itself
-  NeighborTable pooled;                ///< for the points of the next level, of this one's
-  std::vector<std::uint32_t> coarser;  ///< of its points, the nearest of the next level
+  NeighborTable neighbors;             ///< of its points among themselves, including the point
+  NeighborTable pooled;                ///< neighbours in this level of the points of the next
+  std::vector<std::uint32_t> coarser;  ///< for each point, the nearest one of the next level
 };
 
 struct PyramidShape {
@@ -39,16 +39,15 @@ struct PyramidShape {
   std::uint32_t neighbors = 32;
 };
 
-/// The means of the points in every cell, in the order of the cells (by x, then y, then z), and for
-/// every point which one it went into. The grid has a corner in the origin of the coordinates.
+/// The means of the points in every cell, sorted by cell (x, then y, then z), and the cell of every
+/// point. The origin of the coordinates is a corner of the grid.
 struct CellMeans {
   std::vector<Vec3f> means;
   std::vector<std::uint32_t> cell_of;
 };
 CellMeans means_by_cell(std::span<const Vec3f> points, float cell_m, const Executor& executor);
 
-/// The `slots` supports nearest to each query within the radius, those of lower index first where
-/// distances are the same.
+/// Finds the `slots` nearest supports within the radius of each query; ties by index.
 NeighborTable find_neighbors(std::span<const Vec3f> queries, std::span<const Vec3f> supports,
                              float radius_m, std::uint32_t slots, const Executor& executor);
 
@@ -56,5 +55,9 @@ NeighborTable find_neighbors(std::span<const Vec3f> queries, std::span<const Vec
 /// cells of the shape's finest size; finite, within a few kilometres of the origin.
 std::vector<PyramidLevel> make_pyramid(std::vector<Vec3f> points, const PyramidShape& shape,
                                        const Executor& executor);
+
+/// Height of points above the ground, m. The ground is the lowest point of square columns of 1 m,
+/// eroded and smoothed over nine columns each way.
+std::vector<float> heights_above_ground(std::span<const Vec3f> points);
 
 }  // namespace adasplats

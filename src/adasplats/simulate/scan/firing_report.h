@@ -14,7 +14,7 @@
 #include "adasplats/simulate/scan/intensity_rules.h"
 #include "adasplats/simulate/scan/scan_ray.h"
 #include "adasplats/simulate/scan/unit_field_rules.h"
-#include "adasplats/splats/reflectance/response_gain.h"
+#include "adasplats/splats/reflectance/response_tables.h"
 
 namespace adasplats {
 

@@ -6,7 +6,7 @@
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/sensors/unit_intensity.h"
-#include "adasplats/splats/reflectance/response_gain.h"
+#include "adasplats/splats/reflectance/response_tables.h"
 
 namespace adasplats {
 

@@ -18,11 +18,11 @@ void check(const ConsistentOptions& consistent) {
   };
   require(consistent.small_cell_m < consistent.cell_m,
           "small cells must be smaller than the cells, or 0");
-  require(SectorReach::can_have(consistent.cover.sectors) &&
-              SectorReach::can_have(consistent.cover.unchecked_sectors),
+  require(SectorReach::is_valid_count(consistent.cover.sectors) &&
+              SectorReach::is_valid_count(consistent.cover.unchecked_sectors),
           "sectors must be 0, 1, 2, 4, 8 or 16");
   require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
-          "the rings of a disk's middle must be 1 to 16");
+          "the core rings must be 1 to 16");
   require(consistent.evidence_rays > 0, "evidence rays must be greater than 0");
   require(consistent.evidence.parts == 1 || consistent.evidence.parts == 2 ||
               consistent.evidence.parts == kRayParts,

@@ -15,53 +15,74 @@
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_rays.h"
-#include "adasplats/surface/plane_fit.h"
+#include "adasplats/surface/adaptive_planes.h"
 
 namespace adasplats {
 
-/// Splats that agree with measured rays (docs/fidelity.md, also where each number comes from).
+// The consistent method. A splat is consistent if the measured rays agree with it: rays end at it,
+// and no ray passes through it and returns from a point behind it. The method makes a small disk
+// (a seed) from every cell of fused points and keeps what the rays support.
+//
+// The steps, in the order of consistent_disks(). The file in brackets has the work for one element
+// (below src/adasplats/); consistent_steps_on.h runs it on all elements, on the CPU or a GPU.
+// - fuse: average the points of each grid cell [surface/fused_points.h]
+// - fit_seeds: fit planes to the cells [surface/adaptive_planes.h] and make a disk, the seed, of
+//   each [splats/consistent/seed_disk.h]
+// - check_origins: compare the sensor positions with shifted ones
+//   [splats/consistent/origin_check.h]
+// - order_rays: sort the measured rays [splats/rays/measured_ray.h]
+// - balance_seeds: shrink or remove seeds that rays pass through [splats/rays/disk_evidence.h]
+// - cover: grow each seed over its coplanar neighbours [splats/consistent/seed_growth.h]
+// - limit_overhangs: shrink grown disks that rays pass through [splats/rays/disk_evidence.h]
+// - choose: select few large disks that cover all seeds [splats/consistent/surface_cover.h]
+// - settle: move disks along their normals to the ends of the rays [splats/rays/disk_shift.h]
+// - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
+// Without sensor positions the steps with rays are skipped, and disks stay smaller.
+
+/// Options of the consistent method; docs/fidelity.md gives the source of each number.
 struct ConsistentOptions {
   double cell_m = 0.05;  ///< side of the cells that points are fused in
-  /// Cells with no plane around them beyond this scale (of `planes.scales`) are split...
+  /// Cells are split if no plane around them is larger than this scale (of `planes.scales`)...
   std::uint8_t split_scale = 1;
-  double small_cell_m = 0.02;  ///< ...into these; 0: not split
+  double small_cell_m = 0.02;  ///< ...into cells of this side; 0: not split
   AdaptivePlaneOptions planes;
   double seed_spacing = 1.2;    ///< radius of a seed, times the distance to the 7th cell
   double min_radius_m = 0.015;  ///< of a seed
-  /// Largest radius of a seed, times the median spacing of cells: per metre of distance to the
-  /// sensor where that is known, as beams spread.
+  /// Maximum radius of a seed, times the median spacing of cells. The spacing is per metre of
+  /// distance to the sensor if that is known, since beams diverge.
   double largest_spacing = 1.2;
-  /// Where there are no rays to say what is free, disks stay smaller and end where points end.
+  /// The same without rays: nothing shows free space, so disks stay smaller and end with the
+  /// points.
   double unchecked_largest_spacing = 0.6;
-  double isolated = 3;       ///< a cell that wants so many times the largest has no splat
+  double isolated = 3;       ///< no seed if its radius would be this many times the maximum
   double min_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
-  int balance_rounds = 4;    ///< of shrinking and removing seeds; 0: no ray check
-  JudgeOptions judge;        ///< of seeds
-  EvidenceOptions evidence;  ///< its parts are the most: of few rays more are taken
-  std::size_t evidence_rays = 2'000'000;  ///< enough of them for a round
+  int balance_rounds = 4;    ///< of shrinking and removing seeds; 0: no visibility check
+  SeedCheckOptions judge;
+  EvidenceOptions evidence;  ///< `parts` is a maximum: with few rays a round casts more of them
+  std::size_t evidence_rays = 2'000'000;  ///< rays that a round needs
   CoverOptions cover;
-  int strict_rounds = 5;           ///< of limiting chosen disks
-  double max_contradicted = 0.05;  ///< of the rays that confirm a disk that was grown
+  int strict_rounds = 5;  ///< of limiting chosen disks
+  double max_contradicted =
+      0.05;  ///< rays through a grown disk, as a share of those that end at it
   int settle_rounds = 2;
   SettleOptions settle;
-  bool empty_beams = true;  ///< that are known say what is free
-  /// Beams are taken to have started where they are said to; else origin_objection() is an error.
+  bool empty_beams = true;  ///< beams without return show free space, too
+  /// Accept the sensor positions; else an origin_objection() is an error.
   bool trust_origins = false;
-  bool fill = true;        ///< where rays fall between splats, seeds are put back...
-  float missed_m = 0.15F;  ///< ...if there is nothing up to so far behind the rays' ends...
-  float met_m = 0.4F;      ///< ...and so far before them
+  bool fill = true;        ///< restore seeds where rays pass between splats...
+  float missed_m = 0.15F;  ///< ...if no splat is within this distance behind the ray's end...
+  float met_m = 0.4F;      ///< ...and within this distance before it
 
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
-  /// Cells are split up to `split_scale`: planes at larger scales than the first that decides need
-  /// not be looked at.
+  /// `planes` for deciding which cells to split: only the scales up to the one after `split_scale`.
   AdaptivePlaneOptions planes_for_splitting() const;
-  /// Largest radius of a seed in median spacings; `has_rays`: of a cell with a beam.
+  /// Maximum radius of a seed in median spacings; `has_rays`: the cell has a beam.
   ADASPLATS_HD double largest_seed(bool has_rays) const {
     return has_rays ? largest_spacing : unchecked_largest_spacing;
   }
-  /// As many rays as a round needs, of so many; other ones every round.
+  /// Selects as many of `rays` as a round needs; different ones in every round.
   EvidenceOptions evidence_of_round(int round, std::size_t rays) const;
-  /// Of growing disks; `checked`: rays say where surfaces end.
+  /// For growing disks; `checked`: rays show where surfaces end.
   CoverOptions cover_options(bool checked) const;
 };
 
@@ -76,39 +97,42 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .exclusive_min = true},
         consistent.cell_m);
   visit(Setting{.name = "small_cell",
-                .help = "Side of cells where the surface is not flat, m; 0: as elsewhere",
+                .help = "Side of cells where the surface is not flat, m; 0: the same as elsewhere",
                 .key = "small_cell_m",
                 .group = kGroup,
                 .min = 0},
         consistent.small_cell_m);
   visit(Setting{.name = "largest_radius",
-                .help = "Of a splat, m; 0: splats do not grow over their neighbours",
+                .help = "Maximum splat radius, m; 0: splats do not grow over their neighbours",
                 .key = "largest_radius_m",
                 .group = kGroup,
                 .min = 0},
         consistent.cover.largest_radius_m);
-  visit(Setting{.name = "balance_rounds",
-                .help = "Of judging small disks by the measured rays; 0: no ray check",
-                .group = kGroup,
-                .min = 0},
-        consistent.balance_rounds);
+  visit(
+      Setting{
+          .name = "balance_rounds",
+          .help =
+              "Rounds of checking small disks against the measured rays; 0: no visibility check",
+          .group = kGroup,
+          .min = 0},
+      consistent.balance_rounds);
   visit(Setting{.name = "strict_rounds",
-                .help = "Of limiting grown splats that rays go through",
+                .help = "Rounds of shrinking grown splats that measured rays pass through",
                 .group = kGroup,
                 .min = 0},
         consistent.strict_rounds);
   visit(Setting{.name = "settle_rounds",
-                .help = "Of moving splats to where rays end",
+                .help = "Rounds of moving splats to the ends of the measured rays",
                 .group = kGroup,
                 .min = 0},
         consistent.settle_rounds);
   visit(Setting{.name = "empty_beams",
-                .help = "Beams that returned nothing say what is free, too, where a drive shows "
-                        "which did",
+                .help = "Use beams without return as evidence of free space, if the recording "
+                        "shows them",
                 .group = kGroup},
         consistent.empty_beams);
   visit(Setting{.name = "fill",
-                .help = "Put small splats where measured rays fall through",
+                .help = "Put small splats where measured rays pass between splats",
                 .group = kGroup},
         consistent.fill);
 }
@@ -116,24 +140,23 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
 /// Errors: usage (an option out of range).
 void check(const ConsistentOptions& consistent);
 
-/// What consistent_disks() did, in numbers.
+/// Figures of consistent_disks().
 struct ConsistentReport {
-  bool checked = false;                ///< measured rays judged the disks
-  std::optional<OriginCheck> origins;  ///< nothing: they were not checked
-  std::size_t cells = 0;               ///< that the points were fused in
-  std::size_t seeds = 0;               ///< of these cells, those with a disk to begin with
-  std::size_t rays = 0;                ///< measured ones, where they judged the disks
-  std::size_t empty_beams = 0;         ///< that did so, too
-  std::size_t seeds_removed = 0;       ///< that more rays contradict than confirm
-  std::size_t splats_filled = 0;       ///< put back where rays fell between disks
+  bool checked = false;                ///< the disks were checked against measured rays
+  std::optional<OriginCheck> origins;  ///< nullopt: not checked
+  std::size_t cells = 0;               ///< of fused points
+  std::size_t seeds = 0;               ///< cells with a disk before the visibility check
+  std::size_t rays = 0;                ///< measured rays that the disks were checked against
+  std::size_t empty_beams = 0;         ///< and beams without return
+  std::size_t seeds_removed = 0;       ///< more rays contradict than confirm them
+  std::size_t splats_filled = 0;       ///< restored where rays passed between disks
 };
 
 class ConsistentSteps;
 
-/// Fuses, fits planes, checks, covers, settles what `steps` have loaded. Without known beams
-/// (`has_rays` false) or with no balance rounds the steps with rays are left out. `begin_step`
-/// hears the name of every step and of how many passes (ProgressPass) it
-/// consists. Errors: data (origin_objection()).
+/// Runs all steps on the cloud that `steps` have loaded. Without beams (`has_rays` false) or with
+/// no balance rounds the steps with rays are skipped. Calls `begin_step` with the name of every
+/// step and its number of passes (ProgressPass). Errors: data (origin_objection()).
 ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
                                   const ConsistentOptions& options,
                                   const std::function<void(std::string_view, int)>& begin_step);

@@ -133,7 +133,7 @@ TEST(ConsistentModel, FlatRoomTakesFewSplats) {
   EXPECT_LT(room_model().model.size(), fused.size() / 4);
 }
 
-TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNextToNoSplat) {
+TEST(ConsistentModel, SurfacesThatLaterRaysPassThroughLeaveAlmostNoSplats) {
   // The floor under the passer-by is none of it.
   const Box above_floor = {{kPasserby.low.x, kPasserby.low.y, 0.2}, kPasserby.high};
   const PointCloud cloud = scanned_room();
@@ -159,7 +159,8 @@ TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNextToNoSplat) {
   EXPECT_TRUE(built.warnings.texts.empty());
 }
 
-/// A wall, seen up to its upper edge every 10 cm from 8 m away, by 12 scans that stand apart.
+/// A wall, seen up to its upper edge every 10 cm from 8 m away, by 12 scans from different
+/// positions.
 PointCloud scanned_wall(bool with_empty_beams) {
   PointCloud cloud;
   for (int scan = 0; scan < 12; ++scan) {
@@ -183,7 +184,7 @@ PointCloud scanned_wall(bool with_empty_beams) {
   return cloud;
 }
 
-// Nothing was measured above the edge, so nothing but empty beams says how far disks may reach.
+// Nothing was measured above the edge, so only empty beams limit the disks.
 TEST(ConsistentModel, BeamsWithoutReturnEndDisksAtEdges) {
   const auto overhang_m2 = [](bool with_empty_beams) {
     const Built built = build(scanned_wall(with_empty_beams));
@@ -304,7 +305,7 @@ TEST(ConsistentModel, OrderOfPointsAndThreadsDoNotChangeTheBytes) {
   EXPECT_TRUE(same_bytes(one, build(gather(cloud, order), 3, quick_options()).model));
 }
 
-TEST(ConsistentModel, WorksWithoutSensorPositionsAndSaysSoOnce) {
+TEST(ConsistentModel, WarnsOnceAboutMissingSensorPositions) {
   PointCloud cloud = thin_room();
   cloud.sensor_positions.clear();
   const Built built = build(cloud, 2, quick_options());
@@ -320,14 +321,14 @@ TEST(ConsistentModel, WorksWithoutSensorPositionsAndSaysSoOnce) {
   EXPECT_TRUE(same_bytes(built.model, build(gather(cloud, backward), 3, quick_options()).model));
 }
 
-/// With the sensor 5 m off and to the side, as the nearest pose of a trajectory may be.
+/// With sensor positions that are off by 5 m, as the nearest pose of a trajectory may be.
 PointCloud with_false_origins(PointCloud cloud, OriginKind kind) {
   for (Vec3f& sensor : cloud.sensor_positions) sensor = sensor + Vec3f{4, 3, 0};
   cloud.origin_kinds.assign(cloud.size(), kind);
   return cloud;
 }
 
-TEST(ConsistentModel, GuessedOriginsCarveNothing) {
+TEST(ConsistentModel, GuessedOriginsMakeNoRays) {
   const PointCloud cloud = thin_room();
   const Built guessed = build(with_false_origins(cloud, OriginKind::guessed), 2, quick_options());
   BuildOptions trusting = quick_options();
@@ -349,7 +350,7 @@ TEST(ConsistentModel, GuessedOriginsCarveNothing) {
   }
 }
 
-TEST(ConsistentModel, PointsWithoutOriginDoNotTakeThemFromTheOthers) {
+TEST(ConsistentModel, SomePointsMayLackAnOrigin) {
   PointCloud cloud = thin_room();
   const std::size_t all = build(cloud, 2, quick_options()).model.size();
   cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
@@ -494,7 +495,7 @@ void add_far_points(int count, PointCloud& cloud) {
 }
 
 // Oracle: the model without them. Cells of 2 cm reach 21 km; beyond, points shared the last ones.
-TEST(ConsistentModel, PointsBeyondAllCellsAreLeftOutAndSaid) {
+TEST(ConsistentModel, PointsOutOfRangeAreSkippedWithAWarning) {
   PointCloud cloud = scanned_room();
   const std::size_t points = cloud.size();
   const int few = static_cast<int>(points / 200);
@@ -504,13 +505,15 @@ TEST(ConsistentModel, PointsBeyondAllCellsAreLeftOutAndSaid) {
   EXPECT_EQ(built.report.points_noise, static_cast<std::size_t>(few));
   EXPECT_EQ(built.report.points_used, points);
   ASSERT_EQ(built.warnings.texts.size(), 1U);
-  EXPECT_NE(built.warnings.texts[0].find(std::to_string(few) + " points lie more than 21 km"),
-            std::string::npos)
+  EXPECT_NE(
+      built.warnings.texts[0].find(std::to_string(few) + " of " + std::to_string(cloud.size()) +
+                                   " points are more than 21 km"),
+      std::string::npos)
       << built.warnings.texts[0];
   EXPECT_EQ(built.model.size(), expected.model.size());
 }
 
-TEST(ConsistentModel, ASecondPlaceBeyondAllCellsIsAnError) {
+TEST(ConsistentModel, ManyPointsOutOfRangeAreAnError) {
   PointCloud cloud = scanned_room();
   add_far_points(static_cast<int>(cloud.size() / 50), cloud);
   EXPECT_THROW(build(cloud), Error);
@@ -550,7 +553,7 @@ PointCloud ordered(const PointCloud& cloud) {
 }
 
 TEST(ConsistentDisks, CellsBelongToTheirDisks) {
-  // Every disk stands on its cell: off its mean by the shifts to the plane and to the rays at most.
+  // Every disk is at its cell: off its mean by at most the shifts to the plane and to the rays.
   const PointCloud cloud = ordered(thin_room());
   const ConsistentOptions options = quick_recipe();
   const Made made = disks_of(cloud, options);
@@ -637,7 +640,7 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
             std::count(missed.begin(), missed.end(), true) - 20);
 }
 
-TEST(ConsistentDisks, SmallCellsAreWhereNothingIsFlat) {
+TEST(ConsistentDisks, SmallCellsAreUsedWhereTheSurfaceIsNotFlat) {
   const PointCloud cloud = ordered(thin_room());
   ConsistentOptions options = quick_recipe();
   const FusedPoints large = fuse_points(cloud.positions, options.cell_m, Executor(1));

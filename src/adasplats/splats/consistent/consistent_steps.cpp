@@ -7,25 +7,24 @@
 
 #include "adasplats/core/maths/median.h"
 #include "adasplats/neighbors/point_index.h"
-#include "adasplats/splats/consistent/cell_attributes.h"
 #include "adasplats/splats/consistent/consistent_steps_on.h"
+#include "adasplats/splats/consistent/element_steps.h"
 #include "adasplats/splats/consistent/surface_cover.h"
-#include "adasplats/splats/model/rays_on_cpu.h"
+#include "adasplats/splats/model/cpu_backend.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/splats/rays/present_disks.h"
-#include "adasplats/splats/rays/ray_check.h"
 #include "adasplats/surface/adaptive_planes.h"
 #include "adasplats/surface/fused_points.h"
 
 namespace adasplats {
 namespace {
 
-/// 0 of none.
+/// 0 without any.
 double median_spacing(std::vector<float>& spacings) {
   return spacings.empty() ? 0 : static_cast<double>(upper_median_of(spacings));
 }
 
-/// What the steps of the consistent method need of the CPU.
+/// The CPU backend of the consistent method.
 class ConsistentOnCpu : public RaysOnCpu {
  public:
   using Cells = FusedPoints;
@@ -74,7 +73,7 @@ class ConsistentOnCpu : public RaysOnCpu {
         std::ranges::count_if(disks, [](const Disk& disk) { return disk.radius > 0; }));
   }
 
-  /// One flag a point: whether its ray meets no disk near it.
+  /// One flag per point: its ray meets no disk near it.
   std::vector<std::uint8_t> missed(std::span<const Disk> disks, const MeasuredRays& rays,
                                    std::size_t points, RayReach reach) const {
     std::vector<std::uint8_t> missed(points);
@@ -88,7 +87,7 @@ class ConsistentOnCpu : public RaysOnCpu {
     return missed;
   }
 
-  /// Of the planes' spacings over their units, where there is a unit; 0 where there is none.
+  /// Median of the planes' spacings divided by their units, over planes with a unit; 0 without any.
   static double median_spacing(const std::vector<LocalPlane>& planes,
                                const std::vector<float>& units_m) {
     std::vector<float> spacings;
@@ -99,7 +98,7 @@ class ConsistentOnCpu : public RaysOnCpu {
     return adasplats::median_spacing(spacings);
   }
 
-  /// The disks that have a radius, with the attributes of their cells' points.
+  /// The disks that have a radius, with the attributes of the points in their cells.
   static ConsistentSplats splats(const std::vector<Disk>& disks, const FusedPoints& cells,
                                  const PointCloud& cloud) {
     ConsistentSplats splats;

@@ -13,73 +13,70 @@
 #include "adasplats/splats/consistent/consistent_model.h"
 #include "adasplats/splats/consistent/global_context.h"
 #include "adasplats/splats/consistent/origin_check.h"
-#include "adasplats/splats/model/class_tables.h"
+#include "adasplats/splats/model/canonical_order.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 
 namespace adasplats {
 
-/// What the consistent method made, with the attributes of the points of each disk's cell.
+/// The result of the consistent method, with the attributes of the points in each disk's cell.
 struct ConsistentSplats {
   std::vector<Disk> disks;
-  std::vector<std::uint16_t> classes;  ///< that most points of the cell have; empty without
-  std::vector<float> intensities;      ///< mean over the cell's points; empty without
+  std::vector<std::uint16_t> classes;  ///< class of most points in the cell; empty without labels
+  std::vector<float> intensities;      ///< mean over the cell's points; empty if they have none
 };
 
-/// How many of each there are so far.
+/// Numbers of elements after the last step.
 struct ConsistentCounts {
   std::size_t cells = 0;
   std::size_t seeds = 0;  ///< with a radius
-  std::size_t rays = 0;   ///< measured ones; 0 before order_rays()
-  std::size_t empty = 0;  ///< beams without return, likewise
-  std::size_t disks = 0;  ///< chosen ones
+  std::size_t rays = 0;   ///< measured rays; 0 before order_rays()
+  std::size_t empty = 0;  ///< beams without return; 0 before order_rays()
+  std::size_t disks = 0;  ///< chosen disks
 };
 
-/// The steps of the consistent method on one device; consistent_disks() calls them in their order.
-/// Every implementation gives the same splats to the last bit.
+/// The steps of the consistent method on one device; consistent_disks() calls them in this order.
+/// All implementations give the same splats to the last bit.
 class ConsistentSteps {
  public:
   virtual ~ConsistentSteps() = default;
 
-  /// Takes the cloud, without the points of removed classes, in canonical order (of all points).
-  /// `whole`: the cloud is a piece of a place of which this is known; nullptr: it is all. Gives the
-  /// number of points kept.
+  /// Loads the cloud in canonical order (of all points), without points of removed classes.
+  /// `whole`: facts about the scene that the cloud is a tile of; nullptr: the cloud is the whole
+  /// scene. Returns the number of points kept.
   virtual std::size_t load(PointCloud cloud, const ClassTables& tables,
                            const GlobalContext* whole = nullptr) = 0;
 
-  /// Points in cells.
+  /// Averages the points of each cell.
   virtual void fuse(const ConsistentOptions& options) = 0;
-  /// Of the cells that points were fused in, for GlobalContext::typical. May be called before
-  /// fit_seeds() alone.
+  /// Spacing of every cell, for GlobalContext::typical. Only valid between fuse() and fit_seeds().
   virtual std::vector<CellSpacing> spacings(const ConsistentOptions& options) = 0;
-  /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.
+  /// Splits cells where the surface is not flat, fits planes, orients normals, makes seeds.
   virtual void fit_seeds(const ConsistentOptions& options) = 0;
-  /// What the measured rays say of where they started, by pieces of the place; needs known beams.
-  /// Changes nothing.
+  /// Evidence for the sensor positions, for each part of the scene; needs beams. Changes nothing.
   virtual std::vector<MovedEvidence> check_origins(const ConsistentOptions& options) = 0;
-  /// Orders the measured rays; needs known beams. Those below come after it.
+  /// Sorts the measured rays; needs beams. The steps below must follow it.
   virtual void order_rays(const ConsistentOptions& options) = 0;
   /// Shrinks and removes seeds that more rays contradict than confirm: one round.
   virtual void balance_seeds(int round, const ConsistentOptions& options) = 0;
-  /// Grows every seed over its neighbours. `checked`: rays say where surfaces end.
+  /// Grows every seed over its neighbours. `checked`: rays show where surfaces end.
   virtual void cover(bool checked, const ConsistentOptions& options) = 0;
-  /// Chooses disks and limits those that hang over edges: one round.
+  /// Chooses disks and shrinks those that overhang edges: one round.
   virtual void limit_overhangs(int round, const ConsistentOptions& options) = 0;
-  /// Disks that the last round chose not stay at their seed's size.
+  /// Limits the disks that the last round did not choose to the size of their seeds.
   virtual void limit_unchosen() = 0;
   /// Chooses the disks of the model.
   virtual void choose() = 0;
-  /// Moves chosen disks to where the rays say the surface is: one round.
+  /// Moves chosen disks to the surface that the rays show: one round.
   virtual void settle(const ConsistentOptions& options) = 0;
-  /// Puts seeds back where rays fall between disks.
+  /// Restores seeds where rays pass between disks.
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
 
   virtual ConsistentCounts counts() const = 0;
 
-  /// The chosen disks with a radius, on the host. Of the other steps only measure_reflectances()
-  /// may come after it.
+  /// The chosen disks, on the host. Only measure_reflectances() may follow.
   virtual ConsistentSplats take_splats() = 0;
 
-  /// Of the splats that were taken; needs known beams. See ReflectancesOn.
+  /// Reflectances of the splats of take_splats(); needs beams. See ReflectancesOn.
   virtual Reflectances measure_reflectances(const std::vector<Disk>& disks,
                                             const std::vector<float>& fallback,
                                             const ConsistentOptions& options) = 0;

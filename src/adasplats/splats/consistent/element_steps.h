@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/scene/intersect.h"
@@ -14,13 +15,13 @@
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_ray.h"
+#include "adasplats/surface/adaptive_planes.h"
 #include "adasplats/surface/fused_points.h"
-#include "adasplats/surface/plane_fit.h"
 
 namespace adasplats {
 
-// What the steps of the consistent method do with one element, in the steps' order. Each reads and
-// writes only what belongs to element `i`, so a loop on any device runs it (for_each of a place).
+// The work of the consistent method for one element, in the order of the steps. Each functor reads
+// and writes only data of element `i`, so any loop may run it (for_each of a backend).
 
 /// spacing_unit_m() of every cell.
 struct FindSpacingUnit {
@@ -34,8 +35,8 @@ struct FindSpacingUnit {
   }
 };
 
-/// Flags cells around which no plane is larger than the smallest scales: leaves, poles, wires are
-/// smaller than a cell.
+/// Flags cells without a plane larger than the smallest scales: leaves, poles and wires are smaller
+/// than a cell.
 struct FlagNotFlat {
   const LocalPlane* planes;
   std::uint8_t split_scale;
@@ -46,7 +47,7 @@ struct FlagNotFlat {
   }
 };
 
-/// Turns a plane's normal to the sensors and makes a seed of it.
+/// Orients the normal of a plane towards the sensors and makes a seed.
 struct MakeSeed {
   MeasuredPoints points;
   CellsView cells;
@@ -65,7 +66,7 @@ struct MakeSeed {
   }
 };
 
-/// Every n-th seed.
+/// Selects every n-th seed.
 struct ThinSeeds {
   const Disk* seeds;
   std::size_t every;
@@ -74,7 +75,7 @@ struct ThinSeeds {
   ADASPLATS_HD void operator()(std::size_t i) const { some[i] = seeds[i * every]; }
 };
 
-/// Moves where a beam started; a beam of no length stays.
+/// Shifts the origin of a beam, unless that would leave the beam without a length.
 struct MoveOrigin {
   const Vec3f* points;
   const Vec3f* given;
@@ -88,7 +89,7 @@ struct MoveOrigin {
   }
 };
 
-/// Counts seeds, from one of them on, by what the rays that cross them say.
+/// Counts seeds that rays cross, and those that more rays contradict than confirm.
 struct CountCrossed {
   std::size_t first;
   EvidenceView evidence;
@@ -105,20 +106,20 @@ struct CountCrossed {
   }
 };
 
-/// Shrinks a seed to what the rays leave of it.
-struct JudgeSeed {
+/// Shrinks a seed to the radius that the rays support.
+struct ShrinkSeed {
   Disk* seeds;
   EvidenceView evidence;
-  JudgeOptions options;
+  SeedCheckOptions options;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
     const DiskEvidence own = evidence.of(i);
     if (seeds[i].radius > 0 && own.seen())
-      seeds[i].radius = judged_radius(own, seeds[i].radius, options);
+      seeds[i].radius = supported_radius(own, seeds[i].radius, options);
   }
 };
 
-/// Flags cells none of whose points has a beam.
+/// Flags cells without any point that has a beam.
 struct FlagWithoutBeam {
   MeasuredPoints points;
   CellsView cells;
@@ -129,7 +130,7 @@ struct FlagWithoutBeam {
   }
 };
 
-/// Limits a chosen disk that hangs over an edge.
+/// Limits a chosen disk that overhangs an edge.
 struct LimitOverhang {
   CoverLimits cover;
   const Disk* chosen;
@@ -144,7 +145,7 @@ struct LimitOverhang {
   }
 };
 
-/// What is chosen next instead of limited disks was not checked in its large size.
+/// Limits disks that were not chosen: their grown size was not checked against rays.
 struct LimitUnchosen {
   CoverLimits cover;
   const Disk* chosen;
@@ -154,7 +155,7 @@ struct LimitUnchosen {
   }
 };
 
-/// Moves a disk to where the rays that meet it say the surface is.
+/// Moves a disk to the surface that the rays which meet it show.
 struct SettleDisk {
   Disk* disks;
   const ShiftSums* sums;
@@ -165,13 +166,13 @@ struct SettleDisk {
   }
 };
 
-/// Puts a seed back at a cell whose rays find nothing where they ended: chosen disks cover the
-/// middles of all seeds, not all that is between them.
+/// Restores the seed of a cell if a ray of its points meets no disk: chosen disks cover the centres
+/// of all seeds, but not every gap between them.
 struct PutBackSeed {
   Disk* chosen;
   const Disk* seeds;
   CellsView cells;
-  const std::uint8_t* missed;  ///< one flag a point
+  const std::uint8_t* missed;  ///< one flag per point
 
   ADASPLATS_HD void operator()(std::size_t cell) const {
     if (chosen[cell].radius > 0) return;
@@ -182,5 +183,32 @@ struct PutBackSeed {
     }
   }
 };
+
+/// The most frequent of the classes, which are sorted; the smallest of equally frequent ones.
+ADASPLATS_HD inline std::uint16_t majority_class(std::span<const std::uint16_t> ascending) {
+  std::uint16_t best = 0;
+  std::size_t most = 0, run = 0;
+  for (std::size_t i = 0; i < ascending.size(); ++i) {
+    run = i > 0 && ascending[i] == ascending[i - 1] ? run + 1 : 1;
+    if (run > most) {
+      most = run;
+      best = ascending[i];
+    }
+  }
+  return best;
+}
+
+/// Mean intensity of a cell's points, added in their order; NaN if none has an intensity.
+ADASPLATS_HD inline float mean_intensity(const float* intensities,
+                                         std::span<const std::uint32_t> members) {
+  double sum = 0;
+  std::size_t known = 0;
+  for (const std::uint32_t i : members) {
+    if (intensities[i] != intensities[i]) continue;  // NaN: unknown
+    sum += static_cast<double>(intensities[i]);
+    ++known;
+  }
+  return static_cast<float>(sum / static_cast<double>(known));
+}
 
 }  // namespace adasplats

@@ -14,33 +14,33 @@
 
 namespace adasplats {
 
-/// What a piece of a place has to know of the whole, so that the splats that stand far enough from
-/// where it was cut are those of the whole, to the last bit. Coordinates are relative to the origin
-/// of the piece's cloud, which must be that of the whole's for that.
+/// Facts about a city that the model of one tile needs. With them, splats far enough from the
+/// tile's border are those of a model of the whole city, to the last bit. Coordinates are relative
+/// to the origin of the tile's cloud, which must be that of the whole city's cloud.
 struct GlobalContext {
-  CurveBox box;            ///< of all points: they are ordered along the same curve
+  CurveBox box;            ///< of all points, so that all tiles use the same curve
   TypicalSpacing typical;  ///< of all cells
-  std::size_t rays = 0;    ///< measured ones of all: they say in how many parts rays are cast
-  /// Rays that cross the piece and end elsewhere: ends and sensor positions alone.
+  std::size_t rays = 0;    ///< measured rays of all: decides in how many parts rays are cast
+  /// Rays that cross the tile and end outside it: only ends and sensor positions.
   PointCloud passing;
-  /// Beams without return that cross the piece, as ends_of() has them; those of the piece's cloud
-  /// itself are not looked at.
+  /// Beams without return that cross the tile, from ends_of(). They replace those of the tile's
+  /// cloud.
   PointCloud empty;
-  std::optional<IntensityResponse> response;  ///< of the sensor; nothing: by the piece's own rays
+  std::optional<IntensityResponse> response;  ///< of the sensor; nullopt: fitted to the tile's rays
 };
 
-/// How dense the cells are at one of them.
+/// Distance of a cell to its neighbours.
 struct CellSpacing {
   Vec3f place;        ///< mean of its points
   float spacing = 0;  ///< to the 7th nearest cell, in units of spacing_unit_m()
   bool with_beam = false;
 };
 
-/// In steps of a two hundredth or less: a few cells more or less, which a piece sees other
-/// neighbours of, must not change all disks.
+/// Rounds in steps of at most 1/200: a tile sees other neighbours for a few cells at its border,
+/// which must not change all of its disks.
 double rounded_spacing(double median);
 
-/// Medians of spacings, rounded; what there is none of is 0. Their order does not matter.
+/// Medians of spacings, rounded; 0 without any. The order of the spacings does not matter.
 TypicalSpacing typical_spacing(std::vector<float> with_beam, std::vector<float> without);
 
 }  // namespace adasplats

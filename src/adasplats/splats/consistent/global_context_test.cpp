@@ -60,7 +60,7 @@ BuildOptions tested_options() {
   return options;
 }
 
-std::vector<Disk> disks_of_piece(const PointCloud& cloud, const BuildOptions& options) {
+std::vector<Disk> disks_of_tile(const PointCloud& cloud, const BuildOptions& options) {
   ProgressSink quiet;
   const SplatModel model = build_model(cloud, nullptr, options, Executor(2), quiet).first;
   std::vector<Disk> disks;
@@ -69,7 +69,7 @@ std::vector<Disk> disks_of_piece(const PointCloud& cloud, const BuildOptions& op
   return disks;
 }
 
-/// The cells of the whole, cut where the piece is, as a city's tiles are surveyed.
+/// The cells of the full scene, cut like the tiles of a city.
 TypicalSpacing surveyed(const PointCloud& cloud) {
   const Executor executor(2);
   const auto steps = make_cpu_consistent_steps(executor);
@@ -92,11 +92,11 @@ TEST(GlobalContext, APieceHasTheSplatsOfTheWhole) {
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     (kReach.contains(cloud.positions[i]) ? near : far).push_back(i);
   whole.passing = gather(cloud, far);
-  const PointCloud piece = gather(cloud, near);
+  const PointCloud tile = gather(cloud, near);
   BuildOptions options = tested_options();
-  const std::vector<Disk> expected = disks_of_piece(cloud, options);
+  const std::vector<Disk> expected = disks_of_tile(cloud, options);
   options.whole = &whole;
-  const std::vector<Disk> disks = disks_of_piece(piece, options);
+  const std::vector<Disk> disks = disks_of_tile(tile, options);
   ASSERT_EQ(disks.size(), expected.size());
   EXPECT_GT(disks.size(), 400U);
   EXPECT_EQ(std::memcmp(disks.data(), expected.data(), disks.size() * sizeof(Disk)), 0);
@@ -106,9 +106,9 @@ TEST(GlobalContext, APieceHasTheSplatsOfTheWhole) {
       if (disk.center.z > 2.5F) sum += disk.radius * disk.radius;
     return sum;
   };
-  // Nobody tells the piece of the rays that go through the panel.
+  // The tile lacks the rays that pass through the panel.
   whole.passing = {};
-  EXPECT_GT(area_in_the_air(disks_of_piece(piece, options)), 3 * area_in_the_air(disks));
+  EXPECT_GT(area_in_the_air(disks_of_tile(tile, options)), 3 * area_in_the_air(disks));
 }
 
 TEST(GlobalContext, IsOfTheMethodConsistentAlone) {

@@ -13,21 +13,21 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kCheckedBeams = 400'000;
-/// Contradicted seeds that tell one place from another, of a part and in all: of places that are
-/// equally good the best of four has by chance 2 % less.
+/// Minimum contradicted seeds of a part and of all parts: among four equally good shifts, the best
+/// has 2 % fewer by chance.
 constexpr std::uint64_t kEnoughOfPart = 1000, kEnough = 1500;
 
-// OriginCheck::near_rise and far_rise: no right place has less than the first, few have less than
-// the second of both (docs/fidelity.md).
+// OriginCheck::near_rise and far_rise: correct positions never have less than the kMin values, and
+// rarely less than both kDoubted values (docs/fidelity.md).
 constexpr double kMinNear = 0.96, kDoubtedNear = 1.03;
 constexpr double kMinFar = 0.97, kDoubtedFar = 1.06;
 
-/// Pieces with enough contradicted seeds each, of pieces that are joined with those behind them.
-std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
+/// Joins parts with the next ones until each has enough contradicted seeds.
+std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> scene_parts) {
   std::vector<MovedEvidence> parts;
   MovedEvidence next;
-  for (const MovedEvidence& piece : pieces) {
-    next += piece;
+  for (const MovedEvidence& part : scene_parts) {
+    next += part;
     if (next.given.contradicted < kEnoughOfPart) continue;
     parts.push_back(next);
     next = {};
@@ -36,7 +36,7 @@ std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
   return parts;
 }
 
-/// Contradicted seeds from the best of some places.
+/// Contradicted seeds of the best shift.
 std::uint64_t min_contradicted(std::span<const CrossedSeeds> moved) {
   return std::ranges::min(moved, {}, &CrossedSeeds::contradicted).contradicted;
 }
@@ -47,10 +47,8 @@ std::string hundredths(double value) {
 }
 
 std::string figures(const OriginCheck& check) {
-  return "had all beams started beside there by a tenth of their median range, they would go "
-         "through " +
-         hundredths(check.near_rise) +
-         " times as many of the surfaces that the points show, by three tenths " +
+  return "rays from positions shifted by 10 % of the median range cross " +
+         hundredths(check.near_rise) + " times as many surfaces, from positions shifted by 30 % " +
          hundredths(check.far_rise) + " times";
 }
 
@@ -66,14 +64,14 @@ double OriginCheck::share() const {
   return seeds == 0 ? 0 : static_cast<double>(contradicted) / static_cast<double>(seeds);
 }
 
-OriginCheck origin_check(std::span<const MovedEvidence> pieces) {
+OriginCheck origin_check(std::span<const MovedEvidence> scene_parts) {
   OriginCheck check;
-  for (const MovedEvidence& piece : pieces) {
-    check.seeds += piece.given.crossed;
-    check.contradicted += piece.given.contradicted;
+  for (const MovedEvidence& part : scene_parts) {
+    check.seeds += part.given.crossed;
+    check.contradicted += part.given.contradicted;
   }
   std::uint64_t near = 0, far = 0;
-  for (const MovedEvidence& part : parts_of(pieces)) {
+  for (const MovedEvidence& part : parts_of(scene_parts)) {
     const std::span moved(part.moved);
     near += min_contradicted(moved.first(kNearMoves));
     far += min_contradicted(moved.subspan(kNearMoves));
@@ -87,17 +85,17 @@ OriginCheck origin_check(std::span<const MovedEvidence> pieces) {
 std::string origin_objection(const OriginCheck& check) {
   if (check.contradicted < kEnough) return {};
   if (check.near_rise >= kMinNear && check.far_rise >= kMinFar) return {};
-  return "the sensor positions are not those of the points: " + figures(check) +
-         "; from the right ones it is at least " + hundredths(kMinNear) + " and " +
-         hundredths(kMinFar) + " (`trust_origins` takes them nevertheless)";
+  return "the sensor positions do not match the points: " + figures(check) +
+         "; correct ones give at least " + hundredths(kMinNear) + " and " + hundredths(kMinFar) +
+         " (`trust_origins` accepts them)";
 }
 
 std::string origin_doubt(const OriginCheck& check) {
   if (check.contradicted < kEnough || !origin_objection(check).empty()) return {};
   if (check.near_rise >= kDoubtedNear || check.far_rise >= kDoubtedFar) return {};
   return "the sensor positions may be wrong: " + figures(check) +
-         "; of most recordings it is at least " + hundredths(kDoubtedNear) + " or " +
-         hundredths(kDoubtedFar) + ", of dense vegetation less";
+         "; most recordings give at least " + hundredths(kDoubtedNear) + " or " +
+         hundredths(kDoubtedFar) + ", dense vegetation less";
 }
 
 PointCloud sample_beams(const PointCloud& cloud, std::span<const std::uint8_t> removed,

@@ -25,7 +25,7 @@ namespace adasplats::origins {
 namespace {
 
 /// Of 20 times as many crossed seeds; from each place so many times as many are contradicted.
-MovedEvidence piece(std::uint64_t contradicted, std::array<double, kOriginMoves.size()> times) {
+MovedEvidence part(std::uint64_t contradicted, std::array<double, kOriginMoves.size()> times) {
   MovedEvidence made;
   made.given = {20 * contradicted, contradicted};
   for (std::size_t k = 0; k < times.size(); ++k)
@@ -40,8 +40,8 @@ constexpr std::array<double, kOriginMoves.size()> kWest = {1.5, 0.5, 1.1, 1.1, 2
 
 // Expected: counted by hand.
 TEST(OriginCheck, EveryPartHasABestPlaceOfItsOwn) {
-  const std::vector<MovedEvidence> pieces = {piece(2000, kEast), piece(2000, kWest)};
-  const OriginCheck check = origin_check(pieces);
+  const std::vector<MovedEvidence> parts = {part(2000, kEast), part(2000, kWest)};
+  const OriginCheck check = origin_check(parts);
   EXPECT_EQ(check.seeds, 80'000U);
   EXPECT_EQ(check.contradicted, 4000U);
   EXPECT_DOUBLE_EQ(check.share(), 0.05);
@@ -49,17 +49,16 @@ TEST(OriginCheck, EveryPartHasABestPlaceOfItsOwn) {
   EXPECT_DOUBLE_EQ(check.far_rise, 0.75);
 }
 
-// Few contradicted seeds are joined with those of the pieces behind them: 0.5 and 1.5 are 1.
+// Few contradicted seeds are joined with those of the parts behind them: 0.5 and 1.5 are 1.
 TEST(OriginCheck, SmallPiecesAreJoined) {
-  const std::vector<MovedEvidence> pieces = {piece(600, kEast), piece(600, kWest),
-                                             piece(800, kRight)};
-  const OriginCheck check = origin_check(pieces);
+  const std::vector<MovedEvidence> parts = {part(600, kEast), part(600, kWest), part(800, kRight)};
+  const OriginCheck check = origin_check(parts);
   EXPECT_DOUBLE_EQ(check.near_rise, (600 * 0.5 + 600 * 1.5 + 800 * 1.2) / 2000);
 }
 
-TEST(OriginCheck, TooFewContradictedSeedsTellNothing) {
-  const std::vector<MovedEvidence> pieces = {piece(300, kEast), piece(1100, kEast)};
-  const OriginCheck check = origin_check(pieces);
+TEST(OriginCheck, TooFewContradictedSeedsAreInconclusive) {
+  const std::vector<MovedEvidence> parts = {part(300, kEast), part(1100, kEast)};
+  const OriginCheck check = origin_check(parts);
   EXPECT_EQ(check.contradicted, 1400U);
   EXPECT_EQ(check.near_rise, 0);
   EXPECT_EQ(origin_objection(check), "");
@@ -67,7 +66,7 @@ TEST(OriginCheck, TooFewContradictedSeedsTellNothing) {
   EXPECT_EQ(origin_check({}).share(), 0);
 }
 
-TEST(OriginCheck, WhatIsRightWrongAndDoubtful) {
+TEST(OriginCheck, CorrectWrongAndDoubtfulPositions) {
   const auto of = [](double near, double far) { return OriginCheck{100'000, 5000, near, far}; };
   EXPECT_EQ(origin_objection(of(1.2, 1.4)) + origin_doubt(of(1.2, 1.4)), "");
   const std::string wrong = origin_objection(of(0.76, 1.22));

@@ -38,7 +38,7 @@ struct Box {
   }
 };
 
-/// A room with a pillar, and what stands there in the third and fourth scan alone.
+/// A room with a pillar, and an object that is only present in the third and fourth scan.
 inline constexpr Box kRoom = {{0, 0, 0}, {5, 4, 2.4}};
 inline constexpr Box kPillar = {{3.4, 2.6, 0}, {3.8, 3, 2.4}};
 inline constexpr Box kPasserby = {{1.7, 2.6, 0}, {2.3, 2.9, 1.7}};

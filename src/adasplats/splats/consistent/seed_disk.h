@@ -14,8 +14,8 @@
 
 namespace adasplats {
 
-/// The positions of points and of the sensor when it measured them; no sensors: null. No kinds:
-/// all sensor positions are measured.
+/// Points and the sensor position of each; `sensors` is null without sensor positions. Without
+/// `kinds` all sensor positions were measured.
 struct MeasuredPoints {
   const Vec3f* positions = nullptr;
   const Vec3f* sensors = nullptr;
@@ -27,7 +27,7 @@ struct MeasuredPoints {
   }
 };
 
-/// Whether rays say what is free around a cell: the beam of any of its points is known.
+/// Whether rays show free space around a cell: any of its points has a beam.
 ADASPLATS_HD inline bool has_beam(const MeasuredPoints& points,
                                   std::span<const std::uint32_t> members) {
   for (const std::uint32_t i : members) {
@@ -36,7 +36,7 @@ ADASPLATS_HD inline bool has_beam(const MeasuredPoints& points,
   return false;
 }
 
-/// Mean distance of a cell's points to their sensors, added in their order, of those with a beam.
+/// Mean distance of a cell's points with a beam to their sensors, added in their order.
 ADASPLATS_HD inline double mean_range_m(const MeasuredPoints& points,
                                         std::span<const std::uint32_t> members) {
   double sum = 0;
@@ -49,8 +49,8 @@ ADASPLATS_HD inline double mean_range_m(const MeasuredPoints& points,
   return sum / static_cast<double>(beams);
 }
 
-/// What the spacing of a cell is compared with: its distance to the sensor where it has a beam,
-/// else 1 m. 0 for a cell of the other sort than `with_beam`.
+/// Unit for the spacing of a cell: its distance to the sensor if it has a beam, else 1 m. 0 if
+/// having a beam differs from `with_beam`.
 ADASPLATS_HD inline float spacing_unit_m(const MeasuredPoints& points,
                                          std::span<const std::uint32_t> members, bool with_beam) {
   if (has_beam(points, members) != with_beam) return 0;
@@ -65,19 +65,19 @@ struct TypicalSpacing {
   ADASPLATS_HD double of(bool beam) const { return beam ? with_beam : without; }
 };
 
-/// Largest radius of the seed of a cell.
+/// Maximum radius of the seed of a cell.
 ADASPLATS_HD inline double largest_seed_m(const MeasuredPoints& points,
                                           std::span<const std::uint32_t> members,
                                           const TypicalSpacing& typical,
                                           const ConsistentOptions& options) {
   const bool beam = has_beam(points, members);
-  // The first cells of their sort, made by splitting cells that were of the other one.
+  // No such cells before the split: they come from splitting cells of the other kind.
   if (typical.of(beam) == 0) return options.cell_m;
   return options.largest_seed(beam) * typical.of(beam) *
          static_cast<double>(spacing_unit_m(points, members, beam));
 }
 
-/// A cell's normal turned to the sensors, or with a sign that depends on the data alone.
+/// A cell's normal oriented towards the sensors; without sensors, with a canonical sign.
 ADASPLATS_HD inline Vec3f seed_normal(Vec3f normal, const MeasuredPoints& points,
                                       std::span<const std::uint32_t> members) {
   Vec3d to_sensors;
@@ -91,9 +91,9 @@ ADASPLATS_HD inline Vec3f seed_normal(Vec3f normal, const MeasuredPoints& points
   return dot(vec_cast<double>(normal), to_sensors) < 0 ? -normal : normal;
 }
 
-/// As large as the cells are apart, but no larger than beams are from one another; 0 for a cell far
-/// from all others. One ring alone on a road is a line of cells, in which the 7th neighbour is the
-/// fourth to one side: five sides away at most.
+/// The spacing of the cells, limited by the spacing of beams; 0 for an isolated cell. A single ring
+/// on a road is a line of cells, where the 7th neighbour is the fourth to one side: at most five
+/// cell sides away.
 ADASPLATS_HD inline float seed_radius(double spacing_m, double largest_m,
                                       const ConsistentOptions& options) {
   const double wanted_m = options.seed_spacing * spacing_m;

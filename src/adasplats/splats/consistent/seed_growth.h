@@ -12,25 +12,25 @@
 
 namespace adasplats {
 
-struct CoverOptions {              // docs/fidelity.md has where each number comes from
-  std::uint32_t neighbors = 160;   ///< seeds that a disk can grow over, at most
-  double tolerance_m = 0.02;       ///< a disk grows over seeds this near to its plane
-  double min_normal_cosine = 0.9;  ///< and turned like it
-  double edge_m = 0.25;            ///< seeds farther from the plane are other things: no edge
+struct CoverOptions {              // sources of the numbers: docs/fidelity.md
+  std::uint32_t neighbors = 160;   ///< maximum number of seeds that a disk can grow over
+  double tolerance_m = 0.02;       ///< a disk grows over seeds within this distance of its plane...
+  double min_normal_cosine = 0.9;  ///< ...with normals aligned like this
+  double edge_m = 0.25;            ///< seeds farther from the plane are other objects: no edge
   double largest_radius_m = 0.5;
-  /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
-  /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
-  /// measured rays say where surfaces end and what merely nobody looked at. 0, 1, 2, 4, 8 or 16.
+  /// In each of this many directions a disk reaches no farther than the seeds that it grows over
+  /// (plus half a seed), so it overhangs no edge. 0: no such limit, for clouds whose rays separate
+  /// edges from unseen surfaces. 0, 1, 2, 4, 8 or 16.
   int sectors = 0;
-  int unchecked_sectors = 16;      ///< the same for seeds that no rays check
+  int unchecked_sectors = 16;      ///< the same for seeds without rays
   double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
-  double covered_within_m = 0.04;  ///< and this near to its plane
+  double covered_within_m = 0.04;  ///< and within this distance of its plane
 };
 
-/// Where a point is as seen from a disk.
+/// Position of a point relative to a disk.
 struct PlaceAtDisk {
   float height_m;  ///< above or below the plane, not negative
-  float along_m;   ///< from the middle, in the plane
+  float along_m;   ///< from the centre, in the plane
 };
 
 ADASPLATS_HD inline PlaceAtDisk place_at_disk(const Disk& disk, Vec3f point) {
@@ -55,18 +55,19 @@ ADASPLATS_HD inline bool ends_at(const Disk& disk, const Disk& other, const Plac
          static_cast<double>(place.height_m) < options.edge_m;
 }
 
-/// Whether a disk of which this much covers what is below it covers a seed.
+/// Whether a disk that covers up to `covered_m` from its centre can cover a seed.
 ADASPLATS_HD inline bool may_cover(const PlaceAtDisk& place, float covered_m,
                                    const CoverOptions& options) {
   return place.along_m <= covered_m &&
          static_cast<double>(place.height_m) < options.covered_within_m;
 }
 
-/// Which sixteenth of a turn a vector points into, counter-clockwise from (1, 0); a border belongs
-/// to the sector that it begins. By comparisons alone: an arc tangent has other last bits on a GPU.
+/// The sixteenth of a turn that a vector points into, counter-clockwise from (1, 0); a border
+/// belongs to the sector that it begins. Uses only comparisons: an arc tangent differs in its last
+/// bits on a GPU.
 ADASPLATS_HD inline int sixteenth_of_turn(float x, float y) {
   constexpr float kTan = 0.41421356F;  // of an eighth of pi: sqrt(2) - 1
-  // Turned back by quarters, which is exact, until the vector points between the positive axes.
+  // Rotate by quarter turns, which is exact, into the first quadrant.
   int quarter = 0;
   float a = x, b = y;
   if (x <= 0 && y > 0) {
@@ -80,13 +81,13 @@ ADASPLATS_HD inline int sixteenth_of_turn(float x, float y) {
   return 4 * quarter + sixteenth;
 }
 
-/// How far seeds reach from a disk's middle in each of some equal sectors of its plane.
+/// How far seeds reach from a disk's centre, for each of equal sectors of its plane.
 class SectorReach {
  public:
   static constexpr int kMaxSectors = 16;
 
-  /// Sectors are made of whole sixteenths of a turn.
-  static bool can_have(int sectors) {
+  /// A sector is a whole number of sixteenths of a turn.
+  static bool is_valid_count(int sectors) {
     return sectors == 0 || (sectors > 0 && sectors <= kMaxSectors && kMaxSectors % sectors == 0);
   }
 
@@ -110,7 +111,7 @@ class SectorReach {
   ADASPLATS_HD int sectors() const { return sectors_; }
   ADASPLATS_HD float& reach_m(int sector) { return reach_m_[sector]; }
 
-  /// Of the sector with the least; without sectors there is no limit.
+  /// The minimum over all sectors; without sectors there is no limit.
   ADASPLATS_HD float min_m() const {
     float min_m = std::numeric_limits<float>::max();
     for (int i = 0; i < sectors_; ++i) min_m = std::min(min_m, reach_m_[i]);
@@ -123,23 +124,23 @@ class SectorReach {
   int sectors_;
 };
 
-/// The radius of a disk that grew over seeds up to `reach_m` from its middle.
+/// The radius of a disk that grew over seeds up to `reach_m` from its centre.
 ADASPLATS_HD inline float grown_radius(const Disk& disk, float reach_m,
                                        const SectorReach& sectors) {
   return std::max(disk.radius, std::min(reach_m, sectors.min_m() + 0.5F * disk.radius));
 }
 
-/// What a disk of this radius covers.
+/// The distance from its centre up to which a disk of this radius covers seeds.
 ADASPLATS_HD inline float covered_reach(double overlap, float radius_m) {
   return static_cast<float>(overlap) * radius_m;
 }
 
-/// How large disks may be, of all seeds, wherever they are.
+/// Maximum radii of the disks of all seeds, in host or device memory.
 struct CoverLimits {
   Disk* seeds = nullptr;
   float* radii_m = nullptr;
 
-  /// From now on disk `i` is no larger than this; with 0 it is not there at all.
+  /// Limits the radius of disk `i`; 0 removes the disk.
   ADASPLATS_HD void limit(std::size_t i, float limit_m) const {
     radii_m[i] = std::min(radii_m[i], limit_m);
     seeds[i].radius = std::min(seeds[i].radius, limit_m);

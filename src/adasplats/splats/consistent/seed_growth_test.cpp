@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-// Oracle: the angle, for directions that do not lie on a border of two sectors.
+// Oracle: the angle, for directions that are not on a border of two sectors.
 TEST(SixteenthOfTurn, IsThatOfTheAngle) {
   for (int i = 0; i < 3600; ++i) {
     if (i % 225 == 0) continue;
@@ -37,7 +37,7 @@ TEST(SeedRadius, ACellInALineIsNotIsolated) {
   EXPECT_FLOAT_EQ(seed_radius(0.3, 0.15, options), 0.15F);
 }
 
-// Oracle: symmetry. On lattices seeds stand exactly on axes and diagonals, which begin a sector.
+// Oracle: symmetry. On lattices seeds are exactly on axes and diagonals, which begin a sector.
 TEST(SixteenthOfTurn, AQuarterTurnIsFourSectors) {
   EXPECT_EQ(sixteenth_of_turn(3, 0), 0);
   EXPECT_EQ(sixteenth_of_turn(3, -0.0F), 0);
@@ -54,8 +54,9 @@ TEST(SixteenthOfTurn, AQuarterTurnIsFourSectors) {
 }
 
 TEST(SectorReach, SectorsAreWholeSixteenths) {
-  for (const int sectors : {0, 1, 2, 4, 8, 16}) EXPECT_TRUE(SectorReach::can_have(sectors));
-  for (const int sectors : {-1, 3, 5, 12, 15, 17, 32}) EXPECT_FALSE(SectorReach::can_have(sectors));
+  for (const int sectors : {0, 1, 2, 4, 8, 16}) EXPECT_TRUE(SectorReach::is_valid_count(sectors));
+  for (const int sectors : {-1, 3, 5, 12, 15, 17, 32})
+    EXPECT_FALSE(SectorReach::is_valid_count(sectors));
   const Disk disk = {{0, 0, 0}, 1, {0, 0, 1}};
   for (const int sectors : {1, 2, 4, 8, 16}) {
     SectorReach reach(disk, sectors);

@@ -9,11 +9,11 @@
 namespace adasplats {
 namespace {
 
-/// How far a disk reaches before the surface ends or turns away.
+/// The radius up to which a disk can grow before the surface ends or bends.
 float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
                    int sector_count, const CoverOptions& options) {
   const Disk& disk = seeds[seed];
-  // Two passes instead of a sort: first where it must end, then how far it reaches before that.
+  // Two passes instead of a sort: the distance where it must end, then its reach before that.
   auto end_m = static_cast<float>(options.largest_radius_m);
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const Disk& other = seeds[neighbors.ranks[k]];

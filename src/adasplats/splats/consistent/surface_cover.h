@@ -13,33 +13,32 @@
 
 namespace adasplats {
 
-/// Few large disks where the surface is flat, the small seeds where it is not: every seed is
-/// covered by a disk that was chosen.
+/// Covers all seeds by few large disks where the surface is flat and by the small seeds elsewhere.
 class SurfaceCover {
  public:
-  /// `seeds` are disks small enough to be right, one a point of `index` in its order (no radius:
-  /// not there). Grows every one over its neighbours. `unchecked`: flags of seeds that no rays
-  /// check, which have options.unchecked_sectors; empty: none.
+  /// Grows every seed over its neighbours. `seeds`: one per point of `index`, in its order (radius
+  /// 0: none). `unchecked`: flags of seeds without rays, which use options.unchecked_sectors;
+  /// empty: no such seeds.
   SurfaceCover(std::span<const Disk> seeds, const PointIndex& index, const CoverOptions& options,
                const Executor& executor, std::span<const std::uint8_t> unchecked = {});
 
-  /// Greedy: those that cover most first, ties by index. The chosen disks, the others with no
-  /// radius.
+  /// Selects disks greedily: those that cover the most seeds first, ties by index. Returns all
+  /// disks; those not chosen have radius 0.
   std::vector<Disk> choose(const Executor& executor) const;
 
   CoverLimits limits() { return {seeds_.data(), radii_m_.data()}; }
-  /// How large every disk may be: what it grew to, or its limit.
+  /// Maximum radius of every disk: the grown radius, or its limit.
   const std::vector<float>& radii_m() const { return radii_m_; }
 
  private:
-  /// The seeds that disk `i` may cover, whatever its radius.
+  /// The seeds that disk `i` can cover at any radius.
   std::span<const std::uint32_t> candidates(std::size_t i) const;
   bool covers(std::size_t i, std::uint32_t other) const;
 
   std::vector<Disk> seeds_;
   std::vector<float> radii_m_;
   double overlap_;
-  /// Lists of consecutive seeds stand in one vector; where each begins in it, and how long it is.
+  /// Candidates: one vector per chunk of seeds, with the begin and length of each seed's list.
   std::vector<std::vector<std::uint32_t>> lists_;
   std::vector<std::uint32_t> begins_;
   std::vector<std::uint32_t> lengths_;

@@ -147,7 +147,7 @@ TEST(SurfaceCover, ParallelPlanesDoNotCoverEachOther) {
 }
 
 TEST(SurfaceCover, DisksStopAtACorner) {
-  // A floor and a wall that meet at x = 0; the lowest seeds of the wall stand half a step up.
+  // A floor and a wall that meet at x = 0; the lowest seeds of the wall are half a step up.
   const Executor executor(1);
   std::vector<Disk> corner;
   add_patch(corner, 40, {0.5F * kStep_m, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -262,7 +262,7 @@ TEST(SurfaceCover, WithSectorsDisksEndWhereSeedsEndInTheirNearestDirection) {
 }
 
 TEST(SurfaceCover, WithSectorsAGapEndsDisksUnlessTheyReachItsOtherSide) {
-  // A strip without seeds beside y-lines of the lattice; a disk 0.2 m away from it.
+  // A strip without seeds next to y-lines of the lattice; a disk 0.2 m away from it.
   const auto radius_beside = [](float gap_m, int sectors) {
     const GrownPatch patch(41, 0.3F, sectors,
                            [&](float x, float) { return x < 1.01F || x > 0.99F + gap_m; });
@@ -317,7 +317,7 @@ TEST(SurfaceCover, LimitsHold) {
   EXPECT_EQ(count_chosen(cover.choose(executor)), 0U);
 }
 
-TEST(SurfaceCover, SeedsWithNoRadiusAreNotThere) {
+TEST(SurfaceCover, SeedsWithoutRadiusAreIgnored) {
   // They are not chosen, need no cover, and are no edge: the others are chosen as if alone.
   const Executor executor(1);
   std::vector<Disk> patch;

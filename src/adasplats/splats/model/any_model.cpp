@@ -32,22 +32,22 @@ AnyModel load_any_model(const std::filesystem::path& file) {
   return load_model(file);
 }
 
-std::span<const std::uint16_t> classes_of(const AnyModel& place) {
-  if (const auto* mesh = std::get_if<MeshModel>(&place)) return mesh->mesh.classes;
-  return std::get<SplatModel>(place).classes;
+std::span<const std::uint16_t> classes_of(const AnyModel& model) {
+  if (const auto* mesh = std::get_if<MeshModel>(&model)) return mesh->mesh.classes;
+  return std::get<SplatModel>(model).classes;
 }
 
-std::span<const float> intensities_of(const AnyModel& place) {
-  if (const auto* splats = std::get_if<SplatModel>(&place)) return splats->intensities;
+std::span<const float> intensities_of(const AnyModel& model) {
+  if (const auto* splats = std::get_if<SplatModel>(&model)) return splats->intensities;
   return {};
 }
 
-std::pair<Vec3d, Vec3d> world_box_of(const AnyModel& place) {
-  return std::visit([](const auto& model) { return world_box(model); }, place);
+std::pair<Vec3d, Vec3d> world_box_of(const AnyModel& model) {
+  return std::visit([](const auto& own) { return world_box(own); }, model);
 }
 
-std::string_view primitives_of(const AnyModel& place) {
-  return std::holds_alternative<MeshModel>(place) ? "triangles" : "splats";
+std::string_view primitives_of(const AnyModel& model) {
+  return std::holds_alternative<MeshModel>(model) ? "triangles" : "splats";
 }
 
 }  // namespace adasplats

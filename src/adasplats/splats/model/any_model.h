@@ -10,39 +10,38 @@
 #include <utility>
 #include <variant>
 
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
 
-/// What rays are cast into: splats or triangles. What both have is asked for by the functions
-/// below; what one alone has by std::get_if.
+/// A scene that rays can be cast into: splats or triangles. The functions below read what both
+/// have; std::get_if gives access to the rest.
 using AnyModel = std::variant<SplatModel, MeshModel>;
 
-/// A mesh or a splat model, known by the content of the file. Errors: those of load_mesh and
+/// Loads a mesh or a splat model; the file's content decides which. Errors: those of load_mesh and
 /// load_model.
 AnyModel load_any_model(const std::filesystem::path& file);
 
-inline SceneView view_of(const AnyModel& place) {
-  return std::visit([](const auto& model) { return model.view(); }, place);
+inline SceneView view_of(const AnyModel& model) {
+  return std::visit([](const auto& own) { return own.view(); }, model);
 }
-inline Vec3d origin_of(const AnyModel& place) {
-  return std::visit([](const auto& model) { return model.origin; }, place);
+inline Vec3d origin_of(const AnyModel& model) {
+  return std::visit([](const auto& own) { return own.origin; }, model);
 }
-inline const Crs& crs_of(const AnyModel& place) {
-  return std::visit([](const auto& model) -> const Crs& { return model.crs; }, place);
+inline const Crs& crs_of(const AnyModel& model) {
+  return std::visit([](const auto& own) -> const Crs& { return own.crs; }, model);
 }
-inline const std::string& label_scheme_of(const AnyModel& place) {
-  return std::visit([](const auto& model) -> const std::string& { return model.label_scheme; },
-                    place);
+inline const std::string& label_scheme_of(const AnyModel& model) {
+  return std::visit([](const auto& own) -> const std::string& { return own.label_scheme; }, model);
 }
-/// One a primitive; empty without.
-std::span<const std::uint16_t> classes_of(const AnyModel& place);
-/// Likewise.
-std::span<const float> intensities_of(const AnyModel& place);
-/// Box of all disks or triangles, world coordinates; a point where there are none.
-std::pair<Vec3d, Vec3d> world_box_of(const AnyModel& place);
+/// One per primitive; empty if the model has none.
+std::span<const std::uint16_t> classes_of(const AnyModel& model);
+/// One per primitive; empty if the model has none.
+std::span<const float> intensities_of(const AnyModel& model);
+/// Bounding box of all disks or triangles in world coordinates, m; a point for an empty model.
+std::pair<Vec3d, Vec3d> world_box_of(const AnyModel& model);
 /// "splats" or "triangles".
-std::string_view primitives_of(const AnyModel& place);
+std::string_view primitives_of(const AnyModel& model);
 
 }  // namespace adasplats

@@ -10,14 +10,14 @@
 namespace adasplats {
 namespace {
 
-/// -1, 0 or 1 as a comes before, with or after b in one attribute.
+/// -1, 0 or 1: a comes before, with or after b in one attribute.
 template <class T>
 int compare(const std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
   if (values[a] == values[b]) return 0;
   return values[a] < values[b] ? -1 : 1;
 }
 
-/// With NaN, an intensity that is not known, behind all numbers.
+/// NaN (an unknown intensity) comes after all numbers.
 int compare(const std::vector<float>& values, std::uint32_t a, std::uint32_t b) {
   if (values[a] == values[b]) return 0;
   const int unknown = (std::isnan(values[a]) ? 1 : 0) - (std::isnan(values[b]) ? 1 : 0);
@@ -31,7 +31,7 @@ int compare(const std::vector<Vec3f>& values, std::uint32_t a, std::uint32_t b) 
   return 0;
 }
 
-/// Compares two points in all attributes that the cloud has, those of the least rank first.
+/// Compares two points by all attributes that the cloud has, those of the lowest rank first.
 class TieBreakers {
  public:
   explicit TieBreakers(const PointCloud& cloud) {

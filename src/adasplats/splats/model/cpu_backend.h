@@ -2,17 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/cpu_arrays.h"
 #include "adasplats/splats/model/canonical_order.h"
+#include "adasplats/splats/rays/measured_rays.h"
+#include "adasplats/splats/rays/present_disks.h"
+#include "adasplats/splats/reflectance/element_steps.h"
 
 namespace adasplats {
 
-/// Where the steps of a method run and what they keep is: the threads and the memory of the CPU.
-/// gpu::GpuBackend is its twin; the steps are written once, as templates on the place.
+/// Runs the steps of a method on the threads of the CPU and keeps their arrays in its memory.
+/// gpu::GpuBackend is the GPU counterpart; the steps are templates on the backend.
 class CpuBackend : public CpuArrays {
  public:
   using Cloud = PointCloud;
@@ -29,11 +35,33 @@ class CpuBackend : public CpuArrays {
   PointCloud load(const PointCloud& cloud, std::span<const std::uint8_t> removed) const {
     return load(cloud, box_of(cloud), removed);
   }
-  /// In no other order.
+  /// Keeps the order of the points.
   static PointCloud load_as_it_is(PointCloud cloud) { return cloud; }
   using CpuArrays::gather;
   PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> at) const {
     return adasplats::gather(cloud, at);
+  }
+};
+
+/// A CpuBackend that also casts measured rays.
+class RaysOnCpu : public CpuBackend {
+ public:
+  using Rays = MeasuredRays;
+  using CpuBackend::CpuBackend;
+
+  /// Calls every ObserveRay for all of the rays that it is paired with, in any order.
+  void observe(const std::vector<Disk>& disks,
+               std::span<const std::pair<const MeasuredRays*, ObserveRay>> parts) const {
+    RayCasting casting;
+    casting.reach = {ObserveRay::kBeyond_m};
+    const PresentDisks present(disks, executor());
+    for (const auto& part : parts) {
+      const auto look = [&](std::size_t i, const Ray& ray, float range_m,
+                            std::span<const Hit> hits) {
+        part.second(i, part.first->point(i), ray, range_m, hits.empty() ? Hit{} : hits[0]);
+      };
+      present.cast(*part.first, casting, executor(), look);
+    }
   }
 };
 

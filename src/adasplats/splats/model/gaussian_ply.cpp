@@ -26,7 +26,7 @@ struct Gaussian {
   std::array<float, 4> rotation;
 };
 
-/// The shortest turn from the z axis to a unit normal.
+/// The shortest rotation from the z axis to a unit normal.
 Quaternion rotation_to(Vec3d n) {
   const double across = std::hypot(n.x, n.y);
   if (across == 0.0) return n.z > 0 ? Quaternion{1, 0, 0, 0} : Quaternion{0, 1, 0, 0};
@@ -83,7 +83,7 @@ std::vector<ColumnView> columns_of(const Gaussian* first, GaussianKind kind) {
 void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& model,
                         std::span<const std::array<std::uint8_t, 3>> colors, GaussianKind kind) {
   if (colors.size() != model.size())
-    throw std::logic_error("write_gaussian_ply: not one colour a disk");
+    throw std::logic_error("write_gaussian_ply: the number of colours is not the number of disks");
   std::vector<Gaussian> gaussians;
   gaussians.reserve(model.size());
   for (std::size_t i = 0; i < model.size(); ++i)

@@ -11,26 +11,26 @@
 
 namespace adasplats {
 
-/// Whose file of Gaussians: "3D Gaussian Splatting" (Kerbl et al. 2023) has three scales a
-/// Gaussian, "2D Gaussian Splatting" (Huang et al. 2024) two.
+/// Which layout: "3D Gaussian Splatting" (Kerbl et al. 2023) has three scales per Gaussian, "2D
+/// Gaussian Splatting" (Huang et al. 2024) two.
 enum class GaussianKind : std::uint8_t { volumes, surfels };
 
-/// The standard deviation of a disk's Gaussian over its radius: 1 / sqrt(2). As much is covered in
-/// all, 2 pi sigma^2 = pi r^2; what lacks within the radius lies around it, where neighbours that
-/// overlap need it.
+/// Standard deviation of a disk's Gaussian divided by the radius: 1 / sqrt(2). It keeps the covered
+/// area, 2 pi sigma^2 = pi r^2: the Gaussian covers less within the radius and more around it,
+/// where neighbours overlap.
 inline constexpr double kGaussianSigmaOverRadius = 0.70710678118654752;
-/// Along the normal, over that: flat against anything that a viewer shows.
+/// Standard deviation along the normal divided by that in the plane: flat in any viewer.
 inline constexpr double kGaussianThickness = 0.01;
-/// Of every Gaussian in its middle: viewers draw no more than 0.99.
+/// Opacity at the centre of every Gaussian: viewers clamp at 0.99.
 inline constexpr double kGaussianOpacity = 0.99;
 
-/// Writes a model as the PLY of trained Gaussians that public viewers open: x y z nx ny nz
+/// Writes a model in the PLY layout of trained Gaussians, which public viewers open: x y z nx ny nz
 /// f_dc_0..2 opacity scale_0.. rot_0..3. Positions are float32, relative to the model's origin,
-/// which the comment "adasplats.origin X Y Z" gives (world coordinates, m). Scales are natural
+/// which is in the comment "adasplats.origin X Y Z" (world coordinates, m). Scales are natural
 /// logarithms of standard deviations in m; the opacity is a logit; rot is a unit quaternion w x y z
 /// whose third axis is the disk's normal; f_dc are the spherical harmonics of degree 0 of `colors`,
-/// one a disk (sRGB, as pictures). No f_rest: the same colour from all sides. Atomic. Memory: 68
-/// bytes a disk. Throws std::logic_error for another number of colours.
+/// one per disk (sRGB). No f_rest: the colour does not depend on the view. Atomic. Memory: 68 bytes
+/// per disk. Throws std::logic_error if the number of colours is wrong.
 void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& model,
                         std::span<const std::array<std::uint8_t, 3>> colors, GaussianKind kind);
 

@@ -43,7 +43,7 @@ Names names_of(const Table& table) {
   return names;
 }
 
-/// Poles, directions beside them, and all around.
+/// Poles, directions near them, and random ones.
 std::vector<Vec3d> directions() {
   std::vector<Vec3d> normals = {{0, 0, 1},    {0, 0, -1},    {1, 0, 0},        {0, -1, 0},
                                 {1e-7, 0, 1}, {0, 1e-6, -1}, {1e-5, -1e-5, -1}};

@@ -15,14 +15,13 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
 namespace {
 
-constexpr const char* kLabelsComment = "adasplats.labels ";
 constexpr const char* kNetworkComment = "adasplats.network_sha256 ";
-constexpr const char* kMethodComment = "adasplats.method ";
-/// Of the response's tables, in the order of response_tables().
+/// Keys of the response's tables, in the order of response_tables().
 constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
@@ -54,24 +53,24 @@ Disk checked_disk(const std::filesystem::path& path, std::size_t row, Vec3d cent
   if (!(std::fabs(norm - 1.0) <= 1e-3))
     fail("normal has length " + std::to_string(norm) + ", expected 1");
   const Disk disk = {vec_cast<float>(center), static_cast<float>(radius), vec_cast<float>(normal)};
-  if (!is_finite(disk.center)) fail("center is too far from the others");
+  if (!is_finite(disk.center)) fail("center is too far from the other splats for single precision");
   if (!(disk.radius > 0.0F) || !std::isfinite(disk.radius))
-    fail("radius is no number of single precision");
+    fail("radius is out of range for single precision");
   return disk;
 }
 
-/// A whole number from 0 to `most` of each splat.
+/// An integer property of every splat, from 0 to `max`.
 template <class T>
 std::vector<T> whole_numbers(const std::filesystem::path& path, const Column& column,
-                             std::size_t rows, int most) {
+                             std::size_t rows, int max) {
   std::vector<T> numbers;
   for (std::size_t i = 0; i < rows; ++i) {
     const double number = column.as_double(i);
-    if (!(number >= 0 && number <= most) || number != std::trunc(number))
+    if (!(number >= 0 && number <= max) || number != std::trunc(number))
       throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ", " + column.name +
                                            ": found " + std::to_string(number) +
-                                           ", expected a whole number from 0 to " +
-                                           std::to_string(most));
+                                           ", expected an integer from 0 to " +
+                                           std::to_string(max));
     numbers.push_back(static_cast<T>(number));
   }
   return numbers;
@@ -91,20 +90,14 @@ std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, s
   return {low, high};
 }
 
-std::string comment_value(const Table& table, const std::string& key) {
-  for (const std::string& comment : table.comments)
-    if (comment.rfind(key, 0) == 0) return comment.substr(key.size());
-  return {};
-}
-
-/// The members of `response`, an IntensityResponse, const or not.
+/// The members of an IntensityResponse, const or not.
 template <class Response>
 auto response_tables(Response& response) {
   return std::array{&response.ranges_m, &response.range_gains, &response.cos_incidences,
                     &response.incidence_gains};
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that parses to the same number.
 template <class Float>
 std::string number_text(Float value) {
   std::array<char, 32> buffer;
@@ -128,8 +121,8 @@ std::vector<float> numbers_of(const std::filesystem::path& path, const std::stri
   for (std::string word; words >> word;) {
     const std::optional<float> value = parse_number<float>(word);
     if (!value || !std::isfinite(*value) || *value < 0)
-      throw data_error({path, {}, {}}, std::string("the intensity response has ") + shown(word) +
-                                           ", expected a number of 0 or more");
+      throw data_error({path, {}, {}}, std::string("the intensity response contains ") +
+                                           shown(word) + ", expected a number of at least 0");
     numbers.push_back(*value);
   }
   return numbers;
@@ -167,8 +160,8 @@ std::vector<double> calibration_numbers(const std::filesystem::path& path,
   for (std::string word; words >> word;) {
     const std::optional<double> value = parse_number<double>(word);
     if (!value || !std::isfinite(*value))
-      throw data_error({path, {}, {}},
-                       std::string("the calibration has ") + shown(word) + ", expected a number");
+      throw data_error({path, {}, {}}, std::string("the calibration contains ") + shown(word) +
+                                           ", expected a number");
     numbers.push_back(*value);
   }
   return numbers;
@@ -193,7 +186,7 @@ Calibration calibration_of(const Table& table, const std::filesystem::path& path
   const std::vector<double> smooth =
       calibration_numbers(path, comment_value(table, kSmoothComment));
   if (smooth.size() > 1 || (!smooth.empty() && smooth.front() < 0))
-    throw data_error({path, {}, {}}, "the calibration's smooth_s is no number of 0 or more");
+    throw data_error({path, {}, {}}, "the calibration's smooth_s must be one number of at least 0");
   if (!smooth.empty()) calibration.smooth_s = smooth.front();
   for (const std::string& comment : table.comments) {
     if (!comment.starts_with(kPoseComment)) continue;
@@ -221,8 +214,8 @@ IntensityResponse response_of(const Table& table, const std::filesystem::path& p
       !is_table(response.cos_incidences, response.incidence_gains) ||
       response.ranges_m.empty() != response.cos_incidences.empty())
     throw data_error({path, {}, {}},
-                     "the comments of the intensity response are not tables of two "
-                     "or more ascending nodes with a gain each");
+                     "the intensity response in the comments must be tables of at least two "
+                     "ascending nodes with one gain each");
   return response;
 }
 
@@ -291,7 +284,7 @@ SplatModel load_model(const std::filesystem::path& path) {
   model.crs = table.crs;
   const auto [low, high] = extent_of(position, table.rows);
   if (!is_finite(low) || !is_finite(high))
-    throw data_error({path, {}, {}}, "a splat's center is not finite");
+    throw data_error({path, {}, {}}, "the center of a splat is not finite");
   model.origin = choose_origin(low, high);
   model.disks.reserve(table.rows);
   const auto vec = [](const std::array<const Column*, 3>& columns, std::size_t i) {

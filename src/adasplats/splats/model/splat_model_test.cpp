@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-/// A splat at (4, 5, z) beside one that is good.
+/// A splat at (4, 5, z) next to a valid one.
 std::string model_text(const std::string& z, const std::string& radius, const std::string& label,
                        const std::string& group) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex 2\n";
@@ -30,16 +30,16 @@ TEST(SplatModel, ValuesThatASplatCannotHaveAreErrors) {
   const SplatModel good = load(model_text("6", "0.1", "65535", "3"));
   EXPECT_EQ(good.classes, (std::vector<std::uint16_t>{40, 65535}));
   EXPECT_EQ(good.groups[1], SemanticGroup::non_surface);
-  const auto refused = [&](const std::string& text, const std::string& says) {
-    expect_error(ErrorKind::data, {"m.ply", "splat ", says}, [&] { load(text); });
+  const auto rejected = [&](const std::string& text, const std::string& part) {
+    expect_error(ErrorKind::data, {"m.ply", "splat ", part}, [&] { load(text); });
   };
-  refused(model_text("7777777777777777777777777777777777777777777", "0.1", "50", "1"), "too far");
-  refused(model_text("6", "1e-300", "50", "1"), "radius");
-  refused(model_text("6", "1e300", "50", "1"), "radius");
+  rejected(model_text("7777777777777777777777777777777777777777777", "0.1", "50", "1"), "too far");
+  rejected(model_text("6", "1e-300", "50", "1"), "radius");
+  rejected(model_text("6", "1e300", "50", "1"), "radius");
   for (const char* label : {"65536", "-1", "1.5", "nan"})
-    refused(model_text("6", "0.1", label, "1"), "class");
+    rejected(model_text("6", "0.1", label, "1"), "class");
   for (const char* group : {"4", "-1", "0.5", "nan"})
-    refused(model_text("6", "0.1", "50", group), "group");
+    rejected(model_text("6", "0.1", "50", group), "group");
 }
 
 }  // namespace

@@ -17,8 +17,8 @@
 
 namespace adasplats {
 
-// What the steps of the paper's methods do with one element, in the steps' order. Each reads and
-// writes only what belongs to element `i`, so a loop on any device runs it (for_each of a place).
+// The work of the steps of the paper's methods for one element, in the order of the steps. Each
+// reads and writes only data of element `i`, so any loop may run it (for_each of a backend).
 
 /// The group of a point's class.
 struct FindGroup {
@@ -29,7 +29,7 @@ struct FindGroup {
   ADASPLATS_HD void operator()(std::size_t i) const { groups[i] = table[classes[i]]; }
 };
 
-/// Flags points that are no noise.
+/// Flags points that are not noise.
 struct FlagKept {
   const std::uint32_t* votes;
   const std::uint32_t* memberships;
@@ -49,8 +49,8 @@ struct FindGroupOfShape {
   ADASPLATS_HD void operator()(std::size_t i) const { groups[i] = group_of(kinds[i]); }
 };
 
-/// A point as growing needs it: its normal turned to the sensor, or with a sign that depends on the
-/// data alone. Pointers to what the cloud lacks are null.
+/// A point with the attributes for growing; its normal is oriented towards the sensor, else it has
+/// a canonical sign. Pointers to attributes that the cloud lacks are null.
 struct MakeSurfacePoint {
   const Vec3f* positions;
   const Vec3f* sensors;
@@ -69,7 +69,7 @@ struct MakeSurfacePoint {
   }
 };
 
-/// The splat that a chosen seed grew to.
+/// The splat of a selected seed.
 struct MakeSplat {
   const std::uint32_t* seeds;
   const SurfacePoint* points;
@@ -83,16 +83,16 @@ struct MakeSplat {
   }
 };
 
-/// MakeSurfacePoint for every point of a cloud of any place.
+/// Runs MakeSurfacePoint on every point of a cloud.
 template <class Backend>
-auto surface_points(const Backend& place, const typename Backend::Cloud& cloud,
+auto surface_points(const Backend& backend, const typename Backend::Cloud& cloud,
                     const typename Backend::template Array<Vec3f>& normals,
                     const typename Backend::template Array<SemanticGroup>& groups) {
-  auto points = place.template array<SurfacePoint>(cloud.size());
-  place.for_each(cloud.size(), "orient normals",
-                 MakeSurfacePoint{cloud.positions.data(), data_or_null(cloud.sensor_positions),
-                                  data_or_null(cloud.origin_kinds), data_or_null(cloud.classes),
-                                  normals.data(), data_or_null(groups), points.data()});
+  auto points = backend.template array<SurfacePoint>(cloud.size());
+  backend.for_each(cloud.size(), "orient normals",
+                   MakeSurfacePoint{cloud.positions.data(), data_or_null(cloud.sensor_positions),
+                                    data_or_null(cloud.origin_kinds), data_or_null(cloud.classes),
+                                    normals.data(), data_or_null(groups), points.data()});
   return points;
 }
 

@@ -17,7 +17,7 @@ std::uint32_t scaled_count(int neighbors, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(neighbors * scale)));
 }
 
-/// All candidates of a cloud: what would be the splat of each point.
+/// The candidates of a cloud: the splat that each point would grow to.
 struct Candidates {
   std::vector<float> radii;
   std::vector<float> shifts;
@@ -90,13 +90,13 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   Generation result;
   result.radius_m = base.radius_m;
   result.error_m = options.error_m.value_or(base.error_m);
-  const CpuBackend place(executor);
+  const CpuBackend backend(executor);
   if (options.variant != PaperVariant::basic && !groups.empty()) {
     result.groups.assign(groups.begin(), groups.end());
   } else if (options.variant != PaperVariant::basic) {
     result.groups.resize(cloud.size());
-    place.for_each(cloud.size(), "group points",
-                   FindGroupOfShape{base.kinds.data(), result.groups.data()});
+    backend.for_each(cloud.size(), "group points",
+                     FindGroupOfShape{base.kinds.data(), result.groups.data()});
   }
   const auto rules = group_rules(options, result.radius_m, result.error_m, cloud.has_all_origins());
 
@@ -111,7 +111,7 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
         },
         base.normals, executor);
   const std::vector<SurfacePoint> points =
-      surface_points(place, cloud, base.normals, result.groups);
+      surface_points(backend, cloud, base.normals, result.groups);
 
   step("growing", 1);
   const Candidates candidates = grow_all(points, index, rules, options.alpha, executor);
@@ -120,9 +120,9 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   result.seeds =
       select_greedily(candidates.radii, candidates.discards, options.selection, executor);
   result.disks.resize(result.seeds.size());
-  place.for_each(result.seeds.size(), "make splats",
-                 MakeSplat{result.seeds.data(), points.data(), candidates.radii.data(),
-                           candidates.shifts.data(), result.disks.data()});
+  backend.for_each(result.seeds.size(), "make splats",
+                   MakeSplat{result.seeds.data(), points.data(), candidates.radii.data(),
+                             candidates.shifts.data(), result.disks.data()});
   return result;
 }
 

@@ -29,14 +29,14 @@ ADASPLATS_HD inline SemanticGroup group_of(ShapeKind kind) {
   return SemanticGroup::surface;
 }
 
-/// Neighbourhood and growing of one group, in numbers ready for use.
+/// Parameters of neighbourhood and growing for one group.
 struct GroupRules {
   NeighborLimit limit;
   GrowRules grow;
   bool like_base;  ///< its neighbourhood is the base neighbourhood
 };
 
-/// Those of the four groups for R and E. `is_oriented`: normals face the sensors.
+/// Rules of the four groups for the given R and E. `is_oriented`: normals face the sensors.
 std::array<GroupRules, kSemanticGroups> group_rules(const PaperOptions& options, double radius_m,
                                                     double error_m, bool is_oriented);
 
@@ -44,17 +44,18 @@ std::array<GroupRules, kSemanticGroups> group_rules(const PaperOptions& options,
 struct Generation {
   std::vector<Disk> disks;
   std::vector<std::uint32_t> seeds;   ///< index of each splat's seed point in the cloud
-  std::vector<SemanticGroup> groups;  ///< one a point of the cloud; empty for basic splats
+  std::vector<SemanticGroup> groups;  ///< one per point of the cloud; empty for basic splats
   double radius_m = 0;                ///< R
   double error_m = 0;                 ///< E
 };
 
-/// Called before each part of the work with its name and of how many passes (ProgressPass) it
-/// consists; 0: it cannot be said.
+/// Called before each part of the work with its name and its number of passes (ProgressPass); 0:
+/// unknown.
 using StepSink = FunctionRef<void(std::string_view name, int passes)>;
 
-/// One generation of splats from a cloud in canonical order. `groups` has one entry a point, or is
-/// empty: then descriptors give them (PaperVariant::descriptors) or none are used (basic).
+/// One generation of splats from a cloud in canonical order. `groups` has one entry per point. If
+/// it is empty, local descriptors decide (PaperVariant::descriptors), or there are no groups
+/// (basic).
 Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
                            const PaperOptions& options, const Executor& executor, StepSink step);
 

@@ -15,26 +15,26 @@
 
 namespace adasplats {
 
-/// A point as growing needs it: one cache line holds two.
+/// A point with the attributes for growing; a cache line holds two.
 struct SurfacePoint {
   Vec3f position;
-  std::uint32_t label;  ///< what must be equal within a splat
-  Vec3f normal;         ///< unit, towards the sensor where that is known
+  std::uint32_t label;  ///< must be equal within a splat
+  Vec3f normal;         ///< unit, towards the sensor if that is known
   std::uint32_t group;
 };
 static_assert(sizeof(SurfacePoint) == 32);
 
 /// When a splat stops growing (paper sections "Basic Splatting" and "Adaptive Splatting").
 struct GrowRules {
-  float error_m;     ///< E: largest point-to-plane distance
-  float smoothness;  ///< beta: normals with a smaller dot product stop it; -2 never
-  bool same_label;   ///< points of another label stop it
-  bool oriented;     ///< false: signs of normals say nothing, so |dot| is compared
+  float error_m;     ///< E: maximum point-to-plane distance
+  float smoothness;  ///< beta: normals with a smaller dot product stop it; -2: none do
+  bool same_label;   ///< points with another label stop it
+  bool oriented;     ///< false: signs of normals are arbitrary, so |dot| is compared
 };
 
 /// A grown splat in terms of its seed: center = seed + shift * normal.
 struct GrownSplat {
-  float radius_m = 0;  ///< 0: no point but the seed was included, no splat
+  float radius_m = 0;  ///< 0: no splat, since no point but the seed was included
   float shift_m = 0;   ///< mean signed point-to-plane distance of the points included
 
   ADASPLATS_HD Disk disk(const SurfacePoint& seed) const {
@@ -42,14 +42,14 @@ struct GrownSplat {
   }
 };
 
-/// Section "Adaptive Splatting": neighbouring normals belong to one smooth surface. With unknown
-/// sides of the normals their signs say nothing.
-ADASPLATS_HD inline bool is_smooth(Vec3f a, Vec3f b, float least, bool oriented) {
+/// Section "Adaptive Splatting": whether neighbouring normals belong to one smooth surface. The
+/// signs of normals that are not oriented are ignored.
+ADASPLATS_HD inline bool is_smooth(Vec3f a, Vec3f b, float min_dot, bool oriented) {
   const float smooth = dot(a, b);
-  return (oriented ? smooth : std::fabs(smooth)) > least;
+  return (oriented ? smooth : std::fabs(smooth)) > min_dot;
 }
 
-/// True where a neighbour stops the growing.
+/// Whether a neighbour stops the growing.
 ADASPLATS_HD inline bool stops(const SurfacePoint& seed, const SurfacePoint& other,
                                const GrowRules& rules) {
   const float error = dot(seed.normal, other.position - seed.position);  // eq. point-to-plane
@@ -58,20 +58,20 @@ ADASPLATS_HD inline bool stops(const SurfacePoint& seed, const SurfacePoint& oth
   return !is_smooth(seed.normal, other.normal, rules.smoothness, rules.oriented);
 }
 
-/// eq. splat radius, of the last point included: the center is on the normal through the seed, so
-/// both project alike.
+/// eq. splat radius, for the last included point. The centre is on the normal through the seed, so
+/// both have the same projection.
 ADASPLATS_HD inline float splat_radius(const SurfacePoint& seed, Vec3f last) {
   const Vec3f to_last = last - seed.position;
   const float along = dot(seed.normal, to_last);
   return length(to_last - along * seed.normal);
 }
 
-/// How the signed point-to-plane distances of `count` neighbours are rounded so that their order
-/// does not matter. Those that are included are within the error bound, and no farther from the
-/// plane than from the seed.
+/// Rounding of the signed point-to-plane distances of `count` neighbours that makes their sum
+/// independent of the order. Included neighbours are within the error bound, and no farther from
+/// the plane than from the seed.
 ADASPLATS_HD inline ExactAddends exact_shifts(std::uint32_t count, float farthest_squared,
                                               const GrowRules& rules) {
-  constexpr double kRounding = 1.001;  // far more than that of a distance
+  constexpr double kRounding = 1.001;  // far above the rounding of a distance
   const double reach_m = kRounding * std::sqrt(static_cast<double>(farthest_squared));
   return {count, std::min(static_cast<double>(rules.error_m), reach_m)};
 }

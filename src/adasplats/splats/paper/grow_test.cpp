@@ -14,7 +14,7 @@ namespace adasplats {
 namespace {
 
 /// A rough patch around its first point, and the neighbourhood of that in a given order. The others
-/// stand across from one another in pairs: their distances to the plane, large and tiny ones,
+/// are opposite each other in pairs: their distances to the plane, large and tiny ones,
 /// cancel, and what is left of the sum is rounding.
 struct Patch {
   std::vector<SurfacePoint> points;

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// What distinguishes splats of one kind of surface from those of another.
+/// What adapts splats to the kind of surface.
 enum class PaperVariant : std::uint8_t {
   basic,        ///< nothing: section "Basic Splatting"
   descriptors,  ///< local descriptors: "Adaptive Splatting Using Local Descriptors"
@@ -31,8 +31,8 @@ struct GroupScale {
   std::array<double, 3> factors() const { return {neighbors, radius, error}; }
 };
 
-/// What the second generation starts from, besides the new points. The paper's text says the
-/// points, its figures (fewer points and splats than before) say the splats' centers.
+/// Input of the second generation, in addition to the new points. The paper's text describes the
+/// points, its figures (fewer points and splats than before) indicate the splats' centers.
 enum class ResampleBase : std::uint8_t {
   points,   ///< all points
   centers,  ///< centers of all splats
@@ -50,7 +50,7 @@ struct PaperOptions {
 
   int neighbors = 40;       ///< K, section "Basic Splatting"
   double alpha = 0.2;       ///< share of a splat's radius within which seeds are discarded
-  double smoothness = 0.6;  ///< beta: least dot product of normals, section "Adaptive Splatting"
+  double smoothness = 0.6;  ///< beta: minimum dot product of normals, section "Adaptive Splatting"
   std::optional<double> radius_m;  ///< R instead of the mean distance to the K-th neighbour
   std::optional<double> error_m;   ///< E instead of the mean point-to-plane distance
   /// The order of the greedy selection.
@@ -60,8 +60,8 @@ struct PaperOptions {
   double denoise_sigmas = 3;   ///< a neighbourhood votes against points farther than this
   double denoise_votes = 0.5;  ///< share of its neighbourhoods that removes a point
   bool resample = true;        ///< second generation; adaptive variants only, as in the paper
-  /// Wanted density of splats, times its mean: a neighbourhood that has less makes new points, as
-  /// many as it lacks, rounded a splat. Where it has more than two thirds, that is none.
+  /// Target density of splats, times its mean. A neighbourhood below it makes as many new points as
+  /// it lacks, rounded for each splat: none if it has more than two thirds.
   double resample_density = 1;
   ResampleBase resample_base = ResampleBase::mixed;
 
@@ -95,15 +95,16 @@ void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
                 .help = "Fill in points on splats and generate again",
                 .group = kCleaning},
         paper.resample);
-  visit(Setting{.name = "resample_density",
-                .help = "Wanted density of splats, times its mean; none are added where two thirds "
-                        "of it are there",
-                .group = kCleaning,
-                .min = 0,
-                .max = 100},
-        paper.resample_density);
+  visit(
+      Setting{.name = "resample_density",
+              .help = "Target density of splats, times its mean; neighbourhoods with more than two "
+                      "thirds of it get no new points",
+              .group = kCleaning,
+              .min = 0,
+              .max = 100},
+      paper.resample_density);
   visit(Setting{.name = "resample_base",
-                .help = "What the second generation starts from, with the new points",
+                .help = "Input of the second generation, in addition to the new points",
                 .group = kCleaning},
         paper.resample_base);
 }
@@ -114,13 +115,13 @@ void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
   const auto scale = [&](const char* name, const char* help, GroupScale& value) {
     visit(Setting{.name = name, .help = help, .group = kScales, .min = 0}, value);
   };
-  scale("ground_scale", "Of the group ground", paper.semantic_scales[0]);
-  scale("surface_scale", "Of the group surface", paper.semantic_scales[1]);
-  scale("linear_scale", "Of the group linear", paper.semantic_scales[2]);
-  scale("non_surface_scale", "Of the group non-surface", paper.semantic_scales[3]);
-  scale("planar_scale", "Of planar points in the method descriptors", paper.planar_scale);
+  scale("ground_scale", "Scales of the group ground", paper.semantic_scales[0]);
+  scale("surface_scale", "Scales of the group surface", paper.semantic_scales[1]);
+  scale("linear_scale", "Scales of the group linear", paper.semantic_scales[2]);
+  scale("non_surface_scale", "Scales of the group non-surface", paper.semantic_scales[3]);
+  scale("planar_scale", "Scales of planar points in the method descriptors", paper.planar_scale);
   visit(Setting{.name = "group_normals",
-                .help = "Normals from the group's own neighbourhood, or from the base one",
+                .help = "Compute normals from the group's own neighbourhood, not from the base one",
                 .opposite = "base-normals",
                 .group = kScales},
         paper.group_normals);
@@ -128,30 +129,32 @@ void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
 
 template <class Visit>
 void visit_settings(PaperOptions& paper, Visit&& visit) {
-  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .min = 3, .max = 1e5},
-        paper.neighbors);
+  visit(
+      Setting{
+          .name = "neighbors", .help = "K, number of neighbours of a point", .min = 3, .max = 1e5},
+      paper.neighbors);
   visit(Setting{.name = "alpha",
                 .help = "Share of a splat's radius within which other seeds are discarded",
                 .min = 0,
                 .max = 1},
         paper.alpha);
   visit(Setting{.name = "smoothness",
-                .help = "Least dot product of normals in a splat",
+                .help = "Minimum dot product of normals in a splat",
                 .min = -1,
                 .max = 1},
         paper.smoothness);
   visit(Setting{.name = "radius",
-                .help = "R, m; without it the mean distance to the K-th neighbour",
+                .help = "R, m; default: the mean distance to the K-th neighbour",
                 .key = "radius_m",
                 .min = 0,
                 .exclusive_min = true},
         paper.radius_m);
   visit(Setting{.name = "error_bound",
-                .help = "E, m; without it the mean distance of neighbours from their plane",
+                .help = "E, m; default: the mean distance of neighbours from their plane",
                 .key = "error_m",
                 .min = 0},
         paper.error_m);
-  visit(Setting{.name = "selection", .help = "Order in which candidate splats are taken"},
+  visit(Setting{.name = "selection", .help = "Order in which candidate splats are selected"},
         paper.selection);
   visit_cleaning_settings(paper, visit);
   visit_scale_settings(paper, visit);

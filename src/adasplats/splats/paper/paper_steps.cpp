@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/paper/paper_steps.h"
 
+#include <vector>
+
+#include "adasplats/core/error.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/splats/model/cpu_backend.h"
+#include "adasplats/splats/paper/paper_options.h"
 #include "adasplats/splats/paper/paper_steps_on.h"
 #include "adasplats/splats/paper/resample.h"
 
 namespace adasplats {
 namespace {
 
-/// What the steps of the paper's methods need of the CPU.
+/// The CPU backend of the paper's methods.
 class PaperOnCpu : public CpuBackend {
  public:
   using Generation = adasplats::Generation;
@@ -41,6 +45,15 @@ class PaperOnCpu : public CpuBackend {
 
 std::unique_ptr<PaperSteps> make_cpu_paper_steps(const Executor& executor) {
   return std::make_unique<PaperStepsOn<PaperOnCpu>>(executor);
+}
+
+void check(const PaperOptions& paper) {
+  check_settings(paper);
+  std::vector<GroupScale> scales(paper.semantic_scales.begin(), paper.semantic_scales.end());
+  scales.push_back(paper.planar_scale);
+  for (const GroupScale& scale : scales)
+    if (!(scale.neighbors > 0 && scale.radius > 0))
+      throw Error(ErrorKind::usage, "the scales of neighbours and radius must be greater than 0");
 }
 
 }  // namespace adasplats

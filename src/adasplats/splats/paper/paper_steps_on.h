@@ -11,67 +11,67 @@
 
 namespace adasplats {
 
-/// The steps of the paper's methods, once for all devices. `Backend` is a CpuBackend or GpuBackend
-/// that also has what is of another shape on each device (Generation and the members that are
-/// called here); what one element does is in element_steps.h.
+/// The steps of the paper's methods for all devices. `Backend` is a CpuBackend or GpuBackend with
+/// the types and functions that differ between devices (Generation and the members called here).
+/// element_steps.h has the work for one element.
 template <class Backend>
 class PaperStepsOn final : public PaperSteps {
  public:
   template <class Where>
-  explicit PaperStepsOn(const Where& where) : place_(where) {}
+  explicit PaperStepsOn(const Where& where) : backend_(where) {}
 
   std::size_t load(PointCloud cloud, const ClassTables& tables) override {
-    [[maybe_unused]] const auto entered = place_.enter();
-    cloud_ = place_.load(cloud, tables.removed);
+    [[maybe_unused]] const auto entered = backend_.enter();
+    cloud_ = backend_.load(cloud, tables.removed);
     groups_ = {};
     if (!tables.groups.empty()) {
-      const auto& table = place_.copied(tables.groups);
-      groups_ = place_.template array<SemanticGroup>(cloud_.size());
-      place_.for_each(cloud_.size(), "group points",
-                      FindGroup{cloud_.classes.data(), table.data(), groups_.data()});
+      const auto& table = backend_.copied(tables.groups);
+      groups_ = backend_.template array<SemanticGroup>(cloud_.size());
+      backend_.for_each(cloud_.size(), "group points",
+                        FindGroup{cloud_.classes.data(), table.data(), groups_.data()});
     }
-    place_.wait("load points");
+    backend_.wait("load points");
     return cloud_.size();
   }
 
   std::size_t denoise(const PaperOptions& options) override {
-    [[maybe_unused]] const auto entered = place_.enter();
-    const auto base = place_.base(cloud_, {static_cast<std::uint32_t>(options.neighbors),
-                                           options.radius_m, options.denoise_sigmas});
-    auto flags = place_.template array<std::uint8_t>(cloud_.size());
-    place_.for_each(
+    [[maybe_unused]] const auto entered = backend_.enter();
+    const auto base = backend_.base(cloud_, {static_cast<std::uint32_t>(options.neighbors),
+                                             options.radius_m, options.denoise_sigmas});
+    auto flags = backend_.template array<std::uint8_t>(cloud_.size());
+    backend_.for_each(
         flags.size(), "remove noise",
         FlagKept{base.votes.data(), base.memberships.data(), options.denoise_votes, flags.data()});
-    const auto kept = place_.flagged(flags);
+    const auto kept = backend_.flagged(flags);
     if (kept.size() < cloud_.size()) {
-      cloud_ = place_.gather(cloud_, kept);
-      groups_ = place_.gather(groups_, kept);
+      cloud_ = backend_.gather(cloud_, kept);
+      groups_ = backend_.gather(groups_, kept);
     }
-    place_.wait("remove noise");
+    backend_.wait("remove noise");
     return cloud_.size();
   }
 
   std::size_t generate(const PaperOptions& options, StepSink step) override {
-    [[maybe_unused]] const auto entered = place_.enter();
-    generation_ = place_.generate(cloud_, groups_, options, step);
+    [[maybe_unused]] const auto entered = backend_.enter();
+    generation_ = backend_.generate(cloud_, groups_, options, step);
     return generation_.disks.size();
   }
 
   Resampled resample(const PaperOptions& options) override {
-    [[maybe_unused]] const auto entered = place_.enter();
-    auto made = place_.resample(cloud_, generation_, options);
+    [[maybe_unused]] const auto entered = backend_.enter();
+    auto made = backend_.resample(cloud_, generation_, options);
     cloud_ = std::move(made.cloud);
     groups_ = std::move(made.groups);
-    place_.wait("resample splats");
+    backend_.wait("resample splats");
     return {cloud_.size(), made.new_points};
   }
 
   PaperSplats take_splats() override {
-    [[maybe_unused]] const auto entered = place_.enter();
+    [[maybe_unused]] const auto entered = backend_.enter();
     const auto of_seeds = [&](const auto& values) {
-      return place_.on_host(place_.gather(values, generation_.seeds));
+      return backend_.on_host(backend_.gather(values, generation_.seeds));
     };
-    return {place_.on_host(std::move(generation_.disks)),
+    return {backend_.on_host(std::move(generation_.disks)),
             of_seeds(cloud_.classes),
             of_seeds(generation_.groups),
             of_seeds(cloud_.intensities),
@@ -80,9 +80,9 @@ class PaperStepsOn final : public PaperSteps {
   }
 
  private:
-  Backend place_;  // before what is there, which ends before it
+  Backend backend_;  // first, so that it outlives the arrays
   typename Backend::Cloud cloud_;
-  typename Backend::template Array<SemanticGroup> groups_;  ///< where known before a generation
+  typename Backend::template Array<SemanticGroup> groups_;  ///< if known before a generation
   typename Backend::Generation generation_;
 };
 

@@ -13,7 +13,7 @@
 namespace adasplats {
 namespace {
 
-/// A point half way between two splats, and the splat it takes its attributes from.
+/// A point half way between two splats, and the splat that provides its attributes.
 struct NewPoint {
   Vec3f position;
   std::uint32_t splat;
@@ -38,7 +38,7 @@ double mean_density(std::span<const std::uint32_t> densities,
   return count > 0 ? sum / count : 0;
 }
 
-/// New points around one splat: with its farthest neighbours first, until it has made its share.
+/// Makes the new points of one splat, with its farthest neighbours first.
 void fill_around(std::uint32_t splat, int missing, std::vector<std::uint64_t>& neighbors,
                  const std::vector<Disk>& disks,
                  FunctionRef<bool(std::uint32_t, std::uint32_t)> alike,
@@ -72,7 +72,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
   index.for_each_neighborhood(
       executor,
       [&](std::uint32_t splat) {
-        // Fewer than the mean are within R, so this limit cuts nothing off.
+        // All `densities[splat]` neighbours within R are found.
         const bool sparse = densities[splat] < wanted;
         return sparse ? NeighborLimit{densities[splat], radius * radius} : NeighborLimit{0, -1.0F};
       },
@@ -88,7 +88,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
   return all;
 }
 
-/// Two sparse neighbours make the same midpoint, once each: one is kept.
+/// Removes the second copy of midpoints that both neighbours made.
 void remove_duplicates(std::vector<NewPoint>& points) {
   const auto key = [](const NewPoint& p) {
     return std::tie(p.position.x, p.position.y, p.position.z, p.splat);

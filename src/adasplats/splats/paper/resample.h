@@ -9,21 +9,21 @@
 
 namespace adasplats {
 
-/// Things that fewer points than measured would no longer show.
+/// Whether objects are so thin that removing points would lose them.
 ADASPLATS_HD inline bool is_thin(SemanticGroup group) {
   return group == SemanticGroup::linear || group == SemanticGroup::non_surface;
 }
 
-/// How many of the points that a neighbourhood lacks one splat of it makes. The paper works through
-/// the splats one after another, and each new point raises the density of all splats around it.
-/// Here every splat works alone, so the `density` splats of a neighbourhood share what is missing,
-/// each its share rounded to a whole number: none where more than two thirds are there already. The
-/// paper's splats would make the last third one by one.
+/// Number of the points missing in a neighbourhood that one of its splats makes. The paper
+/// processes splats one after another, and each new point raises the density of all splats around
+/// it. Here splats are independent, so the `density` splats of a neighbourhood share the missing
+/// points, each share rounded: none if more than two thirds of the target exist. The paper's splats
+/// would make the last third one by one.
 ADASPLATS_HD inline int share_of_missing(double wanted, std::uint32_t density) {
   return static_cast<int>(std::lround((wanted - density) / density));
 }
 
-/// Half way between two splats: a new point.
+/// A new point half way between two splats.
 ADASPLATS_HD inline Vec3f midpoint(const Disk& a, const Disk& b) {
   return 0.5F * (a.center + b.center);
 }

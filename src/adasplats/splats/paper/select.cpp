@@ -5,7 +5,7 @@
 namespace adasplats {
 namespace {
 
-/// Ranks in the order in which candidates are taken.
+/// Ranks in the order in which candidates are visited.
 std::vector<std::uint32_t> visiting_order(std::span<const float> radii,
                                           const DiscardLists& discards, SelectionOrder order,
                                           const Executor& executor) {

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// Which points each candidate discards when it is selected, by rank.
+/// The points that each candidate discards when it is selected, by rank.
 struct DiscardLists {
   std::vector<std::vector<std::uint32_t>> chunks;  ///< of `chunk_size` consecutive candidates each
   std::vector<std::uint32_t> begins;               ///< within the candidate's chunk
@@ -24,7 +24,7 @@ struct DiscardLists {
   std::span<const std::uint32_t> of(std::uint32_t rank) const;
 };
 
-/// In which order candidates are taken: depends on the data alone.
+/// Order in which candidates are visited; depends only on the data.
 enum class SelectionOrder : std::uint8_t {
   most_discards_first,  ///< by descending number of points discarded, then as largest_first
   largest_first,        ///< by descending radius, equal ones by rank
@@ -38,7 +38,7 @@ inline constexpr std::pair<std::string_view, SelectionOrder> kSelectionOrders[] 
     {"scattered", SelectionOrder::scattered}};
 inline Words<SelectionOrder> words_of(SelectionOrder) { return kSelectionOrders; }
 
-/// Candidates are taken by ascending key, equal ones by rank.
+/// Candidates are visited by ascending key, ties by rank.
 ADASPLATS_HD inline std::uint64_t visiting_key(SelectionOrder order, std::uint32_t rank,
                                                float radius_m, std::uint32_t discards) {
   // Radii are not negative, so their bits sort as they do; inverted, the largest come first.
@@ -54,7 +54,7 @@ ADASPLATS_HD inline std::uint64_t visiting_key(SelectionOrder order, std::uint32
 
 /// The greedy selection of paper section "Basic Splatting": in the given order, a candidate that
 /// no selected one has discarded is selected and discards its list. Candidates of radius 0 are
-/// never selected and discard nothing. Gives the selected ranks in ascending order.
+/// never selected. Returns the selected ranks in ascending order.
 std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
                                            const DiscardLists& discards, SelectionOrder order,
                                            const Executor& executor);

@@ -12,32 +12,32 @@
 
 namespace adasplats {
 
-struct EvidenceOptions {  // numbers: docs/fidelity.md
-  /// A ray ends at a disk if it crosses it this near to its end, as the noise of ranges has it...
+struct EvidenceOptions {  // sources of the numbers: docs/fidelity.md
+  /// A ray ends at a disk if it crosses the disk within this distance of its end (range noise)...
   float range_margin_m = 0.04F;
-  /// ...and as much farther as puts its end this far off the disk's plane: a disk that stands or
-  /// leans a little wrong is crossed far from there by grazing rays.
+  /// ...plus the distance that moves its end off the disk's plane by this height: grazing rays
+  /// cross a slightly misplaced or tilted disk far from their ends.
   float height_margin_m = 0.01F;
-  float min_cosine = 0.1F;  ///< rays that graze more have no wider margins
-  /// Rays are cast in turns: one part of so many (kRayParts or a power of two below)...
+  float min_cosine = 0.1F;  ///< of incidence; limits the margin of grazing rays
+  /// Number of parts that rays are cast in (kRayParts or a smaller power of two)...
   std::uint32_t parts = 4;
-  std::uint32_t part = 0;  ///< ...and this one
+  std::uint32_t part = 0;  ///< ...and the part to cast
 
-  /// How far behind its end a ray may cross a disk at which it ends.
+  /// The maximum of end_margin_m().
   float max_margin_m() const { return range_margin_m + height_margin_m / min_cosine; }
 };
 
-/// How near to its end a ray in this direction must cross a disk to end at it.
+/// Distance from its end within which a ray in this direction must cross a disk to end at it.
 ADASPLATS_HD inline float end_margin_m(const Disk& disk, Vec3f direction,
                                        const EvidenceOptions& options) {
   const float cosine = std::fabs(dot(disk.normal, direction));
   return options.range_margin_m + options.height_margin_m / std::max(options.min_cosine, cosine);
 }
 
-/// What a ray that crosses a disk says of it.
+/// Evidence of a ray for or against a disk that it crosses.
 enum class RayWord : std::uint8_t { nothing, confirms, contradicts };
 
-/// Of a ray that crosses a disk at `hit_t` and ended at `range_m`.
+/// Evidence of a ray that crosses the disk at `hit_t` and was measured to end at `range_m`.
 ADASPLATS_HD inline RayWord word_of_ray(const Disk& disk, const Ray& ray, float hit_t,
                                         float range_m, const EvidenceOptions& options) {
   const float margin_m = end_margin_m(disk, ray.direction, options);
@@ -45,7 +45,7 @@ ADASPLATS_HD inline RayWord word_of_ray(const Disk& disk, const Ray& ray, float 
   return hit_t < range_m - margin_m ? RayWord::contradicts : RayWord::confirms;
 }
 
-/// What the rays say of one disk: counts of its rings of equal area, from the middle outward.
+/// Ray counts of one disk in rings of equal area, from the centre outward.
 struct DiskEvidence {
   static constexpr int kBins = 16;
   std::span<const std::uint32_t> confirmed;
@@ -62,7 +62,7 @@ struct DiskEvidence {
   }
 };
 
-/// Counts of all disks, wherever they are: [disk * kBins + bin].
+/// Counts of all disks in host or device memory: [disk * kBins + bin].
 struct EvidenceView {
   static constexpr std::size_t kBins = DiskEvidence::kBins;
   std::uint32_t* confirmed = nullptr;
@@ -73,24 +73,25 @@ struct EvidenceView {
   }
 };
 
-/// The ring in which a ray crosses a disk at `hit_t`: squared distances from the middle in kBins
-/// parts of the squared radius.
+/// The ring in which a ray crosses a disk at `hit_t`: ring k covers squared distances from the
+/// centre of k to k + 1 kBins-ths of the squared radius.
 ADASPLATS_HD inline std::uint32_t evidence_ring(const Disk& disk, const Ray& ray, float hit_t) {
   const Vec3f offset = ray.origin + hit_t * ray.direction - disk.center;
-  const float place =
+  const float position =
       dot(offset, offset) / (disk.radius * disk.radius) * static_cast<float>(DiskEvidence::kBins);
-  // Asked before it is converted: of what no integer holds CPUs and GPUs make different ones.
+  // Compared before the conversion: CPUs and GPUs convert out-of-range values differently.
   constexpr std::uint32_t kOutermost = DiskEvidence::kBins - 1;
-  return place < static_cast<float>(kOutermost) ? static_cast<std::uint32_t>(place) : kOutermost;
+  return position < static_cast<float>(kOutermost) ? static_cast<std::uint32_t>(position)
+                                                   : kOutermost;
 }
 
-/// Radius that encloses that many of the rings.
+/// Radius that encloses this many rings.
 ADASPLATS_HD inline float radius_of_rings(int rings, float radius_m) {
   return radius_m * std::sqrt(static_cast<float>(rings) / DiskEvidence::kBins);
 }
 
-/// The radius at which confirming rays outnumber contradicting ones by most; 0 where there is
-/// none, the radius itself where nobody speaks against it.
+/// The radius at which confirming rays outnumber contradicting ones the most; 0 if there is none,
+/// the full radius if no ray contradicts it.
 ADASPLATS_HD inline float balanced_radius(const DiskEvidence& evidence, float radius_m) {
   std::int64_t balance = 0, best = 0;
   int rings = 0;      // of the best radius
@@ -105,14 +106,14 @@ ADASPLATS_HD inline float balanced_radius(const DiskEvidence& evidence, float ra
       rings = k + 1;
     }
   }
-  // Rings that nobody crossed stay, and so do disks.
+  // Rings without rays are kept, and so are disks.
   return rings == last_seen ? radius_m : radius_of_rings(rings, radius_m);
 }
 
-/// Whether more than chance speaks for a disk at its balanced radius. The middle of a disk stands
-/// on the points that it is made from, so their rays confirm some of the middle, whatever goes
-/// through the rest: of n contradicting rays, the square root of n may miss it by chance.
-ADASPLATS_HD inline bool is_borne_out(const DiskEvidence& evidence) {
+/// Whether more than chance supports a disk at its balanced radius. The rays of the points that the
+/// disk was made from always confirm its centre, whatever passes through the rest: of n
+/// contradicting rays, sqrt(n) may miss the centre by chance.
+ADASPLATS_HD inline bool is_supported(const DiskEvidence& evidence) {
   double balance = 0, best = 0, contradicted = 0;
   for (std::size_t bin = 0; bin < evidence.confirmed.size(); ++bin) {
     balance += static_cast<double>(evidence.confirmed[bin]);
@@ -123,31 +124,31 @@ ADASPLATS_HD inline bool is_borne_out(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
-struct JudgeOptions {           // numbers: docs/fidelity.md
-  int core_rings = 2;           ///< the middle of a disk
-  std::uint32_t core_rays = 3;  ///< that must confirm the middle...
-  double core_share = 0.3;      ///< ...and be so much of those that cross it, to give it a chance
-  float core_radius = 0.25F;    ///< of the radius: what is tried next
-  float min_radius_m = 0.015F;  ///< not below this
+struct SeedCheckOptions {       // sources of the numbers: docs/fidelity.md
+  int core_rings = 2;           ///< rings that form the core of a disk
+  std::uint32_t core_rays = 3;  ///< minimum rays that confirm the core...
+  double core_share = 0.3;      ///< ...and minimum share of the rays through it, to retry the disk
+  float core_radius = 0.25F;    ///< factor on the radius for the retry...
+  float min_radius_m = 0.015F;  ///< ...and its minimum
 };
 
-/// What the rays leave of a disk: its balanced radius; where that is none but many rays confirm
-/// the very middle (a bar, a twig), a small disk, to be judged again; else 0.
-ADASPLATS_HD inline float judged_radius(const DiskEvidence& evidence, float radius_m,
-                                        const JudgeOptions& options) {
-  const float balanced_m = is_borne_out(evidence) ? balanced_radius(evidence, radius_m) : 0;
+/// The radius of a disk that the rays support: the balanced radius. If that is 0 but many rays
+/// confirm the core (a bar, a twig), a small radius, to be checked again; else 0.
+ADASPLATS_HD inline float supported_radius(const DiskEvidence& evidence, float radius_m,
+                                           const SeedCheckOptions& options) {
+  const float balanced_m = is_supported(evidence) ? balanced_radius(evidence, radius_m) : 0;
   if (balanced_m > 0 || radius_m <= options.min_radius_m) return balanced_m;
   std::uint32_t yes = 0, no = 0;
   for (std::size_t bin = 0; bin < static_cast<std::size_t>(options.core_rings); ++bin) {
     yes += evidence.confirmed[bin];
     no += evidence.contradicted[bin];
   }
-  const bool has_chance =
+  const bool has_core =
       yes >= options.core_rays && yes >= options.core_share * (double{1} * yes + no);
-  return has_chance ? std::max(options.core_radius * radius_m, options.min_radius_m) : 0;
+  return has_core ? std::max(options.core_radius * radius_m, options.min_radius_m) : 0;
 }
 
-/// The largest radius at which at most `max_share` as many rays contradict as confirm.
+/// The maximum radius at which contradicting rays are at most `max_share` of the confirming ones.
 ADASPLATS_HD inline float strict_radius(const DiskEvidence& evidence, float radius_m,
                                         double max_share) {
   double yes = 0, no = 0;
@@ -160,8 +161,8 @@ ADASPLATS_HD inline float strict_radius(const DiskEvidence& evidence, float radi
   return rings == DiskEvidence::kBins ? radius_m : radius_of_rings(rings, radius_m);
 }
 
-/// What a chosen disk is limited to so that hardly any ray goes through it; not less than what the
-/// rays leave of its seed, which need not be free of contradiction: leaves are not.
+/// Maximum radius of a chosen disk that hardly any ray passes through; at least the radius that the
+/// rays support for its seed, which may be contradicted by some rays (as leaves are).
 ADASPLATS_HD inline float overhang_limit(const DiskEvidence& evidence, float radius_m,
                                          float seed_radius_m, double max_share) {
   const float strict_m = strict_radius(evidence, radius_m, max_share);

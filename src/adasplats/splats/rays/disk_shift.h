@@ -12,23 +12,23 @@
 
 namespace adasplats {
 
-struct SettleOptions {      // numbers: docs/fidelity.md
-  double reach_m = 0.4;     ///< rays whose range is farther from the disk say nothing of it
-  double scale_m = 0.08;    ///< of the Cauchy weights on range errors
-  double prior_rays = 3;    ///< as many rays say that the disk is right as it is
-  double min_cosine = 0.1;  ///< grazing rays count no more than at this cosine
+struct SettleOptions {      // sources of the numbers: docs/fidelity.md
+  double reach_m = 0.4;     ///< rays with a larger range error are ignored
+  double scale_m = 0.08;    ///< scale of the Cauchy weights on range errors
+  double prior_rays = 3;    ///< weight of the current position, in rays
+  double min_cosine = 0.1;  ///< of incidence; limits the weight of grazing rays
   std::uint32_t min_rays = 4;
   double max_shift_m = 0.1;
 };
 
-/// What of a ray is cast to settle disks: what stands farther before its end says nothing of the
-/// surface there, and may not be known where a place is cut into pieces.
+/// The part of a ray that is cast to settle disks. Surfaces farther before its end are irrelevant,
+/// and may be outside the tile.
 ADASPLATS_HD inline RayReach settling_reach(const SettleOptions& options) {
   const auto reach_m = static_cast<float>(options.reach_m);
   return {reach_m, reach_m};
 }
 
-/// Sums over the rays of one disk, in units of kUnit: whole numbers, the same in every order.
+/// Sums over the rays of one disk, in units of kUnit: integers, so the order does not matter.
 struct ShiftSums {
   static constexpr double kUnit = 1.0 / (1 << 20);  // 1e-6 of a ray, 1e-6 m
   std::int64_t weight = 0;
@@ -36,8 +36,8 @@ struct ShiftSums {
   std::uint32_t rays = 0;
 };
 
-/// What one ray, of measured range `range_m`, says of the disk that it meets first near its end, at
-/// `hit_t`.
+/// Contribution of one ray with the measured range `range_m` to the disk that it meets first near
+/// its end, at `hit_t`.
 ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, float hit_t,
                                            float range_m, const SettleOptions& options) {
   const double error_m = static_cast<double>(hit_t) - static_cast<double>(range_m);
@@ -52,7 +52,7 @@ ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, flo
           static_cast<std::int64_t>(std::llround(weight * shift_m / ShiftSums::kUnit)), 1};
 }
 
-/// The disk moved along its normal to where its rays say the surface is.
+/// The disk moved along its normal to the surface that its rays show.
 ADASPLATS_HD inline Disk settled(Disk disk, const ShiftSums& sums, const SettleOptions& options) {
   if (sums.rays < options.min_rays) return disk;
   const double weight = ShiftSums::kUnit * static_cast<double>(sums.weight);

@@ -25,7 +25,7 @@ ADASPLATS_HD inline std::uint32_t morton_key(std::uint32_t x, std::uint32_t y) {
   return spread(x & 0xffffU) | (spread(y & 0xffffU) << 1);
 }
 
-/// A direction as a place on the unfolded octahedron, along a Morton curve.
+/// The position of a direction on the unfolded octahedron, along a Morton curve.
 ADASPLATS_HD inline std::uint32_t direction_key(Vec3f d) {
   const float size = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
   if (!(size > 0)) return 0;
@@ -36,18 +36,18 @@ ADASPLATS_HD inline std::uint32_t direction_key(Vec3f d) {
     u = folded_u;
   }
   const auto cell = [](float w) {
-    const float place = (w + 1) * 0.5F * 65535.0F;
-    return place > 0 ? static_cast<std::uint32_t>(std::min(place, 65535.0F)) : 0U;  // NaN: 0
+    const float position = (w + 1) * 0.5F * 65535.0F;
+    return position > 0 ? static_cast<std::uint32_t>(std::min(position, 65535.0F)) : 0U;  // NaN: 0
   };
   return morton_key(cell(u), cell(v));
 }
 
-/// A sensor position as a hash of the half metre around it, which counts as one place.
-ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
+/// A hash of a sensor position, equal for all positions in a cube of half a metre.
+ADASPLATS_HD inline std::uint32_t position_key(Vec3f sensor) {
   constexpr float kCell_m = 0.5F;
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
-    // Within what every device converts alike; a place beyond 2^29 m shares its key with others.
+    // Clamped to values that all devices convert alike; positions beyond 2^29 m share keys.
     const float cell = std::clamp(std::floor(sensor[axis] / kCell_m), -0x1p30F, 0x1p30F);
     const auto number = static_cast<std::int32_t>(cell == cell ? cell : 0.0F);
     hash = (hash ^ static_cast<std::uint32_t>(number)) * 16777619U;
@@ -55,10 +55,10 @@ ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
   return hash;
 }
 
-/// Rays are in so many parts of about one size each, which can be cast by turns.
+/// Number of parts of about equal size that rays are divided into, so that rounds can cast some.
 inline constexpr std::uint32_t kRayParts = 4;
 
-/// Says nothing of where a ray is, and depends on the ray alone.
+/// A hash that depends only on the ray and is unrelated to its position.
 ADASPLATS_HD inline std::uint32_t ray_hash(Vec3f sensor, Vec3f point) {
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
@@ -72,19 +72,18 @@ ADASPLATS_HD inline std::uint32_t ray_hash(Vec3f sensor, Vec3f point) {
   return hash;
 }
 
-/// Which part a ray is in; a piece of a place has its rays in the parts in which the whole has
-/// them.
+/// The part of a ray. A tile has its rays in the same parts as the whole city.
 ADASPLATS_HD inline std::uint32_t ray_part(Vec3f sensor, Vec3f point) {
   return ray_hash(sensor, point) >> 30;
 }
 static_assert(kRayParts == 4);
 
-/// Rays in the order of these start and point like their neighbours.
+/// Sort key: rays with close keys have similar origins and directions.
 ADASPLATS_HD inline std::uint64_t measured_ray_key(Vec3f sensor, Vec3f point) {
-  return std::uint64_t{place_key(sensor)} << 32 | direction_key(point - sensor);
+  return std::uint64_t{position_key(sensor)} << 32 | direction_key(point - sensor);
 }
 
-/// Where the parts begin in rays that stand part by part; where they end is the last.
+/// Begins of the parts in rays that are sorted by part, and the end of the last part.
 struct RayPartBegins {
   std::size_t at[kRayParts + 1] = {};
 
@@ -96,8 +95,8 @@ struct RayPartBegins {
   }
 };
 
-/// Of a measured ray what is cast: up to so far behind its end, and from so far before it; from the
-/// sensor where that is farther.
+/// The segment of a measured ray that is cast: from `before_m` before its end, or from the sensor
+/// if that is closer, to `beyond_m` behind its end.
 struct RayReach {
   float beyond_m = 0;
   float before_m = std::numeric_limits<float>::infinity();
@@ -115,7 +114,7 @@ ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, RayReach reach) 
   return ray;
 }
 
-/// Whether a point is so far from its sensor that it has a ray: nearer ones are the vehicle.
+/// Whether a point is far enough from its sensor to have a ray: nearer ones are the vehicle.
 ADASPLATS_HD inline bool has_measured_ray(Vec3f sensor, Vec3f point, double min_range_m) {
   return static_cast<double>(length(point - sensor)) >= min_range_m;
 }

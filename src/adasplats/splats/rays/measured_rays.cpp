@@ -13,8 +13,9 @@
 namespace adasplats {
 namespace {
 
-void count_one(std::uint32_t& counter) {
-  std::atomic_ref<std::uint32_t>(counter).fetch_add(1, std::memory_order_relaxed);
+template <class T>
+void add_relaxed(T& sum, T value) {
+  std::atomic_ref<T>(sum).fetch_add(value, std::memory_order_relaxed);
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ float empty_reach_m(const PointCloud& cloud) {
 }
 
 void RangeCounts::add(float range_m) {
-  const auto cm = static_cast<std::size_t>(std::min(range_m, kMost_m) / kUnit_m);
+  const auto cm = static_cast<std::size_t>(std::min(range_m, kMax_m) / kUnit_m);
   if (cm >= counts_.size()) counts_.resize(cm + 1);
   ++counts_[cm];
   ++all_;
@@ -97,7 +98,7 @@ void RangeCounts::add(const RangeCounts& other) {
 }
 
 float RangeCounts::empty_reach_m() const {
-  constexpr std::uint64_t kFarther = 20;  // one in so many
+  constexpr std::uint64_t kFarther = 20;  // one in 20 is farther
   std::uint64_t beyond = all_ / kFarther;
   for (std::size_t cm = counts_.size(); cm-- > 0;) {
     if (counts_[cm] > beyond) return static_cast<float>(cm) * kUnit_m;
@@ -121,7 +122,7 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
   const PresentDisks present(disks, executor);
   const auto count_rays = [&](const MeasuredRays& cast) {
     const auto count = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
-      thread_local std::vector<std::uint32_t*> counters;  // its memory is used again
+      thread_local std::vector<std::uint32_t*> counters;  // reused memory
       counters.clear();
       for (const Hit& hit : hits) {
         const Disk& disk = disks[hit.primitive];
@@ -134,8 +135,8 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
         __builtin_prefetch(&counter, 1);
         counters.push_back(&counter);
       }
-      // Apart: where an atomic operation stands between them, loads do not overlap.
-      for (std::uint32_t* counter : counters) count_one(*counter);
+      // A separate loop: atomic operations between the loads would keep these from overlapping.
+      for (std::uint32_t* counter : counters) add_relaxed(*counter, 1U);
     };
     const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.max_margin_m();
     RayCasting casting = {{}, {beyond_m}, RayCasting::Hits::all};
@@ -144,6 +145,24 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
   };
   for (const MeasuredRays* cast : rays) count_rays(*cast);
   return evidence;
+}
+
+std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRays& rays,
+                                  const SettleOptions& options, const Executor& executor) {
+  std::vector<ShiftSums> sums(disks.size());
+  const PresentDisks present(disks, executor);
+  const auto add_ray = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
+    if (hits.empty()) return;
+    const std::uint32_t id = hits[0].primitive;
+    const ShiftSums part = shift_of_ray(disks[id], ray, hits[0].t, range_m, options);
+    add_relaxed(sums[id].weight, part.weight);
+    add_relaxed(sums[id].shift, part.shift);
+    add_relaxed(sums[id].rays, part.rays);
+  };
+  RayCasting casting;
+  casting.reach = settling_reach(options);
+  present.cast(rays, casting, executor, add_ray);
+  return sums;
 }
 
 }  // namespace adasplats

@@ -106,7 +106,7 @@ std::uint64_t total(const std::vector<std::uint32_t>& counts) {
   return sum;
 }
 
-TEST(MeasuredRays, EachPointOnceAndNoneNearerThanTheLeastRange) {
+TEST(MeasuredRays, EachPointOnceAndNoneNearerThanTheMinRange) {
   const PointCloud cloud = random_cloud(70000);
   const MeasuredRays rays(cloud, 4, Executor(2));
   std::vector<int> times(cloud.size());
@@ -214,9 +214,9 @@ TEST(MeasuredRays, APieceHasItsRaysInThePartsOfTheWhole) {
   const PointCloud cloud = random_cloud(4000);
   std::vector<std::uint32_t> some;
   for (std::uint32_t i = 0; i < cloud.size(); i += 3) some.push_back(i);
-  const PointCloud piece = gather(cloud, some);
+  const PointCloud tile = gather(cloud, some);
   const Executor executor(2);
-  const MeasuredRays all(cloud, 2, executor), few(piece, 2, executor);
+  const MeasuredRays all(cloud, 2, executor), few(tile, 2, executor);
   const auto part_of = [](const MeasuredRays& rays, std::uint32_t part) {
     std::set<std::uint32_t> points;
     for (const std::uint32_t i : rays.part(4, part)) points.insert(rays.point(i));
@@ -229,7 +229,7 @@ TEST(MeasuredRays, APieceHasItsRaysInThePartsOfTheWhole) {
   }
 }
 
-TEST(CollectEvidence, DisksWithNoRadiusAreNotThere) {
+TEST(CollectEvidence, DisksWithoutRadiusAreIgnored) {
   const PointCloud cloud = random_cloud(5000);
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
@@ -302,7 +302,7 @@ TEST(CollectEvidence, GrazingRaysEndAtDisksThatTheyCrossFarther) {
   EXPECT_EQ(word(1, 9.969F), RayWord::nothing);
   EXPECT_EQ(word(0.2F, 10.069F), RayWord::confirms);
   EXPECT_EQ(word(0.2F, 10.071F), RayWord::contradicts);
-  // Below the least cosine it grows no more.
+  // Below the minimum cosine it is constant.
   EXPECT_EQ(word(0.01F, 10.119F), RayWord::confirms);
   EXPECT_EQ(word(0.01F, 10.121F), RayWord::contradicts);
   EXPECT_FLOAT_EQ(options.max_margin_m(), 0.12F);

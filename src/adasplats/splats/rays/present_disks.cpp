@@ -9,9 +9,9 @@
 namespace adasplats {
 namespace {
 
-/// So many rays before they are made their points begin to be loaded.
+/// Points are prefetched this many rays ahead.
 constexpr std::size_t kLoadedAhead = 16;
-/// Most rays cross fewer disks; those that do not are cast again for several times as many.
+/// Most rays cross fewer disks; the others are cast again with several times as many hits.
 constexpr std::size_t kHitsAtFirst = 48, kTimesAsMany = 4;
 
 }  // namespace
@@ -25,7 +25,7 @@ PresentDisks::PresentDisks(std::span<const Disk> disks, const Executor& executor
   tracer_ = make_cpu_tracer({disks_, nullptr}, executor);
 }
 
-/// Some rays with their numbers, and their hits: few enough to stay in a core's cache.
+/// A batch of rays with their indices and hits, small enough for a core's cache.
 struct PresentDisks::Batch {
   std::vector<Ray> rays;
   std::vector<float> ranges_m;
@@ -56,10 +56,10 @@ void PresentDisks::cast(Batch& batch, std::size_t depth, bool all, const Executo
   if (again.rays.empty()) return;
 
   const std::size_t more = std::min(kTimesAsMany * depth, disks_.size());
-  const std::size_t most = std::max<std::size_t>(1, kFineGrain * kHitsAtFirst / more);
+  const std::size_t batch_size = std::max<std::size_t>(1, kFineGrain * kHitsAtFirst / more);
   Batch part;
-  for (std::size_t begin = 0; begin < again.rays.size(); begin += most) {
-    const std::size_t size = std::min(most, again.rays.size() - begin);
+  for (std::size_t begin = 0; begin < again.rays.size(); begin += batch_size) {
+    const std::size_t size = std::min(batch_size, again.rays.size() - begin);
     const auto part_of = [&](const auto& values) { return std::span(values).subspan(begin, size); };
     part.rays.assign(part_of(again.rays).begin(), part_of(again.rays).end());
     part.ranges_m.assign(part_of(again.ranges_m).begin(), part_of(again.ranges_m).end());

@@ -18,23 +18,23 @@
 
 namespace adasplats {
 
-/// Which of some measured rays are cast, and how.
+/// Which measured rays are cast, and how.
 struct RayCasting {
-  std::optional<std::span<const std::uint32_t>> numbers;  ///< of the rays; nothing: all of them
+  std::optional<std::span<const std::uint32_t>> numbers;  ///< indices of the rays; nullopt: all
   RayReach reach;
   enum class Hits : std::uint8_t { nearest, all } hits = Hits::nearest;
 };
 
-/// Those of some disks that have a radius, ready to cast rays at.
+/// A tracer for the disks that have a radius.
 class PresentDisks {
  public:
   PresentDisks(std::span<const Disk> disks, const Executor& executor);
 
   bool empty() const { return disks_.empty(); }
 
-  /// Calls body(i, ray, range_m, hits) once for each of the rays, in any order and on any thread:
-  /// `hits` are those of ray i (which was measured to end at `range_m`), ascending, their
-  /// primitives the numbers of the disks. Without disks nothing is cast and the body is not called.
+  /// Calls body(i, ray, range_m, hits) once for each ray, in any order and on any thread. `hits`
+  /// are the hits of ray i (with the measured range `range_m`) in ascending order; their primitives
+  /// are indices of disks. Does nothing without disks.
   using Body =
       FunctionRef<void(std::size_t i, const Ray& ray, float range_m, std::span<const Hit> hits)>;
   void cast(const MeasuredRays& rays, const RayCasting& casting, const Executor& executor,
@@ -45,7 +45,7 @@ class PresentDisks {
   void cast(Batch& batch, std::size_t depth, bool all, const Executor& executor, Body body) const;
 
   std::vector<Disk> disks_;
-  std::vector<std::uint32_t> ids_;  ///< numbers of the disks among all
+  std::vector<std::uint32_t> ids_;  ///< indices of the disks among all
   std::unique_ptr<Tracer> tracer_;
 };
 

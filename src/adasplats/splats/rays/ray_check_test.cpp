@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/splats/rays/ray_check.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <cstring>
 
 #include "adasplats/core/maths/random.h"
+#include "adasplats/splats/rays/measured_rays.h"
 
 namespace adasplats {
 namespace {
@@ -69,7 +68,7 @@ TEST(BalancedRadius, KnownAnswers) {
   EXPECT_EQ(balanced(all_rings(0xfffffffeU), all_rings(0xffffffffU)), 0.0F);
 }
 
-/// Oracle for random counts: the balance of every radius, summed anew.
+/// Oracle for random counts: the balance of every radius, summed directly.
 TEST(BalancedRadius, IsTheBestOfAllRadii) {
   for (std::size_t round = 0; round < 2000; ++round) {
     Random random(1, 0, round);
@@ -96,7 +95,7 @@ TEST(BalancedRadius, IsTheBestOfAllRadii) {
 TEST(IsBorneOut, KnownAnswers) {
   const Rings none{};
   const auto borne_out = [](const Rings& confirmed, const Rings& contradicted) {
-    return is_borne_out({confirmed, contradicted});
+    return is_supported({confirmed, contradicted});
   };
   EXPECT_TRUE(borne_out(none, none));
   EXPECT_TRUE(borne_out({1}, none));
@@ -110,8 +109,8 @@ TEST(IsBorneOut, KnownAnswers) {
 }
 
 /// The tests' own numbers: the defaults may be tuned.
-JudgeOptions tested_judge() {
-  JudgeOptions options;
+SeedCheckOptions tested_judge() {
+  SeedCheckOptions options;
   options.core_rings = 2;
   options.core_rays = 4;
   options.core_share = 0.25;
@@ -121,7 +120,7 @@ JudgeOptions tested_judge() {
 }
 
 float judged(const Rings& confirmed, const Rings& contradicted, float radius_m = 2.0F) {
-  return judged_radius({confirmed, contradicted}, radius_m, tested_judge());
+  return supported_radius({confirmed, contradicted}, radius_m, tested_judge());
 }
 
 TEST(JudgedRadius, IsTheBalancedOneWhereThatIsBorneOut) {
@@ -179,11 +178,11 @@ TEST(JudgedRadius, IsNoSmallerThanAllowedAndIsTriedOnce) {
 
 TEST(JudgedRadius, TheCoreIsOfAsManyRingsAsAsked) {
   const Rings confirmed = {2, 0, 2}, contradicted = {0, 0, 6, 0, 400};
-  JudgeOptions options = tested_judge();
+  SeedCheckOptions options = tested_judge();
   const auto radius_with = [&](int rings, float core_radius) {
     options.core_rings = rings;
     options.core_radius = core_radius;
-    return judged_radius({confirmed, contradicted}, 2.0F, options);
+    return supported_radius({confirmed, contradicted}, 2.0F, options);
   };
   EXPECT_EQ(radius_with(2, 0.25F), 0.0F);   // 2 rays
   EXPECT_EQ(radius_with(3, 0.25F), 0.5F);   // 4 of 10
@@ -241,9 +240,15 @@ struct Floor {
   }
 };
 
+void settle_disks(std::span<Disk> disks, const MeasuredRays& rays, const SettleOptions& options,
+                  const Executor& executor) {
+  const std::vector<ShiftSums> sums = sum_shifts(disks, rays, options, executor);
+  for (std::size_t i = 0; i < disks.size(); ++i) disks[i] = settled(disks[i], sums[i], options);
+}
+
 TEST(SettleDisks, APlaneThatIsOffComesBack) {
-  // Oracle: the floor. Rays that say 3 cm, and as many as three that say 0: some 100 rays a disk
-  // leave 1 mm; the disks overlap, so that some have half of it.
+  // Oracle: the floor. Rays with an offset of 3 cm, and a prior of three rays with 0: some 100 rays
+  // per disk leave 1 mm; the disks overlap, so that some have half of it.
   for (const float height_m : {0.03F, -0.03F, 0.0F}) {
     Floor floor(40000, height_m);
     const Executor executor(2);
@@ -262,7 +267,8 @@ TEST(SettleDisks, APlaneThatIsOffComesBack) {
 }
 
 TEST(SettleDisks, PriorCountsAsRays) {
-  // One disk, n vertical rays that all say 3 cm: it moves by 3 cm * n / (n + 3), from 4 rays on.
+  // One disk, n vertical rays that all end 3 cm away: it moves by 3 cm * n / (n + 3), from 4 rays
+  // on.
   for (const std::size_t n : {0, 1, 3, 4, 10, 27}) {
     PointCloud cloud;
     for (std::size_t i = 0; i < n; ++i) {
@@ -280,8 +286,8 @@ TEST(SettleDisks, PriorCountsAsRays) {
   }
 }
 
-TEST(SettleDisks, MovesByALimitedDistanceAndHearsNoRayFromFar) {
-  // 0.3 m off: within reach, limited to 0.1 m. 0.5 m off: the rays speak of something else.
+TEST(SettleDisks, LimitsTheShiftAndIgnoresRaysOutOfReach) {
+  // 0.3 m off: within reach, limited to 0.1 m. 0.5 m off: out of reach.
   for (const float height_m : {0.3F, -0.3F, 0.5F, -0.5F}) {
     Floor floor(4000, height_m);
     const Executor executor(1);

@@ -15,10 +15,10 @@
 
 namespace adasplats {
 
-// What the steps of measuring reflectances do with one element, in the steps' order. What several
-// elements add to are whole numbers, so a loop on any device runs it (for_each and sum of a place).
+// The work of the reflectance steps for one element, in the order of the steps. Shared sums are
+// integers, so any loop may run it (for_each and sum of a backend).
 
-/// The largest of some numbers that are 0 or more.
+/// Maximum of numbers that are at least 0.
 struct LargestOf {
   float value = 0;
 
@@ -29,7 +29,7 @@ struct LargestOf {
   }
 };
 
-/// Of the numbers that are finite.
+/// Finds the maximum of the finite numbers.
 struct FindLargest {
   const float* values;
 
@@ -47,35 +47,35 @@ struct RayCount {
   }
 };
 
-/// Of the rays that met each disk.
+/// Adds up the numbers of rays that met each disk.
 struct AddCounts {
   const std::uint32_t* counts;
 
   ADASPLATS_HD void operator()(std::size_t i, RayCount& all) const { all.rays += counts[i]; }
 };
 
-/// What one measured ray says of the disk that it met.
+/// What one measured ray contributes to the disk that it met.
 struct Observation {
   static constexpr std::uint32_t kNone = 0xffffffffU;
   std::uint32_t disk = kNone;
-  float intensity = 0;     ///< as a share of the unit, 0..1
-  float range_place = 0;   ///< place_among() the nodes
-  float cosine_place = 0;  ///< likewise, of the incidence
+  float intensity = 0;        ///< divided by the unit of intensities, 0..1
+  float range_position = 0;   ///< position_among() the nodes of ranges
+  float cosine_position = 0;  ///< position_among() the nodes of cosines of incidence
 };
 
-/// Keeps what the rays say that meet the model where they ended, and counts them by disk.
+/// Records the rays that meet the model near their ends, and counts them by disk.
 struct ObserveRay {
   const Disk* disks;
   const float* intensities;  ///< of the points
   double per_intensity;      ///< 1 over the unit of intensities
   ResponseNodes nodes;
-  Observation* observations;  ///< one a ray
-  std::uint32_t* counts;      ///< one a disk
+  Observation* observations;  ///< one per ray
+  std::uint32_t* counts;      ///< one per disk
 
-  /// So much farther than their points rays are cast, m.
+  /// Rays are cast this much farther than their points, m.
   static constexpr float kBeyond_m = 1.0F;
 
-  /// Ray `i`, of the point, with its nearest hit.
+  /// `point`: the point of ray `i`; `hit`: its nearest hit.
   ADASPLATS_HD void operator()(std::size_t i, std::uint32_t point, const Ray& ray, float range_m,
                                Hit hit) const {
     const Observation seen = observation(intensities[point], ray, range_m, hit);
@@ -86,23 +86,23 @@ struct ObserveRay {
  private:
   ADASPLATS_HD Observation observation(float intensity, const Ray& ray, float range_m,
                                        Hit hit) const {
-    // A choice, well beyond the model's errors (a median of 3 cm, docs/fidelity.md): a ray that
-    // ends farther away met something else.
+    // Chosen well above the model's errors (median 3 cm, docs/fidelity.md): a ray that ends farther
+    // away met another object.
     const float tolerance_m = 0.2F + 0.005F * range_m;
     if (!hit.valid() || !std::isfinite(intensity)) return {};
     if (!(std::fabs(hit.t - range_m) < tolerance_m)) return {};
     const float cosine = std::min(std::fabs(dot(ray.direction, disks[hit.primitive].normal)), 1.0F);
     const double share = static_cast<double>(std::max(intensity, 0.0F)) * per_intensity;
-    return {hit.primitive, static_cast<float>(share), place_among(nodes.ranges_m, range_m),
-            place_among(nodes.cosines, cosine)};
+    return {hit.primitive, static_cast<float>(share), position_among(nodes.ranges_m, range_m),
+            position_among(nodes.cosines, cosine)};
   }
 };
 
-/// Puts observations disk by disk, those of one disk in any order.
+/// Sorts observations by disk; the order within a disk is arbitrary.
 struct PutByDisk {
   const Observation* from;
   const std::uint64_t* begins;  ///< of the disks
-  std::uint32_t* left;          ///< that a disk still gets
+  std::uint32_t* left;          ///< observations that a disk still gets
   Observation* to;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
@@ -112,9 +112,9 @@ struct PutByDisk {
   }
 };
 
-/// Splats that lie near each other and face alike have the same key.
+/// Key of a splat: equal for splats in the same cell with the same main axis of the normal.
 struct FindCell {
-  /// A choice: larger cells mix materials, smaller ones have no more rays than the splat itself.
+  /// Chosen: larger cells mix materials, smaller ones have no more rays than the splat itself.
   static constexpr float kCell_m = 0.4F;
 
   const Disk* disks;
@@ -151,15 +151,15 @@ struct SumOfDisk {
   const Observation* observations;
   const std::uint64_t* begins;
   ResponseGains gains;
-  double per_gain;  ///< 1 over the unit of gains, than which none is larger
+  double per_gain;  ///< 1 over the unit of gains, which is their upper bound
   ValueSums* sums;
 
   ADASPLATS_HD void operator()(std::size_t disk) const {
     ValueSums sum;
     for (std::uint64_t k = begins[disk]; k < begins[disk + 1]; ++k) {
       const Observation& seen = observations[k];
-      const float gain = value_at(gains.of_ranges, seen.range_place) *
-                         value_at(gains.of_cosines, seen.cosine_place);
+      const float gain = value_at(gains.of_ranges, seen.range_position) *
+                         value_at(gains.of_cosines, seen.cosine_position);
       const double share = static_cast<double>(gain) * per_gain;
       sum.product += whole_units(static_cast<double>(seen.intensity) * share);
       sum.square += whole_units(share * share);
@@ -174,11 +174,11 @@ struct AddSums {
   ADASPLATS_HD void operator()(std::size_t i, ValueSums& all) const { all += sums[i]; }
 };
 
-/// Sets the reflectances of a cell's disks: each drawn to what the cell has, that to what is usual.
+/// Sets the reflectances of a cell's disks: each is drawn to the mean of the cell, and that to the
+/// mean of the model.
 struct SetReflectances {
-  /// Rays that count where a splat has few: of the splats in the same cell, and of all splats
-  /// there. Intensities scatter by a third from ray to ray; with kitti-0005, 1 to 8 do equally
-  /// well.
+  /// Weights, in rays, of the mean of the cell and of the mean of the model. Intensities scatter by
+  /// a third from ray to ray; on kitti-0005, 1 to 8 perform equally well.
   static constexpr double kCellRays = 3;
   static constexpr double kModelRays = 4;
 
@@ -203,13 +203,13 @@ struct SetReflectances {
   }
 
  private:
-  /// As if `rays` more had said `otherwise`.
+  /// The fit with `rays` additional rays of the value `otherwise`.
   ADASPLATS_HD double value(const ValueSums& sum, double otherwise, double rays) const {
     const double product = static_cast<double>(sum.product) * (kShareUnit * gain_unit);
     const double square = static_cast<double>(sum.square) * (kShareUnit * gain_unit * gain_unit);
     return (product + rays * otherwise) / (square + rays);
   }
-  /// Of a disk in a cell that no ray met.
+  /// Value of a disk in a cell without rays.
   ADASPLATS_HD double unseen(std::uint32_t disk) const {
     if (!std::isfinite(fallback[disk])) return usual;
     return static_cast<double>(std::max(fallback[disk], 0.0F)) * per_intensity;
@@ -219,23 +219,23 @@ struct SetReflectances {
 using RangeSums = TableSums<ResponseNodes::kRanges>;
 using CosineSums = TableSums<ResponseNodes::kCosines>;
 
-/// Adds what an observation says of the table of ranges, the other table and the reflectances
-/// known.
+/// Adds an observation to the fit of the range gains, with the other gains and the reflectances
+/// fixed.
 struct AddToRanges {
   const Observation* observations;
   const float* values;  ///< of the disks
   ResponseGains gains;
-  double per_factor;  ///< 1 over the unit of values times gains, than which none is larger
+  double per_factor;  ///< 1 over the unit of values times gains, which is their upper bound
 
   ADASPLATS_HD void operator()(std::size_t i, RangeSums& sums) const {
     const Observation& seen = observations[i];
-    const auto gain = static_cast<double>(value_at(gains.of_cosines, seen.cosine_place));
-    sums.add(seen.range_place, static_cast<double>(seen.intensity),
+    const auto gain = static_cast<double>(value_at(gains.of_cosines, seen.cosine_position));
+    sums.add(seen.range_position, static_cast<double>(seen.intensity),
              static_cast<double>(values[seen.disk]) * gain * per_factor);
   }
 };
 
-/// Likewise of the table of incidences.
+/// Adds an observation to the fit of the incidence gains.
 struct AddToCosines {
   const Observation* observations;
   const float* values;
@@ -244,8 +244,8 @@ struct AddToCosines {
 
   ADASPLATS_HD void operator()(std::size_t i, CosineSums& sums) const {
     const Observation& seen = observations[i];
-    const auto gain = static_cast<double>(value_at(gains.of_ranges, seen.range_place));
-    sums.add(seen.cosine_place, static_cast<double>(seen.intensity),
+    const auto gain = static_cast<double>(value_at(gains.of_ranges, seen.range_position));
+    sums.add(seen.cosine_position, static_cast<double>(seen.intensity),
              static_cast<double>(values[seen.disk]) * gain * per_factor);
   }
 };

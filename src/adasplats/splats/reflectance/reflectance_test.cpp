@@ -16,7 +16,7 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/splats/model_engine.h"
-#include "adasplats/splats/reflectance/table_fit.h"
+#include "adasplats/splats/reflectance/response_tables.h"
 
 namespace adasplats {
 namespace {
@@ -159,11 +159,11 @@ TEST(TableFit, PowersOfTwoAbove) {
 
 TEST(ResponseTables, PlacesAmongNodes) {
   const std::array<float, 3> nodes = {2, 4, 8};
-  EXPECT_EQ(place_among(nodes, 1), 0.0F);
-  EXPECT_EQ(place_among(nodes, 3), 0.5F);
-  EXPECT_EQ(place_among(nodes, 4), 1.0F);
-  EXPECT_EQ(place_among(nodes, 5), 1.25F);
-  EXPECT_EQ(place_among(nodes, 90), 2.0F);
+  EXPECT_EQ(position_among(nodes, 1), 0.0F);
+  EXPECT_EQ(position_among(nodes, 3), 0.5F);
+  EXPECT_EQ(position_among(nodes, 4), 1.0F);
+  EXPECT_EQ(position_among(nodes, 5), 1.25F);
+  EXPECT_EQ(position_among(nodes, 90), 2.0F);
   EXPECT_EQ(value_at(std::array<float, 3>{1, 2, 6}, 1.25F), 3.0F);
   EXPECT_EQ(value_at(std::array<float, 3>{1, 2, 6}, 2.0F), 6.0F);
 }
@@ -172,7 +172,7 @@ TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
   std::vector<Disk> disks = ground();
   disks.push_back({{50, 50, 0}, 0.5F, {0, 0, 1}});
   EXPECT_EQ(measure(disks, measured_ground(20000)).values.back(), 0.5F);
-  // Nothing is known of it: what is usual stands in.
+  // No information: the mean of the model is used.
   const float usual = measure(disks, measured_ground(20000), 2, kNan).values.back();
   EXPECT_GT(usual, 0.2F);
   EXPECT_LT(usual, 0.6F);
@@ -211,7 +211,7 @@ TEST(Reflectance, BlackWorldIsBlack) {
   EXPECT_EQ(found.response.gain(20, 0.5F), 1.0F);
 }
 
-TEST(Reflectance, NoDisksGiveNothing) {
+TEST(Reflectance, NoDisksGiveAnEmptyResult) {
   EXPECT_TRUE(measure({}, measured_ground(2000)).values.empty());
 }
 

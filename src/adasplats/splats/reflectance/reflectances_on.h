@@ -14,37 +14,39 @@
 #include "adasplats/splats/reflectance/element_steps.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 #include "adasplats/splats/reflectance/response_tables.h"
-#include "adasplats/splats/reflectance/table_fit.h"
 
 namespace adasplats {
 
-/// Measured rays and the intensities of their points, both where a place has them.
+/// Measured rays and the intensities of their points, in the backend's memory.
 template <class Backend>
 struct RaysWithIntensities {
   const typename Backend::Rays* rays;
   const typename Backend::template Array<float>* intensities;
 };
 
-/// Points nearer to their sensor say nothing: their rays have no direction.
+/// Rays of nearer points have no direction.
 inline constexpr double kMinReflectanceRange_m = 1e-3;
 
-/// Casts every measured ray into a model, and finds by turns the reflectance of every disk and the
-/// response of the sensor that explain the intensities of the rays whose first hit lies within
-/// 0.2 m (0.5 % of the range more) of the measured point: least squares by turns, five of them. A
-/// disk that few rays met is drawn to the disks that face alike in the same 0.4 m cell (as if three
-/// rays had said so), that one to the mean of all. Sums are whole numbers: the same bytes on any
-/// number of threads and on every device.
+/// Casts every measured ray into a model and fits the reflectance of every disk and the response of
+/// the sensor to the intensities, by alternating least squares in five rounds. Uses the rays with a
+/// first hit within 0.2 m + 0.5 % of the range of the measured point. A disk with few rays is drawn
+/// to the disks with a similar normal in the same 0.4 m cell (with the weight of three rays), and
+/// those to the mean of all. Sums are integers: the same bytes on any number of threads and on
+/// every device.
 ///
-/// Once for all devices: `Backend` is a RaysOnCpu or its twin on a GPU; what one element does is in
-/// element_steps.h. Memory: 32 bytes a ray.
+/// `Backend` is RaysOnCpu or its GPU counterpart; element_steps.h has the work for one element.
+/// Memory: 32 bytes per ray.
 template <class Backend>
 class ReflectancesOn {
  public:
-  /// `fallback`: values for disks in cells that no ray met, one a disk; NaN: the mean of all.
-  /// `response`: of the sensor, as result() has it, which then is not looked for; may be null.
-  ReflectancesOn(const Backend& place, const std::vector<Disk>& disks,
+  /// `fallback`: values for disks in cells without rays, one per disk; NaN: the mean of all.
+  /// `response`: of the sensor, with the nodes of result(); nullptr: it is fitted.
+  ReflectancesOn(const Backend& backend, const std::vector<Disk>& disks,
                  const std::vector<float>& fallback, const IntensityResponse* response = nullptr)
-      : place_(place), disks_(disks), fallback_(fallback), is_response_known_(response != nullptr) {
+      : backend_(backend),
+        disks_(disks),
+        fallback_(fallback),
+        is_response_known_(response != nullptr) {
     gains_.of_ranges.fill(1.0F);
     gains_.of_cosines.fill(1.0F);
     if (response == nullptr) return;
@@ -55,23 +57,23 @@ class ReflectancesOn {
     std::ranges::copy(response->incidence_gains, gains_.of_cosines.begin());
   }
 
-  /// Without rays, or with fewer than 1000 rays that meet their point: the fallback and an empty
-  /// response.
+  /// Returns the fallback and an empty response if fewer than 1000 rays meet the model near their
+  /// points.
   Reflectances run(std::span<const RaysWithIntensities<Backend>> measured) {
     if (disks_.empty()) return {fallback_, {}};
-    const auto& disks = place_.copied(disks_);
+    const auto& disks = backend_.copied(disks_);
     observe(disks, measured);
     if (ray_count_ < (is_response_known_ ? 1 : kMinRays)) return {fallback_, {}};
     order_cells(disks);
-    sums_ = place_.template array<ValueSums>(disks_.size());
-    values_ = place_.template array<float>(disks_.size());
-    const auto& fallback = place_.copied(fallback_);
+    sums_ = backend_.template array<ValueSums>(disks_.size());
+    values_ = backend_.template array<float>(disks_.size());
+    const auto& fallback = backend_.copied(fallback_);
     fit_values(fallback.data());
     for (int turn = 0; turn < (is_response_known_ ? 0 : kTurns); ++turn) {
       fit_gains();
       fit_values(fallback.data());
     }
-    place_.wait("measure reflectances");
+    backend_.wait("measure reflectances");
     return result();
   }
 
@@ -79,18 +81,18 @@ class ReflectancesOn {
   template <class T>
   using Array = typename Backend::template Array<T>;
 
-  /// A choice: some 35 rays a node of the tables. Fewer say more of their noise than of the sensor.
+  /// Chosen: some 35 rays per node of the tables. With fewer, noise dominates.
   static constexpr std::uint64_t kMinRays = 1000;
-  /// Of both fits. A choice: each takes a pass over all rays.
+  /// Rounds of both fits. Chosen: each needs a pass over all rays.
   static constexpr int kTurns = 5;
 
   double largest_of(const Array<float>& values) const {
-    const LargestOf found = place_.template sum<LargestOf>(values.size(), "find the largest value",
-                                                           FindLargest{values.data()});
+    const LargestOf found = backend_.template sum<LargestOf>(
+        values.size(), "find the largest value", FindLargest{values.data()});
     return static_cast<double>(found.value);
   }
 
-  /// Observations by disk.
+  /// Makes the observations, sorted by disk.
   void observe(const Array<Disk>& disks, std::span<const RaysWithIntensities<Backend>> measured) {
     double largest = 0;
     std::size_t rays = 0;
@@ -99,8 +101,8 @@ class ReflectancesOn {
       rays += part.rays->size();
     }
     intensity_unit_ = power_of_two_above(largest);
-    auto counts = place_.template zeros<std::uint32_t>(disks.size());
-    auto unordered = place_.template array<Observation>(rays);
+    auto counts = backend_.template zeros<std::uint32_t>(disks.size());
+    auto unordered = backend_.template array<Observation>(rays);
     std::vector<std::pair<const typename Backend::Rays*, ObserveRay>> parts;
     Observation* to = unordered.data();
     for (const auto& part : measured) {
@@ -110,43 +112,43 @@ class ReflectancesOn {
       parts.emplace_back(part.rays, observe);
       to += part.rays->size();
     }
-    place_.observe(disks, parts);
+    backend_.observe(disks, parts);
     ray_count_ =
-        place_.template sum<RayCount>(counts.size(), "count rays", AddCounts{counts.data()}).rays;
-    begins_ = place_.running_sums(counts);
-    observations_ = place_.template array<Observation>(ray_count_);
-    place_.for_each(
+        backend_.template sum<RayCount>(counts.size(), "count rays", AddCounts{counts.data()}).rays;
+    begins_ = backend_.running_sums(counts);
+    observations_ = backend_.template array<Observation>(ray_count_);
+    backend_.for_each(
         unordered.size(), "order observations",
         PutByDisk{unordered.data(), begins_.data(), counts.data(), observations_.data()});
-    place_.wait("cast measured rays");
+    backend_.wait("cast measured rays");
   }
 
   void order_cells(const Array<Disk>& disks) {
-    auto keys = place_.template array<std::uint64_t>(disks.size());
-    place_.for_each(disks.size(), "find cells of disks", FindCell{disks.data(), keys.data()});
-    order_ = place_.sort(keys);
-    cells_ = place_.run_begins(keys);
-    place_.wait("find cells of disks");
+    auto keys = backend_.template array<std::uint64_t>(disks.size());
+    backend_.for_each(disks.size(), "find cells of disks", FindCell{disks.data(), keys.data()});
+    order_ = backend_.sort(keys);
+    cells_ = backend_.run_begins(keys);
+    backend_.wait("find cells of disks");
   }
 
   void fit_values(const float* fallback) {
     const double gain_unit =
         power_of_two_above(static_cast<double>(*std::ranges::max_element(gains_.of_ranges) *
                                                *std::ranges::max_element(gains_.of_cosines)));
-    place_.for_each(
+    backend_.for_each(
         disks_.size(), "fit reflectances",
         SumOfDisk{observations_.data(), begins_.data(), gains_, 1 / gain_unit, sums_.data()});
     const ValueSums all =
-        place_.template sum<ValueSums>(disks_.size(), "fit reflectances", AddSums{sums_.data()});
+        backend_.template sum<ValueSums>(disks_.size(), "fit reflectances", AddSums{sums_.data()});
     const double usual = all.square > 0 ? static_cast<double>(all.product) /
                                               (static_cast<double>(all.square) * gain_unit)
                                         : 0.0;
-    place_.for_each(cells_.size() - 1, "fit reflectances",
-                    SetReflectances{order_.data(), cells_.data(), sums_.data(), gain_unit, usual,
-                                    fallback, 1 / intensity_unit_, values_.data()});
+    backend_.for_each(cells_.size() - 1, "fit reflectances",
+                      SetReflectances{order_.data(), cells_.data(), sums_.data(), gain_unit, usual,
+                                      fallback, 1 / intensity_unit_, values_.data()});
   }
 
-  /// One table after the other.
+  /// Fits one table after the other.
   void fit_gains() {
     const double value_unit = power_of_two_above(largest_of(values_));
     const auto per_factor = [&](const auto& gains) {
@@ -154,21 +156,21 @@ class ReflectancesOn {
                   power_of_two_above(static_cast<double>(*std::ranges::max_element(gains))));
     };
     gains_.of_ranges =
-        solved(place_.template sum<RangeSums>(ray_count_, "fit the response",
-                                              AddToRanges{observations_.data(), values_.data(),
-                                                          gains_, per_factor(gains_.of_cosines)}),
+        solved(backend_.template sum<RangeSums>(ray_count_, "fit the response",
+                                                AddToRanges{observations_.data(), values_.data(),
+                                                            gains_, per_factor(gains_.of_cosines)}),
                ResponseNodes::kUnitRange);
-    gains_.of_cosines =
-        solved(place_.template sum<CosineSums>(ray_count_, "fit the response",
-                                               AddToCosines{observations_.data(), values_.data(),
-                                                            gains_, per_factor(gains_.of_ranges)}),
-               ResponseNodes::kUnitCosine);
+    gains_.of_cosines = solved(
+        backend_.template sum<CosineSums>(ray_count_, "fit the response",
+                                          AddToCosines{observations_.data(), values_.data(), gains_,
+                                                       per_factor(gains_.of_ranges)}),
+        ResponseNodes::kUnitCosine);
   }
 
   Reflectances result() const {
     constexpr ResponseNodes kNodes;
     Reflectances result;
-    result.values = place_.on_host(values_);
+    result.values = backend_.on_host(values_);
     for (float& value : result.values)
       value = static_cast<float>(static_cast<double>(value) * intensity_unit_);
     result.response = {{kNodes.ranges_m.begin(), kNodes.ranges_m.end()},
@@ -178,7 +180,7 @@ class ReflectancesOn {
     return result;
   }
 
-  const Backend& place_;
+  const Backend& backend_;
   const std::vector<Disk>& disks_;
   const std::vector<float>& fallback_;
   bool is_response_known_;
@@ -190,7 +192,7 @@ class ReflectancesOn {
   Array<std::uint32_t> order_;       ///< disks, cell by cell
   Array<std::uint32_t> cells_;       ///< where they begin
   Array<ValueSums> sums_;            ///< of the disks
-  Array<float> values_;              ///< of the disks, as shares of the unit of intensities
+  Array<float> values_;              ///< of the disks, divided by the unit of intensities
 };
 
 }  // namespace adasplats

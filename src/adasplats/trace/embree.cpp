@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/trace/embree_handles.h"
+#include "adasplats/trace/embree.h"
 
 #include <stdexcept>
 

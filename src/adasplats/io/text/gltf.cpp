@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/gltf.h"
+#include "adasplats/io/text/gltf.h"
 
 #include <algorithm>
 #include <array>
@@ -24,13 +24,13 @@
 namespace adasplats {
 namespace {
 
-using Json = nlohmann::json;
+using GltfJson = nlohmann::json;
 
-/// Instances of one mesh may multiply a small file; no object of a scene needs more.
+/// Limits against small files that instantiate a mesh many times.
 constexpr std::size_t kMaxVertices = 50'000'000;
 constexpr std::size_t kMaxTriangles = 100'000'000;
 
-/// Any affine map, as nodes have it.
+/// An affine map, as nodes have.
 struct AffineMap {
   Mat3d linear;
   Vec3d offset;
@@ -68,7 +68,7 @@ Chunks split(const std::filesystem::path& path, std::string_view file) {
   while (offset < file.size()) {
     const auto length = word_at(file, offset), type = word_at(file, offset + 4);
     if (!length || !type || *length > file.size() - offset - kChunkHeaderBytes)
-      throw data_error({path, offset, {}}, "a chunk reaches beyond the end of the file");
+      throw data_error({path, offset, {}}, "a chunk extends beyond the end of the file");
     const std::string_view content = file.substr(offset + kChunkHeaderBytes, *length);
     if (*type == kJson && chunks.json.empty()) chunks.json = content;
     if (*type == kBinary && chunks.binary.empty()) chunks.binary = content;
@@ -77,12 +77,12 @@ Chunks split(const std::filesystem::path& path, std::string_view file) {
   return chunks;
 }
 
-/// RFC 3986: "%20" for a blank. Anything else behind a % stays as it is.
+/// Decodes percent escapes (RFC 3986), such as "%20"; leaves invalid ones unchanged.
 std::string without_percents(std::string_view uri) {
   const auto digit = [](char c) {
     constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
-    const std::size_t place = kDigits.find(c);
-    return place == std::string_view::npos ? -1 : static_cast<int>(place < 16 ? place : place - 6);
+    const std::size_t index = kDigits.find(c);
+    return index == std::string_view::npos ? -1 : static_cast<int>(index < 16 ? index : index - 6);
   };
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -94,51 +94,52 @@ std::string without_percents(std::string_view uri) {
   return text;
 }
 
-/// A JSON value that knows where in the document it is, for messages.
-class Member {
+/// A JSON value with its path in the document, for error messages.
+class GltfMember {
  public:
-  Member(const std::filesystem::path& path, const Json& value, std::string place)
-      : path_(&path), value_(&value), place_(std::move(place)) {}
+  GltfMember(const std::filesystem::path& path, const GltfJson& value, std::string pointer)
+      : path_(&path), value_(&value), pointer_(std::move(pointer)) {}
 
-  const std::string& place() const { return place_; }
+  const std::string& pointer() const { return pointer_; }
 
   Error error(const std::string& message) const {
-    return data_error({*path_, {}, {}}, place_ + ": " + message);
+    return data_error({*path_, {}, {}}, pointer_ + ": " + message);
   }
 
-  /// A member that must be there.
-  Member operator[](const char* key) const {
-    if (const std::optional<Member> found = find(key)) return *found;
+  /// A required member. Errors: data.
+  GltfMember operator[](const char* key) const {
+    if (const std::optional<GltfMember> found = find(key)) return *found;
     throw error("'" + std::string(key) + "' is missing");
   }
-  std::optional<Member> find(const char* key) const {
+  std::optional<GltfMember> find(const char* key) const {
     if (!value_->is_object()) throw error("is not an object");
     const auto found = value_->find(key);
     if (found == value_->end()) return std::nullopt;
-    return Member(*path_, *found, place_.empty() ? key : place_ + "." + key);
+    return GltfMember(*path_, *found, pointer_.empty() ? key : pointer_ + "." + key);
   }
 
   std::size_t size() const {
     if (!value_->is_array()) throw error("is not an array");
     return value_->size();
   }
-  Member at(std::size_t i) const {
-    return {*path_, (*value_)[i], place_ + "[" + std::to_string(i) + "]"};
+  GltfMember at(std::size_t i) const {
+    return {*path_, (*value_)[i], pointer_ + "[" + std::to_string(i) + "]"};
   }
-  std::vector<Member> elements() const {
-    std::vector<Member> all;
+  std::vector<GltfMember> elements() const {
+    std::vector<GltfMember> all;
     for (std::size_t i = 0; i < size(); ++i) all.push_back(at(i));
     return all;
   }
 
   std::uint64_t whole_number() const {
-    if (!value_->is_number_unsigned()) throw error("is not a whole number of 0 or more");
+    if (!value_->is_number_unsigned()) throw error("is not a whole number of at least 0");
     return value_->get<std::uint64_t>();
   }
   std::size_t index_below(std::size_t count) const {
     const std::uint64_t index = whole_number();
     if (index >= count)
-      throw error("found " + std::to_string(index) + ", but there are " + std::to_string(count));
+      throw error("found " + std::to_string(index) + ", but there are only " +
+                  std::to_string(count));
     return static_cast<std::size_t>(index);
   }
   double number() const {
@@ -148,30 +149,30 @@ class Member {
   }
   template <std::size_t N>
   std::array<double, N> numbers() const {
-    if (size() != N) throw error("has not " + std::to_string(N) + " numbers");
+    if (size() != N) throw error("expected " + std::to_string(N) + " numbers");
     std::array<double, N> all;
     for (std::size_t i = 0; i < N; ++i) all[i] = at(i).number();
     return all;
   }
   const std::string& text() const {
-    if (!value_->is_string()) throw error("is not a text");
+    if (!value_->is_string()) throw error("is not a string");
     return value_->get_ref<const std::string&>();
   }
 
  private:
   const std::filesystem::path* path_;
-  const Json* value_;
-  std::string place_;
+  const GltfJson* value_;
+  std::string pointer_;
 };
 
-std::uint64_t whole_number_or(const std::optional<Member>& member, std::uint64_t otherwise) {
+std::uint64_t whole_number_or(const std::optional<GltfMember>& member, std::uint64_t otherwise) {
   return member ? member->whole_number() : otherwise;
 }
 
 /// Section 3.6.2.2, "Accessor Data Types".
 enum class Component : std::uint16_t { u8 = 5121, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-std::size_t bytes_of(Component component) {
+std::size_t component_bytes(Component component) {
   return component == Component::u8 ? 1 : (component == Component::u16 ? 2 : 4);
 }
 
@@ -201,14 +202,14 @@ class GltfReader {
  public:
   explicit GltfReader(const std::filesystem::path& path)
       : path_(path), file_(read_file(path)), chunks_(split(path, file_)), json_(parse()) {
-    refuse_other_versions();
-    refuse_extensions();
+    require_version_2();
+    reject_extensions();
   }
 
   std::vector<std::filesystem::path> buffer_files() const {
     std::vector<std::filesystem::path> files;
-    for (const Member& buffer : buffers_) {
-      const std::optional<Member> uri = buffer.find("uri");
+    for (const GltfMember& buffer : buffers_) {
+      const std::optional<GltfMember> uri = buffer.find("uri");
       if (uri && !uri->text().starts_with("data:")) files.push_back(file_beside(*uri));
     }
     return files;
@@ -226,68 +227,70 @@ class GltfReader {
   }
 
  private:
-  Json parse() const {
+  GltfJson parse() const {
     try {
-      return Json::parse(chunks_.json);
-    } catch (const Json::exception& problem) {
+      return GltfJson::parse(chunks_.json);
+    } catch (const GltfJson::exception& problem) {
       throw data_error({path_, {}, {}}, std::string("glTF: ") + problem.what());
     }
   }
-  Member root() const { return {path_, json_, ""}; }
-  /// An array of the document; empty where it has none.
-  std::vector<Member> all(const char* key) const {
-    const std::optional<Member> found = root().find(key);
-    return found ? found->elements() : std::vector<Member>();
+  GltfMember root() const { return {path_, json_, ""}; }
+  /// The elements of an array of the document; empty if it has none.
+  std::vector<GltfMember> all(const char* key) const {
+    const std::optional<GltfMember> found = root().find(key);
+    return found ? found->elements() : std::vector<GltfMember>();
   }
 
-  void refuse_other_versions() const;
-  void refuse_extensions() const;
-  std::filesystem::path file_beside(const Member& uri) const;
-  std::string read_buffer(const Member& buffer, std::size_t number) const;
+  void require_version_2() const;
+  void reject_extensions() const;
+  std::filesystem::path file_beside(const GltfMember& uri) const;
+  std::string read_buffer(const GltfMember& buffer, std::size_t number) const;
   std::string_view buffer_bytes(std::size_t number);
-  Elements elements(const Member& accessor, std::string_view type, std::size_t components);
+  Elements elements(const GltfMember& accessor, std::string_view type, std::size_t components);
   void add_scene();
   void add_tree(std::size_t root_node);
-  void add_mesh(const Member& mesh, const AffineMap& world_from_mesh);
+  void add_mesh(const GltfMember& mesh, const AffineMap& world_from_mesh);
   void add_vertices(const Elements& positions, const AffineMap& world_from_mesh);
-  void add_triangles(const Member& primitive, std::size_t first_vertex, std::size_t count);
+  void add_triangles(const GltfMember& primitive, std::size_t first_vertex, std::size_t count);
 
   std::filesystem::path path_;
   std::string file_;
   Chunks chunks_;
-  Json json_;
-  std::vector<Member> buffers_ = all("buffers"), views_ = all("bufferViews"),
-                      accessors_ = all("accessors"), meshes_ = all("meshes"), nodes_ = all("nodes");
+  GltfJson json_;
+  std::vector<GltfMember> buffers_ = all("buffers"), views_ = all("bufferViews"),
+                          accessors_ = all("accessors"), meshes_ = all("meshes"),
+                          nodes_ = all("nodes");
   std::vector<std::optional<std::string>> buffer_contents_ =
       std::vector<std::optional<std::string>>(buffers_.size());
-  std::vector<bool> node_is_placed_ = std::vector<bool>(nodes_.size());
+  std::vector<bool> is_node_used_ = std::vector<bool>(nodes_.size());
   std::array<std::vector<double>, 3> coordinates_;
   std::vector<std::uint32_t> triangles_;
 };
 
-void GltfReader::refuse_other_versions() const {
-  const Member version = root()["asset"]["version"];
+void GltfReader::require_version_2() const {
+  const GltfMember version = root()["asset"]["version"];
   if (!version.text().starts_with("2."))
     throw version.error("found " + version.text().substr(0, 20) + ", expected 2.0");
 }
 
-/// Section 3.12: a file says which extensions it cannot be read without. Those of looks do no harm.
-void GltfReader::refuse_extensions() const {
-  for (const Member& required : all("extensionsRequired")) {
+/// Section 3.12, required extensions. Those that affect only the appearance are ignored.
+void GltfReader::reject_extensions() const {
+  for (const GltfMember& required : all("extensionsRequired")) {
     const std::string& name = required.text();
     const bool looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                        name.starts_with("EXT_texture_") || name == "KHR_lights_punctual";
     if (!looks)
       throw required.error("the extension " + name.substr(0, 60) +
-                           " is not read; export the mesh without it");
+                           " is not supported; export the mesh without it");
   }
 }
 
 /// Section 3.6.1: bytes of a file beside the document, of a data URI, or of the binary chunk.
-std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) const {
-  const std::optional<Member> uri = buffer.find("uri");
+std::string GltfReader::read_buffer(const GltfMember& buffer, std::size_t number) const {
+  const std::optional<GltfMember> uri = buffer.find("uri");
   if (!uri) {
-    if (number > 0 || chunks_.binary.empty()) throw buffer.error("has neither uri nor chunk");
+    if (number > 0 || chunks_.binary.empty())
+      throw buffer.error("has no uri, and the file has no binary chunk for it");
     return std::string(chunks_.binary);
   }
   const std::string& text = uri->text();
@@ -297,23 +300,23 @@ std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) co
     auto bytes = begin == std::string::npos
                      ? std::nullopt
                      : from_base64(std::string_view(text).substr(begin + kCoding.size()));
-    if (!bytes) throw uri->error("is not data in base64");
+    if (!bytes) throw uri->error("is not base64 data");
     return std::move(*bytes);
   }
   return read_file(file_beside(*uri));
 }
 
-std::filesystem::path GltfReader::file_beside(const Member& uri) const {
+std::filesystem::path GltfReader::file_beside(const GltfMember& uri) const {
   const std::string& text = uri.text();
   const std::filesystem::path name = without_percents(text);
   if (name.empty() || name.is_absolute() || text.find("://") != std::string::npos ||
       text.find('\0') != std::string::npos)
-    throw uri.error("is not a file beside the document");
+    throw uri.error("is not a file relative to the document");
   return path_.parent_path() / name;
 }
 
 std::string_view GltfReader::buffer_bytes(std::size_t number) {
-  const Member& buffer = buffers_[number];
+  const GltfMember& buffer = buffers_[number];
   std::optional<std::string>& content = buffer_contents_[number];
   if (!content) content = read_buffer(buffer, number);
   const std::uint64_t length = buffer["byteLength"].whole_number();
@@ -325,9 +328,9 @@ std::string_view GltfReader::buffer_bytes(std::size_t number) {
 
 /// Section 3.6.2: `count` elements of `components` each, `byteStride` apart, within a view within a
 /// buffer.
-Elements GltfReader::elements(const Member& accessor, std::string_view type,
+Elements GltfReader::elements(const GltfMember& accessor, std::string_view type,
                               std::size_t components) {
-  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not read");
+  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not supported");
   if (accessor["type"].text() != type)
     throw accessor["type"].error("found " + accessor["type"].text().substr(0, 20) + ", expected " +
                                  std::string(type));
@@ -339,93 +342,95 @@ Elements GltfReader::elements(const Member& accessor, std::string_view type,
     throw accessor["componentType"].error("found " + std::to_string(component) + ", expected " +
                                           (components > 1 ? "5126 (float)" : "5121, 5123 or 5125"));
   result.component = static_cast<Component>(component);
-  const Member& view = views_[accessor["bufferView"].index_below(views_.size())];
+  const GltfMember& view = views_[accessor["bufferView"].index_below(views_.size())];
   const std::string_view buffer = buffer_bytes(view["buffer"].index_below(buffers_.size()));
   const std::uint64_t view_begin = whole_number_or(view.find("byteOffset"), 0);
   const std::uint64_t view_bytes = view["byteLength"].whole_number();
   if (view_begin > buffer.size() || view_bytes > buffer.size() - view_begin)
-    throw view.error("reaches beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
-  const std::size_t element_bytes = components * bytes_of(result.component);
+    throw view.error("extends beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
+  const std::size_t element_bytes = components * component_bytes(result.component);
   const std::uint64_t stride = whole_number_or(view.find("byteStride"), element_bytes);
   const std::uint64_t begin = whole_number_or(accessor.find("byteOffset"), 0);
   const std::uint64_t count = accessor["count"].whole_number();
-  // Divided, not multiplied: nothing wraps.
+  // Division instead of multiplication: no overflow.
   const bool fits = begin <= view_bytes && stride >= element_bytes &&
                     (count == 0 || (view_bytes - begin >= element_bytes &&
                                     count - 1 <= (view_bytes - begin - element_bytes) / stride));
-  if (!fits) throw accessor.error("reaches beyond its view " + view.place());
+  if (!fits) throw accessor.error("extends beyond its view " + view.pointer());
   result.begin = buffer.data() + view_begin + begin;
   result.count = static_cast<std::size_t>(count);
   result.stride_bytes = static_cast<std::size_t>(stride);
   return result;
 }
 
-/// Section 3.5: the nodes of the default scene, or of the first; without scenes every mesh once.
+/// Section 3.5: adds the nodes of the default scene, else of the first; without scenes, every mesh
+/// once.
 void GltfReader::add_scene() {
-  const std::vector<Member> scenes = all("scenes");
+  const std::vector<GltfMember> scenes = all("scenes");
   if (scenes.empty()) {
-    for (const Member& mesh : meshes_) add_mesh(mesh, {});
+    for (const GltfMember& mesh : meshes_) add_mesh(mesh, {});
     return;
   }
-  const std::optional<Member> chosen = root().find("scene");
-  const Member& scene = scenes[chosen ? chosen->index_below(scenes.size()) : 0];
-  const std::optional<Member> roots = scene.find("nodes");
+  const std::optional<GltfMember> chosen = root().find("scene");
+  const GltfMember& scene = scenes[chosen ? chosen->index_below(scenes.size()) : 0];
+  const std::optional<GltfMember> roots = scene.find("nodes");
   if (!roots) return;
-  for (const Member& node : roots->elements()) add_tree(node.index_below(nodes_.size()));
+  for (const GltfMember& node : roots->elements()) add_tree(node.index_below(nodes_.size()));
 }
 
 /// Section 3.5.3, "Transformations": a matrix by columns, or translation * rotation * scale.
-AffineMap local_transform(const Member& node) {
-  if (const std::optional<Member> matrix = node.find("matrix")) {
+AffineMap local_transform(const GltfMember& node) {
+  if (const std::optional<GltfMember> matrix = node.find("matrix")) {
     const auto m = matrix->numbers<16>();
     return {{{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}}}, {m[12], m[13], m[14]}};
   }
   AffineMap map;
-  if (const std::optional<Member> rotation = node.find("rotation")) {
+  if (const std::optional<GltfMember> rotation = node.find("rotation")) {
     const auto q = rotation->numbers<4>();  // x, y, z, w
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(std::fabs(norm - 1) <= 1e-3)) throw rotation->error("is not a unit quaternion");
     map.linear = rotation_from_quaternion(q[3] / norm, q[0] / norm, q[1] / norm, q[2] / norm);
   }
-  if (const std::optional<Member> scale = node.find("scale")) {
+  if (const std::optional<GltfMember> scale = node.find("scale")) {
     const auto s = scale->numbers<3>();
     for (Vec3d& row : map.linear.rows) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
   }
-  if (const std::optional<Member> translation = node.find("translation")) {
+  if (const std::optional<GltfMember> translation = node.find("translation")) {
     const auto t = translation->numbers<3>();
     map.offset = {t[0], t[1], t[2]};
   }
   return map;
 }
 
-/// A node and all below it, without recursion: files decide how deep it goes.
+/// Adds a node and its descendants, without recursion, since files control the depth.
 void GltfReader::add_tree(std::size_t root_node) {
   std::vector<std::pair<std::size_t, AffineMap>> waiting = {{root_node, {}}};
   while (!waiting.empty()) {
     const auto [number, world_from_parent] = waiting.back();
     waiting.pop_back();
-    const Member& node = nodes_[number];
-    if (node_is_placed_[number]) throw node.error("stands in the scene twice");
-    node_is_placed_[number] = true;
+    const GltfMember& node = nodes_[number];
+    if (is_node_used_[number]) throw node.error("occurs twice in the scene");
+    is_node_used_[number] = true;
     const AffineMap world_from_node = world_from_parent * local_transform(node);
-    if (const std::optional<Member> mesh = node.find("mesh"))
+    if (const std::optional<GltfMember> mesh = node.find("mesh"))
       add_mesh(meshes_[mesh->index_below(meshes_.size())], world_from_node);
-    const std::optional<Member> children = node.find("children");
+    const std::optional<GltfMember> children = node.find("children");
     if (!children) continue;
-    for (const Member& child : children->elements())
+    for (const GltfMember& child : children->elements())
       waiting.emplace_back(child.index_below(nodes_.size()), world_from_node);
   }
 }
 
 /// Section 3.7.2, "Meshes".
-void GltfReader::add_mesh(const Member& mesh, const AffineMap& world_from_mesh) {
+void GltfReader::add_mesh(const GltfMember& mesh, const AffineMap& world_from_mesh) {
   constexpr std::uint64_t kTriangles = 4, kFan = 6;
-  for (const Member& primitive : mesh["primitives"].elements()) {
+  for (const GltfMember& primitive : mesh["primitives"].elements()) {
     const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
     if (mode < kTriangles) continue;  // points and lines
-    if (mode > kFan) throw primitive.error("mode " + std::to_string(mode) + " is none of glTF");
-    const std::optional<Member> position = primitive["attributes"].find("POSITION");
-    if (!position) continue;  // section 3.7.2.1: then it need not be drawn
+    if (mode > kFan)
+      throw primitive.error("mode " + std::to_string(mode) + " does not exist in glTF");
+    const std::optional<GltfMember> position = primitive["attributes"].find("POSITION");
+    if (!position) continue;  // section 3.7.2.1: may be skipped
     const Elements positions =
         elements(accessors_[position->index_below(accessors_.size())], "VEC3", 3);
     const std::size_t first_vertex = coordinates_[0].size();
@@ -448,9 +453,9 @@ void GltfReader::add_vertices(const Elements& positions, const AffineMap& world_
   }
 }
 
-void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex,
+void GltfReader::add_triangles(const GltfMember& primitive, std::size_t first_vertex,
                                std::size_t count) {
-  const std::optional<Member> indices = primitive.find("indices");
+  const std::optional<GltfMember> indices = primitive.find("indices");
   Elements corners;
   if (indices) corners = elements(accessors_[indices->index_below(accessors_.size())], "SCALAR", 1);
   const std::size_t corner_count = indices ? corners.count : count;
@@ -464,7 +469,7 @@ void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex
   const std::uint64_t mode = whole_number_or(primitive.find("mode"), 4);
   const std::size_t step = mode == 4 ? 3 : 1;
   if (mode == 4 && corner_count % 3 != 0)
-    throw primitive.error(std::to_string(corner_count) + " corners are not whole triangles");
+    throw primitive.error(std::to_string(corner_count) + " corners, expected a multiple of 3");
   if (corner_count / step > kMaxTriangles - triangles_.size() / 3)
     throw primitive.error("the scene has more than " + std::to_string(kMaxTriangles) +
                           " triangles");

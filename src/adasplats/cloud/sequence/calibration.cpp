@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/calibrate/calibration.h"
+#include "adasplats/cloud/sequence/calibration.h"
 
 #include <algorithm>
 #include <cmath>

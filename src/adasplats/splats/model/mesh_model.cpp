@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 #include <array>
 #include <cmath>
@@ -14,15 +14,14 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/io/text/gltf.h"
 #include "adasplats/io/text/obj.h"
-#include "adasplats/scene/gltf.h"
+#include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
 namespace {
 
-constexpr const char* kFormatComment = "adasplats.mesh 1";
-constexpr std::string_view kLabelsComment = "adasplats.labels ";
-constexpr std::string_view kMethodComment = "adasplats.method ";
+constexpr const char* kMeshComment = "adasplats.mesh 1";
 constexpr std::array<std::string_view, 4> kClassNames = {"class", "label", "semantic", "category"};
 
 bool is_ply(const std::filesystem::path& path) {
@@ -31,12 +30,6 @@ bool is_ply(const std::filesystem::path& path) {
   if (file.size_bytes() < kMagic.size()) return false;
   const std::span<const std::byte> bytes = file.peek(kMagic.size());
   return std::string_view(reinterpret_cast<const char*>(bytes.data()), kMagic.size()) == kMagic;
-}
-
-std::string comment_value(const Table& table, std::string_view key) {
-  for (const std::string& comment : table.comments)
-    if (comment.starts_with(key)) return comment.substr(key.size());
-  return {};
 }
 
 /// World coordinates by vertex.
@@ -74,12 +67,13 @@ void set_vertices(MeshModel& model, const std::filesystem::path& path, const Tab
   for (std::size_t i = 0; i < vertices.rows; ++i) {
     const Vec3f local = vec_cast<float>(world[i] - model.origin);
     if (!is_finite(local))
-      throw data_error({path, {}, {}}, "vertex " + std::to_string(i) + " is too far away");
+      throw data_error({path, {}, {}}, "vertex " + std::to_string(i) +
+                                           " is too far from the others for single precision");
     model.mesh.vertices.push_back(local);
   }
 }
 
-std::vector<std::uint16_t> classes_of(const std::filesystem::path& path, const Table& faces) {
+std::vector<std::uint16_t> face_classes(const std::filesystem::path& path, const Table& faces) {
   std::vector<std::uint16_t> classes;
   for (const std::string_view name : kClassNames) {
     const Column* const column = faces.find(name);
@@ -104,8 +98,8 @@ MeshModel to_model(const std::filesystem::path& path, MeshTable table) {
   model.label_scheme = comment_value(table.vertices, kLabelsComment);
   model.method = comment_value(table.vertices, kMethodComment);
   model.crs = std::move(table.vertices.crs);
-  table.vertices = {};  // large meshes: not kept twice
-  model.mesh.classes = classes_of(path, table.faces);
+  table.vertices = {};  // frees it early: meshes can be large
+  model.mesh.classes = face_classes(path, table.faces);
   const std::vector<std::uint32_t>& corners = table.triangle_vertices;
   model.mesh.triangles.reserve(corners.size() / 3);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
@@ -137,10 +131,9 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model) {
   std::vector<ColumnView> face_columns;
   if (!mesh.classes.empty())
     face_columns.push_back({"class", ColumnType::u16, mesh.classes.data(), sizeof(std::uint16_t)});
-  std::vector<std::string> comments = {kFormatComment};
-  if (!model.method.empty()) comments.push_back(std::string(kMethodComment) + model.method);
-  if (!model.label_scheme.empty())
-    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
+  std::vector<std::string> comments = {kMeshComment};
+  if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
+  if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
   for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   static_assert(sizeof(mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
   const std::uint32_t* const corners =

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/mesh_model.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(MeshModel, RoundTripFarFromZeroWithoutClasses) {
   expect_equal(load_mesh(folder.path() / "m.ply"), model);
 }
 
-TEST(MeshModel, RoundTripOfNothing) {
+TEST(MeshModel, RoundTripOfAnEmptyMesh) {
   const TemporaryFolder folder;
   save_mesh(folder.path() / "m.ply", {});
   expect_equal(load_mesh(folder.path() / "m.ply"), {});
@@ -95,7 +95,7 @@ TEST(MeshModel, VerticesThatAreNotFinite) {
                [&] { load_mesh(folder.write("m.ply", text)); });
 }
 
-TEST(MeshModel, ObjIsTakenByItsContent) {
+TEST(MeshModel, ObjIsRecognisedByItsContent) {
   const TemporaryFolder folder;
   const auto path = folder.write("mesh.txt",
                                  "v 3000000 0 0\nv 3000001 0 0\nv 3000001 1 0\nv 3000000 1 "
@@ -108,7 +108,26 @@ TEST(MeshModel, ObjIsTakenByItsContent) {
   EXPECT_TRUE(model.mesh.classes.empty());
 }
 
-TEST(MeshModel, OtherFilesAreNoMeshes) {
+TEST(MeshModel, GltfIsRecognisedByItsContent) {
+  const TemporaryFolder folder;
+  folder.write("triangle.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0"      // (0, 0, 0)
+                                           "\0\0\x80\x3f\0\0\0\0\0\0\0\0"  // (1, 0, 0)
+                                           "\0\0\0\0\0\0\0\0\0\0\0\x40",   // (0, 0, 2)
+                                           36));
+  const auto path = folder.write("car.dat", R"({
+    "asset": {"version": "2.0"},
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "triangle.bin"}]})");
+  EXPECT_TRUE(is_mesh_file(path));
+  const MeshModel model = load_mesh(path);
+  EXPECT_EQ(model.mesh.triangles, (std::vector<Corners>{{0, 1, 2}}));
+  EXPECT_EQ(model.mesh.vertices[2], (Vec3f{2, 0, 0}));
+  EXPECT_FALSE(is_mesh_file(folder.write("report.json", R"({"figures": [1, 2]})")));
+}
+
+TEST(MeshModel, OtherFilesAreRejected) {
   const TemporaryFolder folder;
   const std::string points =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/scene/gltf.h"
+#include "adasplats/io/text/gltf.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/scene/mesh_model.h"
 
 namespace adasplats {
 namespace {
@@ -90,7 +90,7 @@ class GltfTest : public testing::Test {
   MeshTable read(const Json& json, const std::string& bytes = vertices_and_indices()) const {
     return read_gltf_mesh(folder_.write("mesh.gltf", with_data(json, bytes).dump()));
   }
-  void expect_refused(const Json& json, const std::vector<std::string>& parts) const {
+  void expect_rejected(const Json& json, const std::vector<std::string>& parts) const {
     expect_error(ErrorKind::data, parts, [&] { read(json); });
   }
 
@@ -114,13 +114,9 @@ TEST_F(GltfTest, SameMeshFromAllThreeContainers) {
   }
 }
 
-TEST_F(GltfTest, MeshesAreToldByTheirContent) {
-  const auto path = folder_.write("car.dat", glb(two_triangles(), vertices_and_indices()));
-  EXPECT_TRUE(is_mesh_file(path));
-  const MeshModel model = load_mesh(path);
-  EXPECT_EQ(model.size(), 2U);
-  EXPECT_EQ(model.mesh.vertices[3], (Vec3f{3, 0, 0}));
-  EXPECT_FALSE(is_mesh_file(folder_.write("report.json", R"({"figures": [1, 2]})")));
+TEST_F(GltfTest, IsRecognisedByItsContent) {
+  EXPECT_TRUE(is_gltf(folder_.write("car.dat", glb(two_triangles(), vertices_and_indices()))));
+  EXPECT_FALSE(is_gltf(folder_.write("report.json", R"({"figures": [1, 2]})")));
   EXPECT_FALSE(is_gltf(folder_.write("blank", "   \n")));
   EXPECT_FALSE(is_gltf(folder_.write("short", "g")));
 }
@@ -206,47 +202,47 @@ TEST_F(GltfTest, IndicesOutsideTheirArrays) {
     json[Json::json_pointer(pointer)] = value;
     return json;
   };
-  expect_refused(changed("/scene", 1), {"mesh.gltf", "scene", "found 1", "there are 1"});
-  expect_refused(changed("/scenes/0/nodes/0", 7), {"scenes[0].nodes[0]", "found 7"});
-  expect_refused(changed("/nodes/0/mesh", 1), {"nodes[0].mesh"});
-  expect_refused(changed("/nodes/0/children", {3}), {"nodes[0].children[0]"});
-  expect_refused(changed("/nodes/0/children", {0}), {"nodes[0]", "twice"});
-  expect_refused(changed("/meshes/0/primitives/0/indices", 2), {"primitives[0].indices"});
-  expect_refused(changed("/accessors/0/bufferView", 5), {"accessors[0].bufferView"});
-  expect_refused(changed("/accessors/0/count", 5), {"accessors[0]", "bufferViews[0]"});
-  expect_refused(changed("/accessors/0/count", 4294967295U), {"accessors[0]"});
-  expect_refused(changed("/accessors/0/count", std::uint64_t{1} << 63), {"accessors[0]"});
-  expect_refused(changed("/accessors/0/byteOffset", ~std::uint64_t{0}), {"accessors[0]"});
-  expect_refused(changed("/accessors/0/count", 3), {"primitives[0]", "index 4 is 3"});
-  expect_refused(changed("/bufferViews/1/byteOffset", ~std::uint64_t{0} - 3), {"bufferViews[1]"});
-  expect_refused(changed("/bufferViews/0/byteLength", 55), {"bufferViews[0]", "54 bytes"});
-  expect_refused(changed("/bufferViews/0/byteStride", 11), {"accessors[0]"});
-  expect_refused(changed("/accessors/1/count", 5), {"primitives[0]", "5 corners"});
+  expect_rejected(changed("/scene", 1), {"mesh.gltf", "scene", "found 1", "there are only 1"});
+  expect_rejected(changed("/scenes/0/nodes/0", 7), {"scenes[0].nodes[0]", "found 7"});
+  expect_rejected(changed("/nodes/0/mesh", 1), {"nodes[0].mesh"});
+  expect_rejected(changed("/nodes/0/children", {3}), {"nodes[0].children[0]"});
+  expect_rejected(changed("/nodes/0/children", {0}), {"nodes[0]", "twice"});
+  expect_rejected(changed("/meshes/0/primitives/0/indices", 2), {"primitives[0].indices"});
+  expect_rejected(changed("/accessors/0/bufferView", 5), {"accessors[0].bufferView"});
+  expect_rejected(changed("/accessors/0/count", 5), {"accessors[0]", "bufferViews[0]"});
+  expect_rejected(changed("/accessors/0/count", 4294967295U), {"accessors[0]"});
+  expect_rejected(changed("/accessors/0/count", std::uint64_t{1} << 63), {"accessors[0]"});
+  expect_rejected(changed("/accessors/0/byteOffset", ~std::uint64_t{0}), {"accessors[0]"});
+  expect_rejected(changed("/accessors/0/count", 3), {"primitives[0]", "index 4 is 3"});
+  expect_rejected(changed("/bufferViews/1/byteOffset", ~std::uint64_t{0} - 3), {"bufferViews[1]"});
+  expect_rejected(changed("/bufferViews/0/byteLength", 55), {"bufferViews[0]", "54 bytes"});
+  expect_rejected(changed("/bufferViews/0/byteStride", 11), {"accessors[0]"});
+  expect_rejected(changed("/accessors/1/count", 5), {"primitives[0]", "5 corners"});
 }
 
-TEST_F(GltfTest, ValuesOfAnotherKind) {
+TEST_F(GltfTest, ValuesOfTheWrongType) {
   const auto changed = [](const char* pointer, const Json& value) {
     Json json = two_triangles();
     json[Json::json_pointer(pointer)] = value;
     return json;
   };
-  expect_refused(changed("/asset/version", "1.0"), {"asset.version", "found 1.0"});
-  expect_refused(changed("/nodes/0", 3), {"nodes[0]", "object"});
-  expect_refused(changed("/nodes/0/mesh", -1), {"nodes[0].mesh", "whole number"});
-  expect_refused(changed("/nodes/0/rotation", {0, 0, 0, 0}), {"nodes[0].rotation", "quaternion"});
-  expect_refused(changed("/nodes/0/scale", {1, 2}), {"nodes[0].scale", "3 numbers"});
-  expect_refused(changed("/nodes", "x"), {"nodes", "array"});
-  expect_refused(changed("/accessors/0/type", "VEC2"), {"accessors[0].type", "VEC3"});
-  expect_refused(changed("/accessors/0/componentType", 5123), {"componentType", "5126"});
-  expect_refused(changed("/accessors/1/componentType", 5126), {"componentType", "5121"});
-  expect_refused(changed("/accessors/0/sparse", Json::object()), {"sparse"});
-  expect_refused(changed("/meshes/0/primitives/0/mode", 7), {"mode 7"});
-  expect_refused(changed("/extensionsRequired", {"KHR_draco_mesh_compression"}),
-                 {"draco", "export"});
+  expect_rejected(changed("/asset/version", "1.0"), {"asset.version", "found 1.0"});
+  expect_rejected(changed("/nodes/0", 3), {"nodes[0]", "object"});
+  expect_rejected(changed("/nodes/0/mesh", -1), {"nodes[0].mesh", "whole number"});
+  expect_rejected(changed("/nodes/0/rotation", {0, 0, 0, 0}), {"nodes[0].rotation", "quaternion"});
+  expect_rejected(changed("/nodes/0/scale", {1, 2}), {"nodes[0].scale", "3 numbers"});
+  expect_rejected(changed("/nodes", "x"), {"nodes", "array"});
+  expect_rejected(changed("/accessors/0/type", "VEC2"), {"accessors[0].type", "VEC3"});
+  expect_rejected(changed("/accessors/0/componentType", 5123), {"componentType", "5126"});
+  expect_rejected(changed("/accessors/1/componentType", 5126), {"componentType", "5121"});
+  expect_rejected(changed("/accessors/0/sparse", Json::object()), {"sparse"});
+  expect_rejected(changed("/meshes/0/primitives/0/mode", 7), {"mode 7"});
+  expect_rejected(changed("/extensionsRequired", {"KHR_draco_mesh_compression"}),
+                  {"draco", "export"});
   EXPECT_EQ(read(changed("/extensionsRequired", {"KHR_materials_unlit"})).faces.rows, 2U);
 }
 
-TEST_F(GltfTest, BuffersThatAreNotThere) {
+TEST_F(GltfTest, MissingBuffers) {
   Json json = two_triangles();
   const auto expect = [&](ErrorKind kind, const std::vector<std::string>& parts) {
     expect_error(kind, parts, [&] { read_gltf_mesh(folder_.write("m.gltf", json.dump())); });
@@ -263,20 +259,20 @@ TEST_F(GltfTest, BuffersThatAreNotThere) {
 }
 
 TEST_F(GltfTest, BrokenContainers) {
-  const auto refused = [&](const std::string& content, const std::vector<std::string>& parts) {
+  const auto rejected = [&](const std::string& content, const std::vector<std::string>& parts) {
     expect_error(ErrorKind::data, parts, [&] { read_gltf_mesh(folder_.write("m.glb", content)); });
   };
   const std::string whole = glb(two_triangles(), vertices_and_indices());
-  refused(whole.substr(0, 4), {"version", "the end"});
-  refused(whole.substr(0, 12), {"glTF"});
-  refused(whole.substr(0, 15), {"byte 12", "chunk"});
-  refused(whole.substr(0, whole.size() - 1), {"chunk"});
-  refused(std::string("glTF") + bytes_of<std::uint32_t>({1, 12}), {"version 2", "found 1"});
-  refused("{\"asset\": ", {"glTF", "line 1"});
-  refused("[]", {"object"});
-  refused("{}", {"'asset' is missing"});
-  refused(std::string(100'000, '['), {"glTF"});
-  refused("{\"asset\": \xff}", {"glTF"});
+  rejected(whole.substr(0, 4), {"version", "the end"});
+  rejected(whole.substr(0, 12), {"glTF"});
+  rejected(whole.substr(0, 15), {"byte 12", "chunk"});
+  rejected(whole.substr(0, whole.size() - 1), {"chunk"});
+  rejected(std::string("glTF") + bytes_of<std::uint32_t>({1, 12}), {"version 2", "found 1"});
+  rejected("{\"asset\": ", {"glTF", "line 1"});
+  rejected("[]", {"object"});
+  rejected("{}", {"'asset' is missing"});
+  rejected(std::string(100'000, '['), {"glTF"});
+  rejected("{\"asset\": \xff}", {"glTF"});
 }
 
 // Broken files, the same in each run: nothing but Error may escape, and indices stay in range.

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "adasplats/io/base/table.h"
+
+namespace adasplats {
+
+// Comments in the PLY files of splat models and meshes: "KEY VALUE". Private to splats/model.
+
+inline constexpr const char* kLabelsComment = "adasplats.labels ";
+inline constexpr const char* kMethodComment = "adasplats.method ";
+
+/// The value of the first comment with this key; empty without one.
+inline std::string comment_value(const Table& table, std::string_view key) {
+  for (const std::string& comment : table.comments)
+    if (comment.starts_with(key)) return comment.substr(key.size());
+  return {};
+}
+
+}  // namespace adasplats
