@@ -12,7 +12,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kBootstrapStream = 0x617563;  // "auc"
-constexpr std::size_t kReplicates = 1000;             // bounds are good to a hundredth of them
+constexpr std::size_t kReplicates = 1000;             // enough for the bounds
 
 /// Samples by rising score; those with equal scores have the same group.
 struct Ranked {
@@ -102,7 +102,7 @@ AucInterval auc_interval(std::span<const ScoredSplit> splits, std::span<const st
       first += set;
     }
     const double share = share_of(sorted[replicate % sorted.size()], weights);
-    if (share == share) drawn.push_back(share);  // no part has scans of both: says nothing
+    if (share == share) drawn.push_back(share);  // NaN: no part has scans of both classes
   }
   if (drawn.empty()) return {result.mean, result.mean, result.mean};
   std::ranges::sort(drawn);

@@ -24,7 +24,7 @@ double ratio(std::size_t of, std::size_t all) {
   return ratio(static_cast<double>(of), static_cast<double>(all));
 }
 
-/// Logarithm of lengths and intensities, of which some are zero.
+/// Logarithm of lengths and intensities that may be zero.
 double log_of_small(double value) { return std::log(std::max(value, 1e-4)); }
 
 double deviation_of(const std::vector<double>& values) {
@@ -45,7 +45,7 @@ double median_of_pieces(const Counts& counts, double (*of)(const PlanePiece&)) {
   return median_of_known(std::move(values));
 }
 
-/// How much rings differ from the mean of the ones above and below.
+/// Differences of rings from the mean of the rings above and below.
 std::vector<double> steps_between_rings(const std::vector<double>& values) {
   std::vector<double> steps;
   for (std::size_t ring = 1; ring + 1 < values.size(); ++ring)
@@ -70,8 +70,8 @@ double deviation_of_one(std::span<const float> second) {
   return mean_between(second, 0.25, 0.75) / 0.6933 / std::sqrt(6.0);
 }
 
-/// Intensities come in steps, of which files hold the nearest float or the one beside it: that is
-/// no matter of the sensor. 0.37: so that no hundredth, and no half or sixth of one, is on the
+/// Intensities come in steps, stored in files as the nearest float or its neighbour; this
+/// difference is not due to the sensor. 0.37: no hundredth, nor half or sixth of one, is on the
 /// border of two steps.
 double to_thousandths(double value) { return 0.001 * std::floor(1000 * value + 0.37); }
 
@@ -188,8 +188,8 @@ constexpr ScanStatistic kScanStatistics[] = {
 };
 
 /// Deviation over lasers of the median error of their ranges about planes of eight rings (the
-/// median, because some pieces are bent). A plane takes two of eight freedoms away across the
-/// rings: a laser's own share is larger.
+/// median, because some pieces are bent). A plane removes two of eight degrees of freedom across
+/// the rings, which is corrected.
 double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
   constexpr std::size_t kMinPieces = 10;
   std::vector<std::vector<double>> errors_m(rings);
@@ -200,8 +200,8 @@ double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
   std::vector<double> medians_m;
   for (std::vector<double>& of_ring : errors_m)
     if (of_ring.size() >= kMinPieces) medians_m.push_back(median_of_known(std::move(of_ring)));
-  constexpr double kFreedoms = static_cast<double>(kPlaneRings);
-  return deviation_of(medians_m) * std::sqrt(kFreedoms / (kFreedoms - 2));
+  constexpr double kDegreesOfFreedom = static_cast<double>(kPlaneRings);
+  return deviation_of(medians_m) * std::sqrt(kDegreesOfFreedom / (kDegreesOfFreedom - 2));
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/realism/logistic.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/auc.h"
+#include "adasplats/evaluate/realism/classifiers.h"
 
 namespace adasplats {
 namespace {
