@@ -12,20 +12,19 @@
 namespace adasplats {
 namespace {
 
-constexpr double kMost_m = 0.5;  // that one beam counts for
+constexpr double kMaxError_m = 0.5;  // limit for one beam
 
-/// Throws data where the beams are not of a model of `splats`.
+/// Throws data unless the beams are of a model with `splats`.
 void check(const ErrorPoints& points, std::size_t splats, const std::filesystem::path& path) {
   if (!tells_of_splats(points))
     throw Error(ErrorKind::data, path.string() +
-                                     ": does not say which splats its beams hit (column 'splat'); "
-                                     "write it anew with 'evaluate resimulate --errors'");
+                                     ": has no column 'splat' for the splats that its beams "
+                                     "hit; write it again with 'evaluate resimulate --errors'");
   if (points.primitive_count == 0)
     throw Error(ErrorKind::data,
                 path.string() +
-                    ": does not say of how many splats its model is (comment "
-                    "'adasplats.splats N'); write it anew with 'evaluate resimulate "
-                    "--errors'");
+                    ": has no comment 'adasplats.splats N' with the number of splats of "
+                    "its model; write it again with 'evaluate resimulate --errors'");
   if (points.primitive_count != splats)
     throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +
                                      std::to_string(points.primitive_count) +
@@ -43,7 +42,8 @@ void SplatErrors::add(const ErrorPoints& points, const std::filesystem::path& pa
   for (std::size_t i = 0; i < points.primitives.size(); ++i) {
     const std::uint32_t splat = points.primitives[i];
     if (splat == Hit::kNone || std::isnan(points.errors_m[i])) continue;
-    sums_m_[splat] += std::clamp(static_cast<double>(points.errors_m[i]), -kMost_m, kMost_m);
+    sums_m_[splat] +=
+        std::clamp(static_cast<double>(points.errors_m[i]), -kMaxError_m, kMaxError_m);
     ++counts_[splat];
   }
 }

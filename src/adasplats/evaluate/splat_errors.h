@@ -11,8 +11,8 @@
 
 namespace adasplats {
 
-/// Whether a file of errors says which splat each beam hit. Distances of clouds do not, nor do
-/// files of other programs.
+/// Whether a file of errors contains the splat that each beam hit. Distances of clouds and files of
+/// other programs do not.
 inline bool tells_of_splats(const ErrorPoints& points) { return !points.primitives.empty(); }
 
 /// The mean error of each splat of a model over the beams that hit it.
@@ -20,12 +20,11 @@ class SplatErrors {
  public:
   explicit SplatErrors(std::size_t splats) : sums_m_(splats, 0), counts_(splats, 0) {}
 
-  /// Counts the beams of a file; single ones count for at most half a metre. `path`: of it, for
-  /// messages. Errors: data (its beams are not said to have hit splats, or hit other ones than a
-  /// model of as many has); then nothing of it counts.
+  /// Adds the beams of a file, with errors clamped to half a metre. `path`: for messages. Errors:
+  /// data (no splats, or splats of another model); then nothing is added.
   void add(const ErrorPoints& points, const std::filesystem::path& path);
 
-  /// One a splat, m, early below 0; NaN where no beam hit it.
+  /// One per splat, m, negative: early; NaN if no beam hit it.
   std::vector<float> means_m() const;
 
  private:

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
-#include "adasplats/evaluate/beam_neighbors.h"
 
 namespace adasplats {
 namespace {

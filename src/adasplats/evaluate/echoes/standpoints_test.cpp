@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/echoes/standpoints.h"
-
 #include <gtest/gtest.h>
+
+#include "adasplats/evaluate/echoes/echo_accuracy.h"
 
 namespace adasplats {
 namespace {

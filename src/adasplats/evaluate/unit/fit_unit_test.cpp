@@ -9,7 +9,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/evaluate/unit/damp_shares.h"
+#include "adasplats/evaluate/unit/beam_shares.h"
 #include "adasplats/simulate/scan/firing_report.h"
 
 namespace adasplats {
@@ -272,7 +272,7 @@ TEST(FitUnitOfFew, TellsNothingAndSaysSo) {
   const UnitFit fit = fit_unit(none, {16, 100, 100});
   EXPECT_TRUE(fit.ring_noise_m.empty());
   EXPECT_FALSE(fit.intensity || fit.drop || fit.fields || fit.max_range_m);
-  EXPECT_EQ(fit.not_told.size(), 4U);  // blocked directions, too
+  EXPECT_EQ(fit.not_estimated.size(), 4U);  // blocked directions, too
 }
 
 }  // namespace
