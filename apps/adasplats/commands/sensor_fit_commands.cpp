@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a real sensor makes of what its beams hit: `fit-drop` and `fit-sensor` fit it to measured
-// scans, `evaluate echoes` and `evaluate unit` measure the predictions on other scans.
+// The response of a real sensor: `fit-drop` and `fit-sensor` fit it to measured scans, `evaluate
+// echoes` and `evaluate unit` test the predictions on other scans.
 
 #include <algorithm>
 

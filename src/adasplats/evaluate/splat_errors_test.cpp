@@ -43,7 +43,7 @@ TEST(SplatErrors, FilesAddUp) {
   EXPECT_TRUE(SplatErrors(0).means_m().empty());
 }
 
-TEST(SplatErrors, RefuseBeamsOfOtherModels) {
+TEST(SplatErrors, RejectBeamsOfOtherModels) {
   SplatErrors errors(4);
   expect_error(ErrorKind::data, {"e.ply", "another model", "3 splats", "4"},
                [&] { errors.add(beams({0.1F}, {0}, 3), "e.ply"); });

@@ -252,7 +252,7 @@ Json results_with(const Json& competitor) {
 }
 
 TEST(ReportPage, AFailedCompetitorIsNeverBestAndScalesNoChart) {
-  // It ended after 11 ms: nobody is faster.
+  // It ended after 11 ms, faster than all others.
   Json broken = {{"name", "broken"},
                  {"title", "Broken"},
                  {"kind", "mesh"},

@@ -62,7 +62,7 @@ std::string first_number(const std::string& text) {
   return text.substr(first, text.find_first_not_of(kDigits, first) - first);
 }
 
-/// The PLY file below `data` whose name begins with "soufflot" and whose first number is `number`.
+/// The PLY file below `data` with a name that begins with "soufflot" and contains `number` first.
 fs::path soufflot_file(const fs::path& data, const std::string& number) {
   std::vector<fs::path> matches;
   std::error_code failure;
