@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/splat_errors.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/evaluate/error_points.h"
 
 namespace adasplats {
 namespace {

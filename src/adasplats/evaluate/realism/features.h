@@ -35,8 +35,7 @@ inline constexpr std::size_t kMinInPatch = kPatchRings * kPatchColumns / 4;
 struct PatchFeature {
   const char* name;
   FeatureGroup group;
-  const char* unit;  ///< "" for shares, ratios and logarithms
-  const char* text;
+  const char* text;  ///< definition, for readers of the table
   double (*of)(const PartCounts&);
 };
 

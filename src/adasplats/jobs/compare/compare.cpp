@@ -39,16 +39,14 @@ ComparisonData data_of(const CompareJob& job) {
   data.held_out_scans = job.held_out_scans;
   if (!job.truth.empty()) data.truth = job.truth;
   if (job.offset_m) data.offset_m = job.offset_m;
+  data.removal = job.remove.value_or(paper_removal(job.preset));
+  data.removal_is_asked = job.remove.has_value();
   for (const fs::path* path : {&data.trajectory, &data.held_out, &data.truth}) {
     if (!path->empty()) require_input(*path);
   }
   for (const auto& [name, file] : job.meshes) require_input(file);
   if (!job.network.empty()) require_input(job.network);
   return data;
-}
-
-RemovalRule removal_rule_of(const CompareJob& job) {
-  return {job.remove.value_or(paper_removal(job.preset)), job.remove.has_value()};
 }
 
 /// Reports errors that every competitor would fail with.
@@ -104,9 +102,8 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.has_classes = facts.has_classes;
   rules.labelled = facts.labelled && !data.labels.empty();
   // A rule that removes nothing is not passed to the steps: they would reject it.
-  const DynamicRemoval removal = removal_rule_of(job).removal;
-  if (!facts.removed.ids.empty()) rules.removal = removal;
-  if (removal != DynamicRemoval::moving) rules.network_removal = removal;
+  if (!facts.removed.ids.empty()) rules.removal = data.removal;
+  if (data.removal != DynamicRemoval::moving) rules.network_removal = data.removal;
   if (!facts.trajectory.empty()) {
     rules.data.trajectory = folder.work() / "trajectory.csv";
     write_if_changed(rules.data.trajectory,
@@ -196,8 +193,7 @@ Json run_compare(const CompareJob& job, Session& session) {
   const fs::path program = program_of(job.program);
   const WorkFolder folder(job.output, data.title);
   const StepRules steps = step_rules_of(job, program, folder, session.progress);
-  const PointFacts facts =
-      survey_points(data, removal_rule_of(job), folder.work() / "original.ply", session);
+  const PointFacts facts = survey_points(data, folder.work() / "original.ply", session);
   if (!job.labels.empty() && !facts.has_classes) {
     throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }

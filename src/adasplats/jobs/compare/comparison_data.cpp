@@ -235,8 +235,8 @@ ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
   return found;
 }
 
-PointFacts survey_points(const ComparisonData& data, const RemovalRule& rule,
-                         const fs::path& original_file, Session& session) {
+PointFacts survey_points(const ComparisonData& data, const fs::path& original_file,
+                         Session& session) {
   LoadOptions options;
   const bool all_scans = data.scans == ScanRange();
   options.first_scan = data.scans.first;
@@ -257,8 +257,8 @@ PointFacts survey_points(const ComparisonData& data, const RemovalRule& rule,
   }
   const std::optional<LabelScheme> scheme = label_scheme_for(data.labels, data.inputs);
   const LabelScheme* const labels = scheme ? &*scheme : nullptr;
-  check_label_use({"", rule.removal, rule.is_asked}, cloud, labels, session.progress);
-  facts.removed = points_to_remove(cloud, labels, rule.removal);
+  check_label_use({"", data.removal, data.removal_is_asked}, cloud, labels, session.progress);
+  facts.removed = points_to_remove(cloud, labels, data.removal);
   const bool whole = data.inputs.size() == 1 && all_scans && facts.removed.points == 0;
   facts.original = whole ? data.inputs.front() : original_file;
   if (facts.removed.points > 0) cloud = without(cloud, facts.removed);

@@ -42,6 +42,8 @@ struct ComparisonData {
   ScanRange held_out_scans;          ///< of `held_out`
   std::filesystem::path truth;       ///< mesh of the true surface
   std::optional<Vec3d> offset_m;     ///< of the trajectory (paper: [1, 1, -1] or [1, 1, -0.5])
+  DynamicRemoval removal = DynamicRemoval::movable;  ///< from the points, before anything else
+  bool removal_is_asked = false;  ///< by the user: an error if it cannot remove anything
 };
 
 /// Recognises, in this order: an output of `synth street` (mapping.ply, mesh.ply, sequences/00), a
@@ -64,17 +66,11 @@ struct PointFacts {
   Trajectory trajectory;
 };
 
-/// What is removed from the points first.
-struct RemovalRule {
-  DynamicRemoval removal = DynamicRemoval::movable;
-  bool is_asked = false;  ///< by the user: an error if it cannot remove anything
-};
-
 /// Loads the points. Writes them to `original_file` if they come from several files or some of the
-/// scans, or if `rule` removes any; a file with the same bytes is not touched. Errors: those of
+/// scans, or if any are removed; a file with the same bytes is not touched. Errors: those of
 /// load_cloud and check_label_use; data (no points).
-PointFacts survey_points(const ComparisonData& data, const RemovalRule& rule,
-                         const std::filesystem::path& original_file, Session& session);
+PointFacts survey_points(const ComparisonData& data, const std::filesystem::path& original_file,
+                         Session& session);
 
 /// A trajectory for points without recorded poses. With sensor positions: their means in cells of
 /// 1 m, ordered along their main direction. Without: 20 poses on a straight line
