@@ -36,7 +36,7 @@ void require_one_removal(bool keep_moving, bool drop_movable) {
     throw Error(ErrorKind::usage, "--keep-moving and --drop-movable exclude each other");
 }
 
-std::string text_of(const CloudDistance& distance) {
+std::string result_text(const CloudDistance& distance) {
   TextTable table({"measure", "value"});
   table.add_row({"C2C (simulated to original)", centimetres(distance.c2c_m)});
   table.add_row({"completeness (original to simulated)", centimetres(distance.completeness_m)});
@@ -49,7 +49,7 @@ std::string text_of(const CloudDistance& distance) {
   return table.text();
 }
 
-std::string text_of(const std::vector<std::pair<std::string, ClassDistance>>& by_class) {
+std::string result_text(const std::vector<std::pair<std::string, ClassDistance>>& by_class) {
   TextTable table({"class", "C2C", "C2C to all", "simulated", "original"});
   for (const auto& [name, distance] : by_class)
     table.add_row({name, centimetres(distance.c2c_m), centimetres(distance.c2c_to_all_m),
@@ -95,8 +95,8 @@ class EvaluateC2cCommand final : public ResultCommand {
     job_.view.height = job_.view.width * 9 / 16;
     const CloudComparison comparison = evaluate_clouds(job_, session);
     session.report.update(to_json(comparison));
-    const std::string text = text_of(comparison.distance);
-    return by_class_ ? text + "\n" + text_of(comparison.by_class) : text;
+    const std::string text = result_text(comparison.distance);
+    return by_class_ ? text + "\n" + result_text(comparison.by_class) : text;
   }
 
   CloudComparisonJob job_;
@@ -150,7 +150,7 @@ std::string protocol_text(const Lidar4dEvaluation& result) {
   return text;
 }
 
-std::string text_of(const HeldOutResult& result) {
+std::string result_text(const HeldOutResult& result) {
   TextTable table({"beams", "rays", "no hit", "median", "MAE m", "RMSE m", "<5 cm", "<10 cm",
                    "<50 cm", "early", "late"});
   add_row(table, "all", result.all);
@@ -225,7 +225,7 @@ class EvaluateResimulateCommand final : public ResultCommand {
     job_.options.drop_moving = !keep_moving_;
     const HeldOutResult result = evaluate_resimulation(job_, session);
     session.report.update(to_json(result));
-    return text_of(result);
+    return result_text(result);
   }
 
   ResimulateJob job_;
@@ -249,7 +249,7 @@ void add_row(TextTable& table, const std::string& name, const TruthAccuracy& a) 
                  centimetres(a.surface.median_m), centimetres(a.surface.p95_m)});
 }
 
-std::string text_of(const TruthResult& result) {
+std::string result_text(const TruthResult& result) {
   TextTable table({"rays on", "rays", "hole", "early", "late", "range median", "RMSE m", "<5 cm",
                    "<10 cm", "surface mean", "median", "95 %"});
   add_row(table, "all", result.all);
@@ -298,7 +298,7 @@ class EvaluateTruthCommand final : public ResultCommand {
     job_.options.drop_moving = !keep_moving_;
     const TruthResult result = evaluate_truth(job_, session);
     session.report.update(to_json(result));
-    return text_of(result);
+    return result_text(result);
   }
 
   TruthJob job_;
@@ -306,7 +306,7 @@ class EvaluateTruthCommand final : public ResultCommand {
   bool keep_moving_ = false;
 };
 
-std::string text_of(const PresenceResult& result) {
+std::string result_text(const PresenceResult& result) {
   TextTable table({"points", "count", "in the model"});
   const auto add = [&table](const std::string& name, const Presence& part) {
     if (part.points > 0) table.add_row({name, grouped(part.points), percent(part.share())});
@@ -347,7 +347,7 @@ class EvaluatePresenceCommand final : public ResultCommand {
   std::string make_result(Session& session) override {
     const PresenceResult result = evaluate_presence(job_, session);
     session.report.update(to_json(result));
-    return text_of(result);
+    return result_text(result);
   }
 
   PresenceJob job_;
@@ -358,7 +358,7 @@ std::string class_text(std::uint16_t id, const LabelScheme& labels) {
   return std::to_string(id) + (found != nullptr ? " " + found->name : "");
 }
 
-std::string text_of(const LabelAgreementResult& result, const LabelScheme& labels) {
+std::string result_text(const LabelAgreementResult& result, const LabelScheme& labels) {
   TextTable table({"simulated class", "points", "agree", "nearest original"});
   const auto add = [&table](const std::string& name, const LabelAgreement& part) {
     table.add_row(
@@ -409,7 +409,7 @@ class EvaluateLabelsCommand final : public ResultCommand {
     const LabelScheme labels = load_label_scheme(job_.labels);
     const LabelAgreementResult result = evaluate_labels(job_, session);
     session.report.update(to_json(result));
-    return text_of(result, labels) + "\n" + confusions_text(result, labels);
+    return result_text(result, labels) + "\n" + confusions_text(result, labels);
   }
 
   LabelAgreementJob job_;
@@ -436,7 +436,7 @@ std::string iou_table(const std::string& kind, const std::string& mean_name,
   return table.text();
 }
 
-std::string text_of(const SegmentationResult& result) {
+std::string result_text(const SegmentationResult& result) {
   const SegmentationConfusion& confusion = result.confusion;
   const double min_share = result.options.min_share;
   const std::vector<std::string> groups = segmentation_groups();
@@ -482,7 +482,7 @@ class EvaluateSegmentationCommand final : public ResultCommand {
   std::string make_result(Session& session) override {
     const SegmentationResult result = evaluate_segmentation(job_, session);
     session.report.update(to_json(result));
-    return text_of(result);
+    return result_text(result);
   }
 
   SegmentationJob job_;
