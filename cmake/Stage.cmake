@@ -64,6 +64,20 @@ function(adasplats_compiled_alone)
   set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# adasplats_embed(TARGET FILE NAME): sources of TARGET can include the bytes of FILE as NAME.
+function(adasplats_embed target file name)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake)
+  set(output ${PROJECT_BINARY_DIR}/embedded/${target}/${name})
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DFROM=${file} -DTO=${output} -P ${script}
+    DEPENDS ${file} ${script}
+    COMMENT "Embedding ${file}"
+    VERBATIM)
+  target_sources(${target} PRIVATE ${output})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/embedded/${target})
+endfunction()
+
 set(ADASPLATS_STAGES "")
 
 # adasplats_stage(NAME [COLD] [ROOMS rooms...] [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...]

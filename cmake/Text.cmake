@@ -14,16 +14,7 @@ if(NOT ADASPLATS_STB_DIR OR NOT ADASPLATS_TEXT_FONT)
 endif()
 adasplats_part(- "smooth text in pictures" "${missing}" "DejaVu Sans" ADASPLATS_FONT)
 if(ADASPLATS_FONT)
-  set(embedded_font ${PROJECT_BINARY_DIR}/font/font.inc)
-  add_custom_command(
-    OUTPUT ${embedded_font}
-    COMMAND ${CMAKE_COMMAND} -DFROM=${ADASPLATS_TEXT_FONT} -DTO=${embedded_font} -P
-            ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake
-    DEPENDS ${ADASPLATS_TEXT_FONT} ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake
-    COMMENT "Embedding the font of pictures"
-    VERBATIM)
-  target_sources(adasplats_simulate PRIVATE ${embedded_font})
-  target_include_directories(adasplats_simulate PRIVATE ${PROJECT_BINARY_DIR}/font)
+  adasplats_embed(adasplats_simulate ${ADASPLATS_TEXT_FONT} font.inc)
   target_include_directories(adasplats_simulate SYSTEM PRIVATE ${ADASPLATS_STB_DIR})
   target_compile_definitions(adasplats_simulate PRIVATE ADASPLATS_HAVE_FONT)
 endif()

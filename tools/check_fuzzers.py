@@ -45,9 +45,8 @@ NOT_FUZZED = {
     "jobs/city/city_origins.cpp": "what its own unfinished run wrote",
     "jobs/city/city_survey.cpp": "what its own unfinished run wrote",
     "jobs/city/city_work.cpp": "likewise",
-    "jobs/compare/steps.cpp": "reports that its own steps wrote",
-    "jobs/compare/work_folder.cpp": "what its own steps wrote",
-    "report/picture.cpp": "puts pictures of ours into a page as they are",
+    "jobs/compare/steps.cpp": "files that its own steps and runs wrote",
+    "report/html_page.cpp": "puts pictures of ours into a page as they are",
     "dataset/nuscenes_writer.cpp": "counts bytes of a file that it wrote",
     "sensors/unit_sensor.cpp": "sensors that are built in",
 }

@@ -8,6 +8,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/error.h"
@@ -70,15 +71,7 @@ struct Program {
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",
                                "  adasplats evaluate c2c scans street/mapping.ply\n"
                                "  adasplats evaluate resimulate place.ply sequences/01\n");
-    commands.push_back(make_evaluate_c2c_command(evaluate));
-    commands.push_back(make_evaluate_resimulate_command(evaluate));
-    commands.push_back(make_evaluate_truth_command(evaluate));
-    commands.push_back(make_evaluate_presence_command(evaluate));
-    commands.push_back(make_evaluate_echoes_command(evaluate));
-    commands.push_back(make_evaluate_unit_command(evaluate));
-    commands.push_back(make_evaluate_labels_command(evaluate));
-    commands.push_back(make_evaluate_segmentation_command(evaluate));
-    commands.push_back(make_evaluate_realism_command(evaluate));
+    for (auto& command : make_evaluate_commands(evaluate)) commands.push_back(std::move(command));
     commands.push_back(make_fit_drop_command(app));
     commands.push_back(make_fit_sensor_command(app));
     commands.push_back(make_simkitti32_command(app));

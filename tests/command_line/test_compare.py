@@ -544,7 +544,7 @@ class Presets(CompareTest):
         self.refuse(64, *paper, "--remove", "moving", says=["--remove moving", "--remove movable"])
         self.compare(*paper, "--remove", "none")
         self.assertEqual(results_of(self.output)["data"]["removed"]["points"], 0)
-        self.assertIn("nothing; the paper removes what is movable",
+        self.assertIn("nothing; the paper removes movable objects",
                       (self.output / "report.md").read_text(encoding="utf-8"))
         for row in rows_of(self.output).values():
             self.assertEqual(row["c2c"]["original_points"], len(points))

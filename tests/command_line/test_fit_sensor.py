@@ -108,8 +108,8 @@ class FitSensor(ProgramTest):
         poses.write_text("".join(" ".join(row) + "\n" for row in rows), encoding="utf-8")
         self.run_bad(65, *command, model, real, "-o", unit, says=["within 0.5 m", "another place"])
         self.assertFalse(unit.exists())
-        other = self.scans("other", self.sensor)  # of 16 beams that no sensor of the library has
-        self.run_bad(65, *command, model, other, "-o", unit, says=["no sensor of the library"])
+        other = self.scans("other", self.sensor)  # of 16 beams that no sensor in the library has
+        self.run_bad(65, *command, model, other, "-o", unit, says=["no sensor in the library"])
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ class Realism(ProgramTest):
         report = self.folder / "report.json"
         result = run("evaluate", "realism", pcd, real, "--report", report)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("no values of 'intensity'", result.stderr)
+        self.assertIn("no features of the group 'intensity'", result.stderr)
         of_pcd = json.loads(report.read_text())
         self.assertIsNone(of_pcd["auc"]["intensity"])
         self.assertAlmostEqual(of_pcd["auc"]["all"], 0.5, delta=0.06)
@@ -81,8 +81,8 @@ class Realism(ProgramTest):
         self.run_bad(65, *command, real, real, "--scans", "0:7", says=["SIMULATED", "7", "8"])
         self.run_bad(64, *command, real, real, "--scans", "9:3", says=["has only 8 scans"])
         other = self.scans("other", sensor="hesai-pandar64")
-        self.run_bad(65, *command, other, real, says=["SIMULATED", "no sensor of the library"])
-        self.run_bad(65, *command, real, other, says=["REAL", "no sensor of the library"])
+        self.run_bad(65, *command, other, real, says=["SIMULATED", "no sensor in the library"])
+        self.run_bad(65, *command, real, other, says=["REAL", "no sensor in the library"])
         self.run_bad(64, *command, real, real, "--trajectory", self.poses,
                      says=["--trajectory has no effect"])
         pcd = self.scans("pcd", "--format", "pcd")

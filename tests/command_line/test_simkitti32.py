@@ -402,7 +402,7 @@ class GivenModel(SequenceTest):
     def test_model_of_another_place_around_the_sensor(self):
         write_cloud(self.cloud, [(x, y, z + 0.9, label) for x, y, z, label in tiny_place()])
         self.place = self.model("near.ply", "--no-calibrate")
-        self.refuse(65, says=["% of the returns lie within 0.5 m of the model"])
+        self.refuse(65, says=["% of the returns are within 0.5 m of the model"])
 
     def test_models_that_cannot_be_used(self):
         write_cloud(self.cloud, tiny_place(), labels=False)

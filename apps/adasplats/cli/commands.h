@@ -3,12 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "cli/command.h"
 
 namespace adasplats::app {
 
-// One file each.
 std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
 std::unique_ptr<Command> make_synth_world_command(CLI::App& synth);
 std::unique_ptr<Command> make_synth_city_command(CLI::App& synth);
@@ -19,15 +19,10 @@ std::unique_ptr<Command> make_segment_command(CLI::App& program);
 std::unique_ptr<Command> make_mesh_command(CLI::App& program);
 std::unique_ptr<Command> make_simulate_command(CLI::App& program);
 std::unique_ptr<Command> make_render_command(CLI::App& program);
-std::unique_ptr<Command> make_evaluate_c2c_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_resimulate_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_truth_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_presence_command(CLI::App& evaluate);
+/// All of them, in the order of the help.
+std::vector<std::unique_ptr<Command>> make_evaluate_commands(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_echoes_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_unit_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_labels_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_segmentation_command(CLI::App& evaluate);
-std::unique_ptr<Command> make_evaluate_realism_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_simkitti32_command(CLI::App& program);
 std::unique_ptr<Command> make_fit_drop_command(CLI::App& program);
 std::unique_ptr<Command> make_fit_sensor_command(CLI::App& program);

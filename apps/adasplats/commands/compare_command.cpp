@@ -14,7 +14,7 @@
 namespace adasplats::app {
 namespace {
 
-// Stays the running program where its file is replaced meanwhile.
+// Remains the running program even if its file is replaced meanwhile.
 constexpr const char* kOwnProgram = "/proc/self/exe";
 
 constexpr const char* kCompareExamples =
@@ -22,7 +22,7 @@ constexpr const char* kCompareExamples =
     "  adasplats compare sequences/00 -o kitti --methods basic,descriptors,poisson\n"
     "  adasplats compare Paris --preset paper-pc3d -o pc3d\n"
     "  adasplats compare scan.ply --mesh artist=city.obj -o city\n"
-    "An interrupted comparison goes on where it stopped when it is started again.";
+    "Run an interrupted comparison again to resume it.";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// The figure at a path of keys, or NaN.
+/// The number at a JSON pointer, or NaN.
 double number_at(const nlohmann::ordered_json& json, const std::string& pointer) {
   const nlohmann::ordered_json value =
       json.value(nlohmann::ordered_json::json_pointer(pointer), nlohmann::ordered_json());
@@ -76,15 +76,16 @@ class CompareCommand final : public Command {
     require(add_path(app, "DATA", job_.data,
                      "Output of 'synth street', SemanticKITTI folder, or point files"));
     require(writes_folder(
-        add_path(app, "-o,--output", job_.output, "Folder for the reports and the work")));
+        add_path(app, "-o,--output", job_.output, "Folder for reports and intermediate files")));
     add_choice<Preset>(app, "--preset", job_.preset, choices_of<Preset>(kPresets),
-                       "DATA is a data set of the paper as its authors ship it");
-    app.add_option("--methods", job_.methods, "Some of " + joined(compare_method_names()))
+                       "Treat DATA as a data set of the paper, in the layout of its authors");
+    app.add_option("--methods", job_.methods,
+                   "Methods to compare, some of " + joined(compare_method_names()))
         ->delimiter(',')
         ->type_name("NAME,...");
     app.add_option_function<std::vector<std::string>>(
            "--mesh", [this](const std::vector<std::string>& given) { set_meshes(given); },
-           "Also a ready-made mesh, PLY or OBJ")
+           "Also compare an existing mesh, PLY or OBJ")
         ->type_name("NAME=FILE");
     add_data_options(app);
     add_device_options();
@@ -106,24 +107,27 @@ class CompareCommand final : public Command {
 
  private:
   void add_data_options(OptionSet& app) {
-    OptionSet& group = app.add_group("Data", "instead of what is found in DATA");
+    OptionSet& group = app.add_group("Data", "overrides what is found in DATA");
     group
-        .add_option("--labels", job_.labels,
-                    "semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML file")
+        .add_option(
+            "--labels", job_.labels,
+            "Label scheme: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+            "file")
         ->type_name("SCHEME");
-    add_scan_range(group, "--scans", job_.scans, "Which scans of a sequence");
+    add_scan_range(group, "--scans", job_.scans, "Scans of a sequence to use");
     add_path(group, "--trajectory", job_.trajectory, "Poses of the recording");
     add_vector(group, "--offset", job_.offset_m, "Shift of the trajectory in world axes, m");
     add_path(group, "--held-out", job_.held_out, "Sequence whose beams are cast again");
-    add_scan_range(group, "--held-out-scans", job_.held_out_scans, "Which scans of that");
+    add_scan_range(group, "--held-out-scans", job_.held_out_scans,
+                   "Scans of the held-out sequence to use");
     add_path(group, "--truth", job_.truth, "Mesh of the true surface");
-    group.add_option("--sensor", job_.sensor, "As simulate has it")
+    group.add_option("--sensor", job_.sensor, "Sensor; see 'adasplats sensors'")
         ->capture_default_str()
         ->type_name("NAME|FILE");
     add_choice<std::optional<DynamicRemoval>>(
         group, "--remove", job_.remove, choices_of_optional(kDynamicRemovals),
-        "Objects to leave out of the points, the beams and the rays, by their labels; the default "
-        "is what the paper removes: movable, with --preset paper-mcity none");
+        "Objects to leave out of points, beams and rays, by their labels; the default is that of "
+        "the paper: movable, with --preset paper-mcity none");
     add_settings(group, job_);
     add_settings(app.add_group("Limits", "of every step"), job_.limits);
   }

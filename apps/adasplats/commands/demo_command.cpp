@@ -4,7 +4,6 @@
 
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/jobs/demo.h"
-#include "adasplats/jobs/demo_page.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
@@ -39,9 +38,10 @@ class DemoCommand final : public Command {
     OptionSet& app = options();
     writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create"));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
-    app.add_option("--points", job_.points, "About as many points in the mapping cloud")
+    app.add_option("--points", job_.points, "Approximate number of points in the mapping cloud")
         ->capture_default_str();
-    app.add_option("--driving-spacing", job_.driving_spacing_m, "Between the held-out scans, m")
+    app.add_option("--driving-spacing", job_.driving_spacing_m,
+                   "Distance between held-out scans, m")
         ->capture_default_str();
     add_device_options();
   }
@@ -51,17 +51,16 @@ class DemoCommand final : public Command {
     const DemoResult result = run_demo(job_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
-    std::string text = "A street of " + fixed(result.street.length_m, 0) + " m, " +
-                       grouped(result.street.mapping_points) + " points, " +
-                       grouped(result.street.driving_scans) + " held-out scans; " +
-                       fixed(watch.seconds(), 1) + " s in all.\n\n" + table_of(result) +
-                       "\nC2C is simulated to original; within 10 cm and early (by more than "
-                       "50 cm) are shares of the held-out beams.\n\n  " +
-                       (job_.output / result.picture).string() +
-                       "  all methods, and what held-out beams say of them\n  " +
-                       (job_.output / result.page).string() +
-                       "  the run with all its pictures\n\nLook around in it:\n  " +
-                       view_command(job_.output) + "\n";
+    std::string text =
+        "A street of " + fixed(result.street.length_m, 0) + " m, " +
+        grouped(result.street.mapping_points) + " points, " + grouped(result.street.driving_scans) +
+        " held-out scans; " + fixed(watch.seconds(), 1) + " s in all.\n\n" + table_of(result) +
+        "\nC2C is simulated to original; within 10 cm and early (by more than "
+        "50 cm) are shares of the held-out beams.\n\n  " +
+        (job_.output / result.picture).string() +
+        "  all methods, with the errors of held-out beams\n  " +
+        (job_.output / result.page).string() +
+        "  the results with all pictures\n\nView the scene:\n  " + view_command(job_.output) + "\n";
     print(text);
   }
 

@@ -17,7 +17,6 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
-#include "adasplats/evaluate/splat_errors.h"
 #include "adasplats/jobs/scene/view_choice.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/levels/level_file.h"

@@ -10,27 +10,27 @@
 
 namespace adasplats {
 
-/// Private to evaluate/: what the comparisons of beams share.
+// Private to evaluate/: shared by the comparisons of beams.
 
 /// The range error of a beam that hit nothing.
 inline constexpr float kNoHitError = std::numeric_limits<float>::quiet_NaN();
 
-/// Sums up predicted - measured ranges in m, one a beam, kNoHitError for beams without a hit.
-/// Bounds count as within. The median of an even number is the mean of the middle two, the 90th
-/// percentile is by nearest rank; both and the means are NaN where no beam hit. No beams at all
-/// give shares of 0.
+/// Summarises predicted - measured ranges in m, one per beam, kNoHitError for beams without a hit.
+/// Errors equal to a bound are within it. The median of an even number is the mean of the middle
+/// two, the 90th percentile is by nearest rank; both and the means are NaN if no beam hits. Without
+/// beams all shares are 0.
 BeamAccuracy accuracy_of(const std::vector<float>& errors_m);
 
 /// Median of one or more values, the mean of the middle two of an even number. Reorders them.
 double median_of(std::vector<float>& values);
-/// The smallest value that `percent` of all (one or more) do not exceed. Reorders them.
+/// The smallest value that `percent` of one or more values do not exceed. Reorders them.
 double percentile_of(std::vector<float>& values, std::size_t percent);
 
 /// Unit normal of a primitive, either side.
 Vec3f unit_normal(const SceneView& scene, std::uint32_t primitive);
 
 /// Whether a beam on an object of this mobility counts.
-inline bool takes_part(Mobility mobility, bool drop_moving, bool drop_movable) {
+inline bool is_counted(Mobility mobility, bool drop_moving, bool drop_movable) {
   switch (mobility) {
     case Mobility::fixed: return true;
     case Mobility::movable: return !drop_movable;

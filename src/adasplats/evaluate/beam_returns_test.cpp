@@ -28,7 +28,7 @@ TEST(BeamReturns, GhostsAndHolesBecomePrecisionAndRecall) {
   EXPECT_DOUBLE_EQ(returns.f1, harmonic);
 }
 
-TEST(BeamReturns, WithoutEmptyBeamsOnlyHolesAreKnown) {
+TEST(BeamReturns, WithoutEmptyBeamsOnlyHolesAreDefined) {
   const BeamReturns returns =
       beam_returns(accuracy_of({0, 0, 0, kNoHitError}), empty_beams(0, kNaN));
   EXPECT_DOUBLE_EQ(returns.holes, 1.0 / 4);
@@ -38,7 +38,7 @@ TEST(BeamReturns, WithoutEmptyBeamsOnlyHolesAreKnown) {
   EXPECT_TRUE(std::isnan(returns.f1));
 }
 
-TEST(BeamReturns, NothingAtAllAndNothingRight) {
+TEST(BeamReturns, NoBeamsAndNoCorrectPrediction) {
   const BeamReturns none = beam_returns(accuracy_of({}), empty_beams(0, kNaN));
   EXPECT_EQ(none.returned, 0U);
   EXPECT_TRUE(std::isnan(none.holes));
@@ -47,7 +47,7 @@ TEST(BeamReturns, NothingAtAllAndNothingRight) {
   EXPECT_DOUBLE_EQ(wrong.recall, 0.0);
   EXPECT_DOUBLE_EQ(wrong.f1, 0.0);
   const BeamReturns unseen = beam_returns(accuracy_of({kNoHitError}), empty_beams(3, 0.0));
-  EXPECT_TRUE(std::isnan(unseen.precision));  // nothing was said to return
+  EXPECT_TRUE(std::isnan(unseen.precision));  // no return was predicted
   EXPECT_DOUBLE_EQ(unseen.f1, 0.0);
 }
 

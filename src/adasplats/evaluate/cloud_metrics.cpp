@@ -14,14 +14,14 @@
 namespace adasplats {
 namespace {
 
-/// F-score bounds in m: 5 cm, 10 cm, and the square root of 0.05 m2, which is what lidar-nerf and
-/// LiDAR4D compare squared distances with.
+/// F-score bounds in m: 5 cm, 10 cm, and the square root of 0.05 m2, the bound of
+/// lidar-nerf and LiDAR4D for squared distances.
 const std::array<double, 3>& f_score_bounds_m() {
   static const std::array<double, 3> bounds = {0.05, 0.10, std::sqrt(0.05)};
   return bounds;
 }
 
-/// What one direction of a comparison adds up to.
+/// Sums of one direction of a comparison.
 struct DistanceSums {
   double distance_m = 0;
   double squared_m2 = 0;
@@ -46,8 +46,8 @@ std::vector<Vec3f> in_frame(const PointCloud& cloud, Vec3d origin, const Executo
   return points;
 }
 
-/// Points relative to `origin`. Ranks are in Hilbert order: sums over them then depend on the set
-/// of points and not on the order of the input, and neighbouring queries visit the same nodes.
+/// Points relative to `origin`. Ranks are in Hilbert order: sums over them depend on the set of
+/// points, not on the order of the input, and neighbouring queries visit the same nodes.
 PointIndex index_in_frame(const PointCloud& cloud, Vec3d origin, const Executor& executor) {
   return PointIndex(in_frame(cloud, origin, executor), executor);
 }
@@ -170,8 +170,8 @@ std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
   require_classes(simulated, "simulated");
   require_classes(original, "original");
   const PointIndex all = index_in_frame(original, original.origin, executor);
-  // Of each class: to all points and to its own, nearest points and sums over them; and two
-  // indices, of which this is but a guess.
+  // For each class: nearest points among all and among its own, and sums over them; the two indices
+  // are only estimated.
   const ProgressPass pass(executor, 5 * simulated.size() + original.size());
   std::vector<ClassDistance> result;
   for (auto [id, counts] : count_classes(simulated, original)) {

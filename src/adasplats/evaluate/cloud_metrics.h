@@ -11,7 +11,7 @@
 
 namespace adasplats {
 
-/// Distances between two clouds; metres unless said otherwise.
+/// Distances between two clouds; metres unless stated otherwise.
 struct CloudDistance {
   double c2c_m = 0;           ///< paper eq. "C2C": mean distance simulated -> nearest original
   double completeness_m = 0;  ///< the other direction: original -> nearest simulated
@@ -33,23 +33,22 @@ struct ClassDistance {
 };
 
 /// Paper section "Evaluation Metric for LiDAR Simulation". The clouds may have different origins.
-/// Errors: data where either is empty ("no points").
+/// Errors: data (an empty cloud).
 CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& original,
                              const Executor& executor);
 
 /// Distance in m of each point of `cloud`, in its order, to the nearest of `reference`. Errors:
-/// data where either is empty.
+/// data (an empty cloud).
 std::vector<float> distances_to(const PointCloud& cloud, const PointCloud& reference,
                                 const Executor& executor);
 
-/// The class of the original point nearest to each simulated one: what a simulated point is of
-/// where its own class is not the original's; 0 beyond 1e19 m. Errors: data where either cloud is
-/// empty or the original has no classes.
+/// The class of the nearest original point for each simulated point; 0 beyond 1e19 m. Errors: data
+/// (an empty cloud, an original without classes).
 std::vector<std::uint16_t> nearest_classes(const PointCloud& simulated, const PointCloud& original,
                                            const Executor& executor);
 
-/// By class of either cloud, ascending id; both need classes (ErrorKind::data otherwise). A class
-/// that only one cloud has stays in the list with NaN for what is undefined.
+/// By class of either cloud, ascending id; both need classes (ErrorKind::data otherwise). For a
+/// class of only one cloud, undefined distances are NaN.
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
                                                    const PointCloud& original,
                                                    const Executor& executor);

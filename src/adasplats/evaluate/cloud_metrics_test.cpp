@@ -95,7 +95,7 @@ TEST(CloudDistance, PermutedCloudIsNoDistanceAway) {
 }
 
 // Analytic: a bound itself is not within; 0.125 m is between two of the three bounds.
-TEST(CloudDistance, FScoresOfPlanesOnEitherSideOfTheirBounds) {
+TEST(CloudDistance, FScoresOfPlanesOnBothSidesOfTheirBounds) {
   const auto scores_at = [](float height_m) {
     return cloud_distance(grid(10, 1.0F, height_m), grid(10, 1.0F, 0.0F), Executor(1)).f_score;
   };
@@ -160,7 +160,7 @@ TEST(DistancesTo, AreInTheOrderOfThePoints) {
   EXPECT_THROW(distances_to(a, {}, Executor(1)), Error);
 }
 
-TEST(CloudDistance, OriginsAreTakenIntoAccount) {
+TEST(CloudDistance, UsesBothOrigins) {
   PointCloud here = grid(4, 1.0F, 0.5F);
   here.origin = {449'000, 5'411'000, 0};
   PointCloud there = grid(4, 1.0F, 0.0F);

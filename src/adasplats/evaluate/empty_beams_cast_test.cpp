@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/empty_beams_cast.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/beams/spinning_sensor_test.h"
+#include "adasplats/evaluate/beam_returns.h"
 
 namespace adasplats {
 namespace {

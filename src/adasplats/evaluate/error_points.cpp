@@ -28,11 +28,12 @@ namespace {
 constexpr float kNoError = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* kErrorName = "error_m";
 constexpr std::string_view kCountComment = "adasplats.splats ";
-/// As load_cloud drops them: doubles no longer hold 0.1 mm; farther than this from the median.
+/// The limits of load_cloud: beyond, doubles do not resolve 0.1 mm; maximum distance from the
+/// median.
 constexpr double kLargest_m = 1e12;
 constexpr double kFarthest_m = 100e3;
 
-// In lower case, the commonest first.
+// In lower case, the most common first.
 const std::initializer_list<std::string_view> kErrorNames = {"error_m", "scalar_error_m",
                                                              "scalar_c2c_absolute_distances"};
 const std::initializer_list<std::string_view> kClassNames = {"label", "class", "scalar_label",
@@ -54,7 +55,7 @@ const Column& required(const Table& table, const std::filesystem::path& path,
   std::string list;
   for (const Column& column : table.columns) list += (list.empty() ? "" : ", ") + column.name;
   throw Error(ErrorKind::data, path.string() + ": has no column '" + std::string(*names.begin()) +
-                                   "', so these are no points with errors (it has " +
+                                   "', expected points with errors (found " +
                                    (list.empty() ? "no columns" : list) + ")");
 }
 
@@ -79,16 +80,16 @@ std::uint32_t splat_at(const Column& column, std::size_t row, const std::filesys
   return static_cast<std::uint32_t>(value);
 }
 
-bool is_place(Vec3d p) {
+bool is_valid_position(Vec3d p) {
   return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= kLargest_m && is_finite(p);
 }
 
-/// Componentwise, lower, of one or more places.
-Vec3d median_place(const std::vector<Vec3d>& places, const std::vector<std::uint32_t>& rows) {
+/// Componentwise, lower, of one or more positions.
+Vec3d median_position(const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>& rows) {
   Vec3d median;
   std::vector<double> values(rows.size());
   for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < rows.size(); ++k) values[k] = places[rows[k]][axis];
+    for (std::size_t k = 0; k < rows.size(); ++k) values[k] = positions[rows[k]][axis];
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
     std::nth_element(values.begin(), middle, values.end());
     median[axis] = *middle;
@@ -96,30 +97,54 @@ Vec3d median_place(const std::vector<Vec3d>& places, const std::vector<std::uint
   return median;
 }
 
-/// Rows of places that are finite and not far from the others.
-std::vector<std::uint32_t> near_rows(const std::vector<Vec3d>& places) {
+/// Rows of positions that are finite and not far from the others.
+std::vector<std::uint32_t> near_rows(const std::vector<Vec3d>& positions) {
   std::vector<std::uint32_t> rows;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (is_place(places[i])) rows.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (is_valid_position(positions[i])) rows.push_back(static_cast<std::uint32_t>(i));
   if (rows.empty()) return rows;
-  const Vec3d median = median_place(places, rows);
-  std::erase_if(rows, [&](std::uint32_t i) { return length(places[i] - median) > kFarthest_m; });
+  const Vec3d median = median_position(positions, rows);
+  std::erase_if(rows, [&](std::uint32_t i) { return length(positions[i] - median) > kFarthest_m; });
   return rows;
 }
 
-/// Origin and positions of the cloud: the rows of places in world coordinates.
-void set_positions(PointCloud& cloud, const std::vector<Vec3d>& places,
+/// Sets origin and positions of the cloud from rows of positions in world coordinates.
+void set_positions(PointCloud& cloud, const std::vector<Vec3d>& positions,
                    const std::vector<std::uint32_t>& rows) {
   if (rows.empty()) return;
-  Vec3d low = places[rows.front()], high = low;
+  Vec3d low = positions[rows.front()], high = low;
   for (const std::uint32_t i : rows) {
-    low = min(low, places[i]);
-    high = max(high, places[i]);
+    low = min(low, positions[i]);
+    high = max(high, positions[i]);
   }
   cloud.origin = choose_origin(low, high);
   cloud.positions.reserve(rows.size());
   for (const std::uint32_t i : rows)
-    cloud.positions.push_back(vec_cast<float>(places[i] - cloud.origin));
+    cloud.positions.push_back(vec_cast<float>(positions[i] - cloud.origin));
+}
+
+constexpr double kMaxError_m = 0.5;  // limit for one beam
+
+/// Throws data unless the beams are of a model with `splats`.
+void require_model(const ErrorPoints& points, std::size_t splats,
+                   const std::filesystem::path& path) {
+  if (!tells_of_splats(points))
+    throw Error(ErrorKind::data, path.string() +
+                                     ": has no column 'splat' for the splats that its beams "
+                                     "hit; write it again with 'evaluate resimulate --errors'");
+  if (points.primitive_count == 0)
+    throw Error(ErrorKind::data,
+                path.string() +
+                    ": has no comment 'adasplats.splats N' with the number of splats of "
+                    "its model; write it again with 'evaluate resimulate --errors'");
+  if (points.primitive_count != splats)
+    throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +
+                                     std::to_string(points.primitive_count) +
+                                     " splats; this one has " + std::to_string(splats));
+  for (const std::uint32_t splat : points.primitives)
+    if (splat != Hit::kNone && splat >= splats)
+      throw Error(ErrorKind::data, path.string() + ": a beam hit splat " + std::to_string(splat) +
+                                       " of " + std::to_string(splats));
 }
 
 }  // namespace
@@ -139,18 +164,19 @@ ErrorPoints beam_points(std::vector<ScanErrors> scans, const Trajectory& traject
                            std::to_string(trajectory.size()) + " poses");
   ErrorPoints points;
   points.primitive_count = primitive_count;
-  std::vector<Vec3d> places;
+  std::vector<Vec3d> positions;
   for (std::size_t index = 0; index < scans.size(); ++index) {
-    const ScanErrors scan = std::move(scans[index]);  // its memory is given back
+    const ScanErrors scan = std::move(scans[index]);  // releases its memory
     const RigidTransform& world_from_sensor = trajectory[index].world_from_sensor;
-    for (const Vec3f p : scan.measured) places.push_back(world_from_sensor * vec_cast<double>(p));
+    for (const Vec3f p : scan.measured)
+      positions.push_back(world_from_sensor * vec_cast<double>(p));
     points.errors_m.insert(points.errors_m.end(), scan.errors_m.begin(), scan.errors_m.end());
     points.primitives.insert(points.primitives.end(), scan.primitives.begin(),
                              scan.primitives.end());
   }
-  std::vector<std::uint32_t> rows(places.size());
+  std::vector<std::uint32_t> rows(positions.size());
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<std::uint32_t>(i);
-  set_positions(points.cloud, places, rows);
+  set_positions(points.cloud, positions, rows);
   return points;
 }
 
@@ -207,13 +233,14 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
   const Column& errors = required(table, path, kErrorNames);
   const Column* const axes[3] = {&required(table, path, {"x"}), &required(table, path, {"y"}),
                                  &required(table, path, {"z"})};
-  std::vector<Vec3d> places(table.rows);
+  std::vector<Vec3d> positions(table.rows);
   for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < places.size(); ++i) places[i][axis] = axes[axis]->as_double(i);
-  const std::vector<std::uint32_t> rows = near_rows(places);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      positions[i][axis] = axes[axis]->as_double(i);
+  const std::vector<std::uint32_t> rows = near_rows(positions);
   ErrorPoints points;
   points.dropped = table.rows - rows.size();
-  set_positions(points.cloud, places, rows);
+  set_positions(points.cloud, positions, rows);
   const auto finite = [](double value) {
     const float narrow = static_cast<float>(value);
     return std::isfinite(narrow) ? narrow : kNoError;
@@ -230,6 +257,24 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
     if (comment.starts_with(kCountComment))
       points.primitive_count = std::strtoull(comment.c_str() + kCountComment.size(), nullptr, 10);
   return points;
+}
+
+void SplatErrors::add(const ErrorPoints& points, const std::filesystem::path& path) {
+  require_model(points, counts_.size(), path);
+  for (std::size_t i = 0; i < points.primitives.size(); ++i) {
+    const std::uint32_t splat = points.primitives[i];
+    if (splat == Hit::kNone || std::isnan(points.errors_m[i])) continue;
+    sums_m_[splat] +=
+        std::clamp(static_cast<double>(points.errors_m[i]), -kMaxError_m, kMaxError_m);
+    ++counts_[splat];
+  }
+}
+
+std::vector<float> SplatErrors::means_m() const {
+  std::vector<float> means(counts_.size(), kNoError);
+  for (std::size_t i = 0; i < means.size(); ++i)
+    if (counts_[i] > 0) means[i] = static_cast<float>(sums_m_[i] / counts_[i]);
+  return means;
 }
 
 }  // namespace adasplats

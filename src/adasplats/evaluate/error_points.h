@@ -14,44 +14,65 @@
 
 namespace adasplats {
 
-/// Points and what an evaluation found wrong at each.
+/// Points with the error that an evaluation found at each.
 struct ErrorPoints {
-  PointCloud cloud;             ///< positions, and classes and intensities where they are known
-  std::vector<float> errors_m;  ///< one a point; NaN: not known (a beam that hit nothing)
-  /// What each beam hit of the model; Hit::kNone: nothing. Empty where that is not known.
+  PointCloud cloud;             ///< positions, and classes and intensities if available
+  std::vector<float> errors_m;  ///< one per point; NaN: none (a beam without hit)
+  /// The primitive that each beam hit; Hit::kNone: nothing. May be empty.
   std::vector<std::uint32_t> primitives;
-  std::size_t primitive_count = 0;  ///< that the model had, where `primitives` are known
+  std::size_t primitive_count = 0;  ///< of the model, if `primitives` are given
   std::size_t dropped = 0;  ///< points of the file that are not finite or far from all others
 };
 
-/// The simulated points with their distance to the nearest original one: what C2C is the mean of.
-/// Errors: as distances_to.
+/// The simulated points with their distances to the nearest original point, which C2C is the mean
+/// of. Errors: those of distances_to.
 ErrorPoints distance_points(PointCloud simulated, const PointCloud& original,
                             const Executor& executor);
 
 /// The measured points of all scans, in world coordinates, with predicted minus measured range.
-/// `scans`: what resimulate() kept of single beams; `trajectory`: one pose a scan, those that they
-/// were cast with; `primitive_count`: of the model. Throws std::logic_error where there are not as
-/// many poses as scans.
+/// `scans`: single beams kept by resimulate(); `trajectory`: the pose that each scan was cast with;
+/// `primitive_count`: of the model. Throws std::logic_error if there are not as many poses as
+/// scans.
 ErrorPoints beam_points(std::vector<ScanErrors> scans, const Trajectory& trajectory,
                         std::size_t primitive_count);
 
-/// Writes a PLY: x y z error_m [intensity] [label] [splat] (x y z as doubles where the origin is
-/// not zero; splat: the primitive, -1 for none; how many there were is a comment), which load_cloud
-/// reads as a cloud, too. Atomic. Throws std::logic_error where an attribute has another size than
-/// the points.
+/// Writes a PLY: x y z error_m [intensity] [label] [splat] (x y z as doubles if the origin is not
+/// zero; splat: the primitive, -1 for none; a comment gives the number of primitives). load_cloud
+/// can read it, too. Atomic. Throws std::logic_error if an attribute has another size than the
+/// points.
 void write_error_points(const std::filesystem::path& path, const ErrorPoints& points);
 
-/// Whether a file is a PLY whose points have errors, by its header alone. Errors: as read_ply's for
-/// headers; a file that is no PLY by its name is none.
+/// Whether a file is a PLY of points with errors, by its name and header. Errors: those of read_ply
+/// for headers.
 bool has_error_points(const std::filesystem::path& path);
 
 /// Reads any file of points with x, y, z and error_m (or CloudCompare's scalar_error_m and
-/// scalar_C2C_absolute_distances), and where they are there intensity, label or class, and splat.
-/// Drops and counts points that are not finite or farther than 100 km from the median of all;
-/// errors that are not finite become NaN. Memory: the reader's, and 48 bytes a point. Errors: those
-/// of read_points; data (a column is missing; a class that is no whole number from 0 to 2^32 - 1,
-/// of which the low 16 bits count).
+/// scalar_C2C_absolute_distances), and optionally intensity, label or class, and splat. Drops and
+/// counts points that are not finite or farther than 100 km from the median of all; errors that are
+/// not finite become NaN. Of classes the low 16 bits count. Memory: the reader's, and 48 bytes per
+/// point. Errors: those of read_points; data (a missing column; a class that is not a whole number
+/// from 0 to 2^32 - 1).
 ErrorPoints read_error_points(const std::filesystem::path& path);
+
+/// Whether a file of errors contains the splat that each beam hit. Distances of clouds and files of
+/// other programs do not.
+inline bool tells_of_splats(const ErrorPoints& points) { return !points.primitives.empty(); }
+
+/// The mean error of each splat of a model over the beams that hit it.
+class SplatErrors {
+ public:
+  explicit SplatErrors(std::size_t splats) : sums_m_(splats, 0), counts_(splats, 0) {}
+
+  /// Adds the beams of a file, with errors clamped to half a metre. `path`: for messages. Errors:
+  /// data (no splats, or splats of another model); then nothing is added.
+  void add(const ErrorPoints& points, const std::filesystem::path& path);
+
+  /// One per splat, m, negative: early; NaN if no beam hit it.
+  std::vector<float> means_m() const;
+
+ private:
+  std::vector<double> sums_m_;
+  std::vector<std::uint32_t> counts_;
+};
 
 }  // namespace adasplats

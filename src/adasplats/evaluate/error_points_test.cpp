@@ -92,7 +92,7 @@ TEST(ErrorPoints, ReadsOtherProgramsFiles) {
   EXPECT_EQ(text.errors_m, std::vector<float>{0.75F});
 }
 
-TEST(ErrorPoints, DropsWhatIsNotFiniteOrFar) {
+TEST(ErrorPoints, DropsInvalidAndFarPoints) {
   const TemporaryFolder folder;
   const auto file =
       folder.write("f.csv",
@@ -104,7 +104,7 @@ TEST(ErrorPoints, DropsWhatIsNotFiniteOrFar) {
   EXPECT_EQ(points.cloud.positions[2], (Vec3f{3, 2, 3}));
 }
 
-TEST(ErrorPoints, SaysWhatIsWrong) {
+TEST(ErrorPoints, ErrorsNameTheFault) {
   const TemporaryFolder folder;
   const auto cloud =
       folder.write("c.ply",
@@ -124,7 +124,7 @@ TEST(ErrorPoints, SaysWhatIsWrong) {
   EXPECT_FALSE(has_error_points(folder.path() / "none.bin"));
 }
 
-// Oracle: cloud_distance, whose C2C is the mean.
+// Oracle: the mean is the C2C of cloud_distance.
 TEST(ErrorPoints, DistancesAreThoseOfC2C) {
   const PointCloud original = three_points({});
   PointCloud simulated = three_points({1000, 0, 0});
@@ -143,7 +143,7 @@ TEST(ErrorPoints, DistancesAreThoseOfC2C) {
 }
 
 // Oracle: by hand; +x of the sensor is +y of the world.
-TEST(ErrorPoints, BeamsStandInTheWorld) {
+TEST(ErrorPoints, BeamsAreInWorldCoordinates) {
   const Vec3d positions[] = {{7000, 100, 2}, {7001, 100, 2}};
   Trajectory trajectory(2);
   for (std::size_t k = 0; k < 2; ++k)

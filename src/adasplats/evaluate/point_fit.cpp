@@ -21,14 +21,14 @@ namespace {
 constexpr int kFitSteps = 15;
 constexpr double kFirstFitWidth_m = 0.5, kLastFitWidth_m = 0.03;
 constexpr double kFitReach_m = 1;
-/// A direction is seen where so many rays, and this share of all, meet what looks that way by less
-/// than 60 degrees. Choices: disks of flat ground lean by noise, but not so far.
-constexpr std::size_t kMinSeeing = 30;
-constexpr double kSeeingShare = 0.005;
-constexpr double kSeeingCosine = 0.5;
-/// Holds what is not seen, in units of all rays; and a little of each step.
+/// A direction is constrained if at least this number and share of rays hit surfaces with normals
+/// less than 60 degrees from it. Chosen so that the noise of normals of flat ground does not count.
+constexpr std::size_t kMinConstraining = 30;
+constexpr double kConstrainingShare = 0.005;
+constexpr double kConstrainingCosine = 0.5;
+/// Prior on unconstrained directions, in units of all rays; and a small prior on each step.
 constexpr double kHold = 1e6, kPrior = 0.01;
-/// Rays of a part that counts by itself.
+/// Minimum rays of a part that is fitted alone.
 constexpr std::size_t kPartRays = 200;
 
 double fit_width_m(int step) {
@@ -40,7 +40,7 @@ double median_or_zero(std::vector<double>& values) {
   return values.empty() ? 0 : upper_median_of(values);
 }
 
-/// Only where it ends: from a metre before to a metre behind.
+/// Only the end of the ray: from a metre before to a metre behind.
 Ray end_of_ray(Vec3d sensor, Vec3d end) {
   Ray ray;
   const double range_m = length(end - sensor);
@@ -53,8 +53,8 @@ Ray end_of_ray(Vec3d sensor, Vec3d end) {
   return ray;
 }
 
-/// Calls take(measured end, normal of what is hit, distance along it) for the rays that, moved so,
-/// meet a splat near their end.
+/// Calls take(measured end, normal of the hit, distance along it) for the rays that, after the
+/// motion, hit a splat near their end.
 template <class Take>
 void for_fit_hits(const FitScene& scene, const FitRays& given, const RigidTransform& motion,
                   const Executor& executor, const Take& take) {
@@ -83,8 +83,8 @@ RegistrationSums sums_of(const FitScene& scene, const FitRays& rays, const Rigid
   return sums;
 }
 
-/// Which shifts and turns the normals of what is hit say nothing of.
-class Unseen {
+/// The shifts and rotations that the normals of the hits do not constrain.
+class Unconstrained {
  public:
   void add(Vec3d normal) { normals_.push_back(normal); }
 
@@ -99,19 +99,20 @@ class Unseen {
       sums.zz += n.z * n.z;
     }
     const SymmetricEigen eigen = symmetric_eigen(sums);
-    std::vector<Vec3d> seen;
+    std::vector<Vec3d> constrained;
     for (const Vec3d axis : eigen.vectors) {
-      const auto seeing = static_cast<std::size_t>(std::ranges::count_if(
-          normals_, [&](Vec3d n) { return std::fabs(dot(n, axis)) > kSeeingCosine; }));
-      const double share = static_cast<double>(seeing) / static_cast<double>(normals_.size());
-      (seeing >= kMinSeeing && share >= kSeeingShare ? seen : shifts_).push_back(axis);
+      const auto constraining = static_cast<std::size_t>(std::ranges::count_if(
+          normals_, [&](Vec3d n) { return std::fabs(dot(n, axis)) > kConstrainingCosine; }));
+      const double share = static_cast<double>(constraining) / static_cast<double>(normals_.size());
+      (constraining >= kMinConstraining && share >= kConstrainingShare ? constrained : shifts_)
+          .push_back(axis);
     }
-    // Parallel planes say nothing of turns about their normal.
-    if (seen.size() == 1) turns_ = seen;
-    if (seen.empty()) turns_ = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    // Parallel planes do not constrain rotations about their normal.
+    if (constrained.size() == 1) turns_ = constrained;
+    if (constrained.empty()) turns_ = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   }
 
-  /// Holds them in the matrix of a step; `first`: of the three unknowns of shifts, or turns.
+  /// Adds the prior to the matrix of a step; `first`: index of the three unknowns of shifts.
   template <std::size_t N>
   void hold_shifts(std::array<double, N * N>& matrix, std::size_t first, double weight) const {
     hold<N>(shifts_, matrix, first, weight);
@@ -136,17 +137,18 @@ class Unseen {
 };
 
 void add_normals(const FitScene& scene, const FitRays& rays, const Executor& executor,
-                 Unseen& unseen) {
-  for_fit_hits(scene, rays, {}, executor, [&](Vec3d, Vec3d normal, double) { unseen.add(normal); });
+                 Unconstrained& unconstrained) {
+  for_fit_hits(scene, rays, {}, executor,
+               [&](Vec3d, Vec3d normal, double) { unconstrained.add(normal); });
 }
 
 double weight_of(const RegistrationSums& sums) { return static_cast<double>(sums.beams) + 1e-3; }
 
-/// The shift that all parts have in common.
+/// The common shift of all parts.
 Vec3d common_shift(std::span<const FitPart> parts, const Executor& executor) {
-  Unseen unseen;
-  for (const FitPart& part : parts) add_normals(part.scene, part.rays, executor, unseen);
-  unseen.find();
+  Unconstrained unconstrained;
+  for (const FitPart& part : parts) add_normals(part.scene, part.rays, executor, unconstrained);
+  unconstrained.find();
   RigidTransform motion;
   for (int step = 0; step < kFitSteps; ++step) {
     RegistrationSums sums;
@@ -159,7 +161,7 @@ Vec3d common_shift(std::span<const FitPart> parts, const Executor& executor) {
       for (std::size_t b = 0; b < 3; ++b) matrix[a * 3 + b] = sums.matrix[(a + 3) * 6 + b + 3];
       matrix[a * 4] += kPrior * weight_of(sums);
     }
-    unseen.hold_shifts<3>(matrix, 0, weight_of(sums));
+    unconstrained.hold_shifts<3>(matrix, 0, weight_of(sums));
     factor<3>(matrix);
     const std::array<double, 3> x = solved<3>(matrix, right);
     motion.translation = motion.translation + Vec3d{x[0], x[1], x[2]};
@@ -187,16 +189,16 @@ Vec3d FitRays::middle() const {
 
 FitMotion fit_motion(const FitScene& scene, const FitRays& rays, Vec3d pivot,
                      const Executor& executor) {
-  Unseen unseen;
-  add_normals(scene, rays, executor, unseen);
-  unseen.find();
+  Unconstrained unconstrained;
+  add_normals(scene, rays, executor, unconstrained);
+  unconstrained.find();
   FitMotion fit;
   for (int step = 0; step < kFitSteps; ++step) {
     const Vec3d at = fit.motion * pivot;
     RegistrationSums sums = sums_of(scene, rays, fit.motion, at, fit_width_m(step), executor);
     for (std::size_t a = 0; a < 6; ++a) sums.matrix[a * 7] += kPrior * weight_of(sums);
-    unseen.hold_turns(sums.matrix, weight_of(sums));
-    unseen.hold_shifts<6>(sums.matrix, 3, weight_of(sums));
+    unconstrained.hold_turns(sums.matrix, weight_of(sums));
+    unconstrained.hold_shifts<6>(sums.matrix, 3, weight_of(sums));
     factor<6>(sums.matrix);
     const std::array<double, 6> x = solved<6>(sums.matrix, sums.right);
     fit.motion = moved_about(at, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * fit.motion;

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// Splats with what finds hits in them, relative to one origin, m.
+/// Splats with a tracer, relative to one origin, m.
 class FitScene {
  public:
   FitScene(std::vector<Disk> disks, const Executor& executor);
@@ -35,32 +35,33 @@ struct FitRays {
   Vec3d middle() const;  ///< of the ends
 };
 
-/// How rays are moved so that their ends lie on splats.
+/// The motion that brings the ends of rays onto splats.
 struct FitMotion {
   RigidTransform motion;
-  std::size_t hits = 0;  ///< rays that meet a splat within a metre of their end, at last
+  std::size_t hits = 0;  ///< rays that hit a splat within a metre of their end after the last step
 };
 
-/// Finds it by point-to-plane steps as register_scans() does, within a metre. What is not seen in
-/// the splats (a shift along a street without anything that stands out) is taken for none. `pivot`:
-/// what turns are about at first.
+/// Estimates the motion by point-to-plane steps like register_scans(), within a metre. Components
+/// that the splats do not constrain (a shift along a uniform street) are zero. `pivot`: initial
+/// centre of rotation.
 FitMotion fit_motion(const FitScene& scene, const FitRays& rays, Vec3d pivot,
                      const Executor& executor);
 
-/// Part of a place: its splats, and rays that end there.
+/// A part of a scene: its splats, and rays that end there.
 struct FitPart {
   FitScene scene;
   FitRays rays;
 };
 
-/// How points lie beside splats that were made of other points.
+/// How points fit splats that were made from other points.
 struct PointFit {
-  std::size_t rays = 0;   ///< that meet a splat within a metre of their end
-  std::size_t parts = 0;  ///< with 200 of them or more
-  Vec3d shift_m;          ///< of all points, with which they fit best
-  /// What parts alone, shifted and turned, are shifted by at their middle: the median of lengths.
+  std::size_t rays = 0;   ///< that hit a splat within a metre of their end
+  std::size_t parts = 0;  ///< with at least 200 of them
+  Vec3d shift_m;          ///< shift of all points for the best fit
+  /// Median length of the shifts at the middle of each part, when parts are fitted alone, with
+  /// rotation.
   double part_shift_m = 0;
-  double distance_m = 0;          ///< of the points from the splats' planes, median
+  double distance_m = 0;          ///< from the points to the splats' planes, median
   double distance_shifted_m = 0;  ///< the same with `shift_m`
 };
 

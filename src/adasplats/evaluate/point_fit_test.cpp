@@ -13,7 +13,7 @@
 namespace adasplats::point_fit {
 namespace {
 
-/// Which walls stand on the ground.
+/// The walls of the scene.
 struct Walls {
   bool along = true, across = true;
 };
@@ -76,7 +76,7 @@ TEST(PointFit, FindsHowTheRaysWereMoved) {
   }
 }
 
-TEST(PointFit, SaysTheShiftOfAllAndOfParts) {
+TEST(PointFit, FindsTheShiftOfAllAndOfParts) {
   std::vector<FitPart> parts;
   parts.push_back(part_of({}, moved_about({}, {}, {0.2, -0.1, 0})));
   parts.push_back(part_of({}, moved_about({}, {}, {0.2, 0.1, 0})));
@@ -87,8 +87,8 @@ TEST(PointFit, SaysTheShiftOfAllAndOfParts) {
   EXPECT_LT(fit.distance_shifted_m, fit.distance_m);
 }
 
-// Nothing is known of a shift along a street without anything across it, and of a plane alone.
-TEST(PointFit, WhatNoRaySeesIsTakenForNone) {
+// A uniform street does not constrain shifts along it, nor does a single plane within itself.
+TEST(PointFit, UnconstrainedDirectionsAreZero) {
   const Executor executor(2);
   const RigidTransform moved = moved_about({}, {}, {0.3, 0.3, 0.1});
   struct Case {
@@ -105,7 +105,7 @@ TEST(PointFit, WhatNoRaySeesIsTakenForNone) {
   }
 }
 
-TEST(PointFit, NothingInCommonIsNothing) {
+TEST(PointFit, WithoutOverlapThereIsNoFit) {
   FitPart part = {FitScene(yard({}), Executor(1)), {}};
   EXPECT_EQ(fit_of_points(std::span(&part, 1), Executor(1)).rays, 0U);
   part.rays = rays_in({}, moved_about({}, {}, {100, 0, 0}));

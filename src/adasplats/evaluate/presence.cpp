@@ -25,10 +25,9 @@ void check(const PointCloud& cloud, const PresenceOptions& options) {
   }
   if (!cloud.has_beams()) {
     throw Error(ErrorKind::data, cloud.sensor_positions.empty()
-                                     ? "no sensor positions: nothing tells the rays that measured "
-                                       "the points"
-                                     : "the sensor positions are guessed: nothing tells the rays "
-                                       "that measured the points");
+                                     ? "no sensor positions, which the rays of the points start at"
+                                     : "the sensor positions are guessed, so the rays of the "
+                                       "points are unknown");
   }
 }
 
@@ -47,7 +46,7 @@ std::vector<std::uint32_t> points_in_range(const PointCloud& cloud,
   return chosen;
 }
 
-/// The piece of the ray around the point.
+/// The part of the ray around the point.
 Ray ray_at(const PointCloud& cloud, std::uint32_t point, Vec3f scene_from_cloud, double within_m) {
   const Vec3f along = cloud.positions[point] - cloud.sensor_positions[point];
   const float range_m = length(along);
@@ -92,7 +91,7 @@ PresenceResult presence(const Tracer& tracer, Vec3d scene_origin, const PointClo
 
   PresenceResult result;
   std::map<std::uint16_t, Presence> by_class;
-  const ProgressPass pass(executor, 2 * points.size());  // rays are made, then cast
+  const ProgressPass pass(executor, 2 * points.size());  // making rays, then casting them
   std::vector<Ray> rays;
   std::vector<Hit> hits;
   for (std::size_t first = 0; first < points.size(); first += kRaysAtOnce) {

@@ -15,8 +15,8 @@
 namespace adasplats {
 
 struct PresenceOptions {
-  double within_m = 0.1;     ///< of the point, along the ray that measured it
-  double min_range_m = 2.5;  ///< points nearer to their sensor or farther are left out
+  double within_m = 0.1;     ///< from the point, along the ray that measured it
+  double min_range_m = 2.5;  ///< points outside these ranges are left out
   double max_range_m = 50;
 };
 
@@ -31,16 +31,16 @@ struct Presence {
 
 struct PresenceResult {
   Presence all;
-  Presence moving;  ///< of classes that move; none without labels
-  Presence still;   ///< the others
+  Presence moving;  ///< classes that move; empty without labels
+  Presence still;   ///< other classes
   std::vector<std::pair<std::string, Presence>> by_class;  ///< with labels; by id
 };
 
-/// At which of the points that were measured does a model have a surface? The ray that measured a
-/// point must meet the model within `within_m` of it. Says what a model lacks (of what is still)
-/// and what it should not have (of what moved). `labels`: what the classes mean, or null.
-/// Errors: usage (distances that are not positive, ranges that hold nothing); data (no sensor
-/// positions, no points within the ranges, a class that `labels` does not have).
+/// At which measured points does a model have a surface? The ray that measured a point must hit the
+/// model within `within_m` of it. Finds missing surfaces (still points without) and wrong ones
+/// (moving points with a surface). `labels`: scheme of the classes, or null. Errors: usage
+/// (distances that are not positive, an empty range); data (no sensor positions, no points within
+/// the ranges, a class that `labels` does not have).
 PresenceResult presence(const Tracer& tracer, Vec3d scene_origin, const PointCloud& cloud,
                         const LabelScheme* labels, const PresenceOptions& options,
                         const Executor& executor);

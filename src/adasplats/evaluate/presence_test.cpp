@@ -60,10 +60,10 @@ TEST(Presence, SurfacesCountNearThePointAlongItsRay) {
   EXPECT_TRUE(is_present({10, 0, 0}));
   EXPECT_TRUE(is_present({10.05F, 0, 0}));
   EXPECT_TRUE(is_present({9.95F, 0, 0}));
-  EXPECT_FALSE(is_present({10.15F, 0, 0}));  // the wall stands before it
+  EXPECT_FALSE(is_present({10.15F, 0, 0}));  // behind the wall
   EXPECT_FALSE(is_present({9.85F, 0, 0}));   // and behind it
   EXPECT_FALSE(is_present({-10, 0, 0}));
-  EXPECT_FALSE(is_present({10, 2.1F, 0}));  // beside the wall
+  EXPECT_FALSE(is_present({10, 2.1F, 0}));  // next to the wall
   EXPECT_TRUE(is_present({10, 1.9F, 0}));
   // At 45 degrees the ray is 0.07 m off the wall's plane by 0.1 m along it.
   std::vector<Disk> oblique = {{{10, 0, 0}, 2, {-std::sqrt(0.5F), std::sqrt(0.5F), 0}}};
@@ -82,7 +82,7 @@ TEST(Presence, TheDistanceIsTheOneAskedFor) {
   options.within_m = 0.01;
   EXPECT_FALSE(is_present({9.98F, 0, 0}, options));
   EXPECT_TRUE(is_present({9.995F, 0, 0}, options));
-  options.within_m = 30;  // farther than the sensor: the piece of the ray starts there
+  options.within_m = 30;  // farther than the sensor: the part of the ray starts there
   EXPECT_TRUE(is_present({3, 0, 0}, options));
   EXPECT_FALSE(is_present({-3, 0, 0}, options));
 }
@@ -139,7 +139,7 @@ TEST(Presence, SceneAndCloudHaveTheirOwnOrigins) {
   for (const double off_m : {0.0, 0.05, -0.05, 0.15, -0.15})
     add(cloud, local(sensor), local(center + Vec3d{off_m, 0, 0}));
   expect_counts(run(disks, cloud, nullptr, tested_options(), scene_origin).all, 5, 3);
-  // Taken for the same origin nothing is where it was.
+  // With the wrong origin nothing matches.
   expect_counts(run(disks, cloud, nullptr, tested_options(), cloud.origin).all, 5, 0);
 }
 
@@ -212,7 +212,7 @@ std::optional<ErrorKind> kind_of_error(const PointCloud& cloud, const PresenceOp
   return std::nullopt;
 }
 
-TEST(Presence, OptionsThatHoldNothingAreAnError) {
+TEST(Presence, InvalidOptionsAreAnError) {
   const PointCloud cloud = labelled({{kRoad, true}});
   const auto kind_with = [&](double within_m, double min_range_m, double max_range_m) {
     return kind_of_error(cloud, {within_m, min_range_m, max_range_m});
@@ -227,7 +227,7 @@ TEST(Presence, OptionsThatHoldNothingAreAnError) {
   EXPECT_EQ(kind_with(0.1, 2.5, std::nan("")), ErrorKind::usage);
 }
 
-TEST(Presence, CloudsThatTellNothingAreAnError) {
+TEST(Presence, CloudsWithoutRaysAreAnError) {
   const LabelScheme labels = load_label_scheme("semantickitti");
   const PresenceOptions options = tested_options();
   EXPECT_EQ(kind_of_error({}, options), ErrorKind::data);
@@ -248,7 +248,7 @@ TEST(Presence, CloudsThatTellNothingAreAnError) {
 }
 
 /// Oracle: more points than are cast at once, each on its own way to the wall's plane; whether the
-/// wall is within 0.1 m of it along that way follows from its place alone.
+/// wall is within 0.1 m of it along that way follows from its position alone.
 TEST(Presence, SameForEveryNumberOfThreads) {
   const LabelScheme labels = load_label_scheme("semantickitti");
   constexpr std::size_t kPoints = 300000;

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/register_scans.h"
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,21 +10,22 @@
 #include "adasplats/core/maths/small_matrix.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/registration_sums.h"
+#include "adasplats/evaluate/resimulate.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kBeamEvery = 8;  // beams
+constexpr std::size_t kBeamEvery = 8;  // uses every 8th beam
 constexpr int kRegistrationSteps = 12;
 constexpr double kFirstWidth_m = 0.15, kLastWidth_m = 0.03;
-/// Prior on a step, in squared metres of residual: a scan that hits nothing stays.
+/// Prior on a step, in squared metres of residual: a scan without hits does not move.
 constexpr double kPrior = 1e-3;
 
 Vec3d normal_at(const SceneView& scene, std::uint32_t primitive) {
   return vec_cast<double>(unit_normal(scene, primitive));
 }
 
-/// The beams of a scan that are looked at, in its frame.
+/// The beams of a scan that are used, in its frame.
 std::vector<MeasuredBeam> some_beams(const KittiSequence& sequence, std::size_t index,
                                      const LabelScheme& labels, const ResimulateOptions& options) {
   const KittiScan scan = read_kitti_scan(sequence, index);
@@ -36,7 +35,7 @@ std::vector<MeasuredBeam> some_beams(const KittiSequence& sequence, std::size_t 
     const double range_m = length(point);
     if (!(range_m >= options.min_range_m && range_m <= options.max_range_m)) continue;
     const SemanticClass* found = scan.classes.empty() ? nullptr : labels.find(scan.classes[i]);
-    if (found && !takes_part(found->mobility, options.drop_moving, options.drop_movable)) continue;
+    if (found && !is_counted(found->mobility, options.drop_moving, options.drop_movable)) continue;
     beams.push_back(beam_of(sequence, index, scan, i));
   }
   return beams;

@@ -9,15 +9,14 @@
 
 namespace adasplats {
 
-/// Sums of a Gauss-Newton step over a rotation about a place and a shift, by distances along the
-/// normals of what is hit: point to plane, with weights that fall with the distance
-/// (Geman-McClure).
+/// Sums of a Gauss-Newton step for a rotation about a pivot and a shift: point to plane along the
+/// normals of the hits, with weights that decrease with distance (Geman-McClure).
 struct RegistrationSums {
   std::array<double, 36> matrix{};
   std::array<double, 6> right{};
   std::size_t beams = 0;
 
-  /// `arm`: of the measured point, from the place that is turned about.
+  /// `arm`: from the pivot to the measured point.
   void add(Vec3d arm, Vec3d normal, double residual_m, double width_m) {
     const double share = width_m * width_m / (width_m * width_m + residual_m * residual_m);
     const double weight = share * share;

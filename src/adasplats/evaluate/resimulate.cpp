@@ -21,7 +21,7 @@ constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr float kMinUp = static_cast<float>(EmptyBeamOptions{}.min_up);
 
-/// What is kept of a beam until the end.
+/// The stored result of one beam.
 struct Beam {
   float error_m = kNoHitError;
   std::uint32_t primitive = Hit::kNone;
@@ -32,7 +32,7 @@ struct Beam {
   std::uint16_t class_id = 0;      ///< 0 without labels
 };
 
-/// Beams of one scan that take part, with the points they measured and the model predicts.
+/// The counted beams of one scan, with the measured and the predicted points.
 struct CastScan {
   std::vector<Beam> beams;
   PointCloud measured;   ///< sensor frame
@@ -73,7 +73,7 @@ double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primi
   return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
 }
 
-/// The measured points that take part: finite, within the ranges, of classes that are kept.
+/// The measured points that count: finite, within the ranges, of classes that are kept.
 std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::filesystem::path& file,
                                          const LabelScheme& labels,
                                          const ResimulateOptions& options) {
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::files
                                          std::to_string(scan.classes[i]) +
                                          " is not in the label scheme '" + labels.name() + "'");
       }
-      if (!takes_part(found->mobility, options.drop_moving, options.drop_movable)) continue;
+      if (!is_counted(found->mobility, options.drop_moving, options.drop_movable)) continue;
     }
     selected.push_back(static_cast<std::uint32_t>(i));
   }
@@ -115,8 +115,8 @@ BeamToCast beam_to_cast(const MeasuredBeam& beam, const RigidTransform& scene_fr
   return cast;
 }
 
-/// Everything the beams of all scans are cast and sorted with.
-struct CastPlace {
+/// What the casts of all scans share.
+struct CastSettings {
   const Tracer& tracer;
   const SceneView& scene;
   Vec3d scene_origin;
@@ -126,7 +126,7 @@ struct CastPlace {
   Bins incidences;
 };
 
-CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std::size_t index,
+CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, std::size_t index,
                    const Executor& executor) {
   const KittiScan scan = read_kitti_scan(sequence, index);
   const std::vector<std::uint32_t> selected =
@@ -170,7 +170,7 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
   return result;
 }
 
-/// What is kept of a scan's single beams.
+/// The single beams of a scan.
 ScanErrors errors_of(CastScan scan) {
   ScanErrors errors;
   errors.measured = std::move(scan.measured.positions);
@@ -196,7 +196,7 @@ class MeanCloudDistance {
     sum_.simulated_points += scan.simulated_points;
     sum_.original_points += scan.original_points;
   }
-  /// NaN distances where no scan was added.
+  /// Distances are NaN if no scan was added.
   CloudDistance mean() const {
     const double scans = scans_ == 0 ? std::numeric_limits<double>::quiet_NaN() : scans_;
     CloudDistance result = sum_;
@@ -222,8 +222,8 @@ BeamAccuracy accuracy_where(const std::vector<Beam>& beams, const Predicate& pre
   return accuracy_of(errors_m);
 }
 
-/// The errors of the beams of each of `parts`, in their order. `part_of`: of a beam; beyond the
-/// last part: of none. The beams are gone through once, however many parts there are.
+/// The errors of the beams of each of `parts`, in one pass over the beams. `part_of` returns the
+/// part of a beam; numbers from `parts` on mean none.
 template <class PartOf>
 std::vector<std::vector<float>> errors_by_part(const std::vector<Beam>& beams, std::size_t parts,
                                                const PartOf& part_of) {
@@ -235,7 +235,7 @@ std::vector<std::vector<float>> errors_by_part(const std::vector<Beam>& beams, s
 }
 
 void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
-                    const CastPlace& setting, bool labelled) {
+                    const CastSettings& setting, bool labelled) {
   const Bins& ranges = setting.ranges;
   const auto by_range =
       errors_by_part(beams, ranges.size(), [](const Beam& beam) { return beam.range_bin; });
@@ -282,7 +282,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
                             const ResimulateOptions& options, const Executor& executor,
                             ProgressSink& progress, KeepBeams keep) {
   check(options);
-  const CastPlace setting{
+  const CastSettings setting{
       tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   std::vector<Beam> beams;
   MeanCloudDistance clouds;
@@ -302,8 +302,9 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   }
   progress.end_step();
   if (beams.empty()) {
-    throw Error(ErrorKind::data, sequence.folder.string() +
-                                     ": no measured beams within the ranges and classes kept");
+    throw Error(ErrorKind::data,
+                sequence.folder.string() +
+                    ": no measured beams within the ranges and of classes that are kept");
   }
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });

@@ -18,9 +18,9 @@
 namespace adasplats {
 
 struct ResimulateOptions {
-  double min_range_m = 2.5;  ///< measured beams nearer or farther than these are left out
+  double min_range_m = 2.5;  ///< beams with measured ranges outside these are left out
   double max_range_m = 50.0;
-  bool drop_moving = true;    ///< leave out beams whose label is of a moving class
+  bool drop_moving = true;    ///< leave out beams on moving classes
   bool drop_movable = false;  ///< leave out beams on movable classes (parked cars) as well
 };
 
@@ -40,39 +40,49 @@ struct BeamAccuracy {
   double spread_m = 0;  ///< median of |error - bias_m|
 };
 
-/// What single beams of one scan gave.
+/// The single beams of one scan.
 struct ScanErrors {
   std::vector<Vec3f> measured;            ///< sensor frame, m
   std::vector<float> errors_m;            ///< predicted - measured range; NaN: no hit
-  std::vector<std::uint32_t> primitives;  ///< that they hit; Hit::kNone: none
+  std::vector<std::uint32_t> primitives;  ///< hit by each beam; Hit::kNone: none
 };
 
-/// Whether what single beams gave is kept: 20 bytes a beam.
+/// Whether single beams are kept, 20 bytes each.
 enum class KeepBeams : std::uint8_t { no, yes };
 
 struct ResimulateResult {
   BeamAccuracy all;
-  /// Of the beams that go as far up in the world as those that are known to have returned nothing
+  /// The beams at least as far upward in the world as the beams identified as without return
   /// (EmptyBeamOptions::min_up).
   BeamAccuracy upward;
-  std::string beams;  ///< where they started (ScanBeams::description)
+  std::string beams;  ///< source of their origins (ScanBeams::description)
   /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D
-  /// average over frames); NaN where no beam hit. Point counts are sums.
+  /// average over frames); NaN if no beam hits. Point counts are sums.
   CloudDistance clouds;
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme
-  /// "-25 deg", ...: of the beam in the sensor's frame, rounded down. Where the biases differ, the
-  /// lasers do: what one of them measures, no model can predict for all.
+  /// "-25 deg", ...: elevation of the beam in the sensor's frame, rounded down. Different biases
+  /// show differences between lasers, which no model can predict.
   std::vector<std::pair<std::string, BeamAccuracy>> by_elevation;
-  std::vector<ScanErrors> errors;  ///< one a scan of the sequence; empty unless beams are kept
+  std::vector<ScanErrors> errors;  ///< one per scan of the sequence; empty unless beams are kept
 };
 
-/// Casts each measured beam of a held-out sequence again, from where it started (sequence.beams)
-/// through the measured point, and compares ranges. Incidence is against the hit surface's normal.
+/// Casts each measured beam of a held-out sequence again, from its origin (sequence.beams) through
+/// the measured point, and compares ranges. Incidence is the angle to the normal of the hit
+/// surface.
 ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
                             const KittiSequence& sequence, const LabelScheme& labels,
                             const ResimulateOptions& options, const Executor& executor,
                             ProgressSink& progress, KeepBeams keep = KeepBeams::no);
+
+/// Moves every scan of a sequence to where its beams fit the scene best, as if its pose had no
+/// error. Point to plane along the beams, against the normals of the surfaces that they hit, with
+/// weights that decrease with distance (Geman-McClure, 15 to 3 cm). The scans are aligned with the
+/// scene that they are then compared with, so the remaining errors are those of the scene alone.
+void register_scans(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                    KittiSequence& sequence, const LabelScheme& labels,
+                    const ResimulateOptions& options, const Executor& executor,
+                    ProgressSink& progress);
 
 }  // namespace adasplats

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// A sequence folder of one scan whose sensor stands at `position`, turned by 90 degrees to the
+/// A sequence folder of one scan with its sensor at `position`, turned by 90 degrees to the
 /// left: its +x is +y in the world.
 class Resimulate : public ::testing::Test {
  protected:
@@ -90,7 +90,7 @@ TEST_F(Resimulate, KnownOffsetsGiveExactShares) {
   EXPECT_TRUE(r.by_class.empty());
 }
 
-TEST_F(Resimulate, SingleBeamsAreKeptWhereTheyAreAskedFor) {
+TEST_F(Resimulate, SingleBeamsAreKeptOnRequest) {
   const KittiSequence held_out = sequence({{10, 0, 0}, {0.5F, 0, 0}, {9.75F, 0, 0}, {-10, 0, 0}});
   EXPECT_TRUE(run(held_out).errors.empty());
   const ResimulateResult kept = run(held_out, {}, KeepBeams::yes);
@@ -105,7 +105,7 @@ TEST_F(Resimulate, SingleBeamsAreKeptWhereTheyAreAskedFor) {
   EXPECT_EQ(scan.primitives, (std::vector<std::uint32_t>{0, 0, Hit::kNone}));
 }
 
-TEST_F(Resimulate, IncidenceIsAgainstTheSurfaceOfHitsAlone) {
+TEST_F(Resimulate, IncidenceIsOnlyCountedForHits) {
   const ResimulateResult r = run(sequence({{10, 0, 0}, {10, 10, 0}, {10, -17, 0}, {-10, 0, 0}}));
   ASSERT_EQ(r.by_incidence.size(), 5U);
   EXPECT_EQ(r.by_incidence[0].first, "0-30 deg");
@@ -164,7 +164,7 @@ TEST_F(Resimulate, CloudsAreComparedInTheSensorFrame) {
   EXPECT_EQ(r.clouds.simulated_points, 1U);
 }
 
-// Analytic: of ten beams on a wall three lie in a hole of the model, whose wall is a disk a beam.
+// Analytic: three of ten beams on a wall hit a hole of the model, which has one disk per beam.
 TEST_F(Resimulate, HoleOfKnownShare) {
   std::vector<Vec3f> points;
   std::vector<Disk> disks;
@@ -187,7 +187,7 @@ TEST_F(Resimulate, HoleOfKnownShare) {
   EXPECT_NEAR(r.clouds.completeness_m, (1 + 2 + 3) / 10.0, 1e-5);
 }
 
-// Analytic: sines of 0.04 and 0.06 lie on either side of 0.05; a sensor that nods by 0.1 rad lifts
+// Analytic: sines of 0.04 and 0.06 are on either side of 0.05; a sensor that nods by 0.1 rad lifts
 // beams that are level in its frame.
 TEST_F(Resimulate, UpwardIsInTheWorld) {
   const auto at_sine = [](float sine) {
@@ -201,7 +201,7 @@ TEST_F(Resimulate, UpwardIsInTheWorld) {
       held_out.trajectory[0].world_from_sensor.rotation * rotation_from_yaw_pitch_roll(0, -0.1, 0);
   const ResimulateResult nodding = run(held_out);
   EXPECT_EQ(nodding.upward.rays, 2U);
-  EXPECT_DOUBLE_EQ(nodding.upward.no_hit, 0.0);  // what is behind went down
+  EXPECT_DOUBLE_EQ(nodding.upward.no_hit, 0.0);  // beams to the rear point down
 }
 
 // Oracle: beams of each elevation and incidence, counted by hand; what falls into none is in none.

@@ -8,9 +8,9 @@
 
 namespace adasplats {
 
-/// From 0 to 1; NaN of nothing.
-inline double share_of(std::size_t part, std::size_t whole) {
-  return whole == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(whole);
+/// From 0 to 1; NaN if `all` is 0.
+inline double share_of(std::size_t part, std::size_t all) {
+  return all == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(all);
 }
 
 }  // namespace adasplats

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/splat_errors.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/evaluate/error_points.h"
 
 namespace adasplats {
 namespace {
@@ -43,7 +42,7 @@ TEST(SplatErrors, FilesAddUp) {
   EXPECT_TRUE(SplatErrors(0).means_m().empty());
 }
 
-TEST(SplatErrors, RefuseBeamsOfOtherModels) {
+TEST(SplatErrors, RejectBeamsOfOtherModels) {
   SplatErrors errors(4);
   expect_error(ErrorKind::data, {"e.ply", "another model", "3 splats", "4"},
                [&] { errors.add(beams({0.1F}, {0}, 3), "e.ply"); });

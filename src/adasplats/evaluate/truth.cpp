@@ -12,7 +12,6 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
-#include "adasplats/evaluate/beam_neighbors.h"
 #include "adasplats/evaluate/share.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/trace/closest_point.h"
@@ -22,7 +21,22 @@ namespace {
 
 constexpr float kBleedingMargin_m = 0.1F;
 
-/// What is kept of a ray until the end: 12 bytes.
+std::vector<std::array<std::uint32_t, 4>> neighbors_on_rings(const LidarModel& sensor) {
+  std::vector<std::array<std::uint32_t, 4>> neighbors(sensor.free_pattern.size(),
+                                                      {kNoBeam, kNoBeam, kNoBeam, kNoBeam});
+  std::vector<std::uint32_t> last_of_ring(sensor.rings(), kNoBeam);
+  for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
+    std::uint32_t& last = last_of_ring[sensor.free_pattern[i].ring];
+    if (last != kNoBeam) {
+      neighbors[i][0] = last;
+      neighbors[last][1] = i;
+    }
+    last = i;
+  }
+  return neighbors;
+}
+
+/// The stored result of one ray, 12 bytes.
 struct TruthBeam {
   float error_m = kNoHitError;    ///< simulated - true range, where both have one
   float surface_m = kNoHitError;  ///< simulated point to the true surface
@@ -33,7 +47,7 @@ struct TruthBeam {
   bool has_point() const { return !std::isnan(surface_m); }
 };
 
-/// Casts scans; one object serves all of them.
+/// Casts all scans.
 class TruthCaster {
  public:
   TruthCaster(const Tracer& model, Vec3d model_origin, const MeshModel& truth,
@@ -51,7 +65,7 @@ class TruthCaster {
         neighbors_(beam_neighbors(sensor)),
         dropped_(dropped_classes(truth.mesh, labels, options)) {}
 
-  /// The rays of one revolution that take part.
+  /// The rays of one revolution that count.
   std::vector<TruthBeam> cast(const TimedPose& pose) const {
     const auto rays_at = [&](Vec3d origin) {
       return scan_rays(sensor_, firings_, {pose, {}}, origin, executor_);
@@ -83,7 +97,7 @@ class TruthCaster {
   }
 
  private:
-  /// By class id of the mesh, whether rays on it are left out.
+  /// Whether rays on a class of the mesh are left out, by id.
   static std::map<std::uint16_t, bool> dropped_classes(const TriangleMesh& mesh,
                                                        const LabelScheme* labels,
                                                        const TruthOptions& options) {
@@ -97,12 +111,12 @@ class TruthCaster {
                                          labels->name() + "'");
       }
       dropped[id] = found != nullptr &&
-                    !takes_part(found->mobility, options.drop_moving, options.drop_movable);
+                    !is_counted(found->mobility, options.drop_moving, options.drop_movable);
     }
     return dropped;
   }
 
-  /// Of each ray's simulated point; of rays without one nothing (a point that is not finite).
+  /// For the simulated point of each ray. A ray without hit has a point that is not finite.
   std::vector<SurfaceDistance> surface_distances(const std::vector<Ray>& rays,
                                                  const std::vector<Hit>& hits) const {
     std::vector<Vec3f> points(rays.size());
@@ -112,18 +126,18 @@ class TruthCaster {
     return closest_.of(points, executor_);
   }
 
-  /// Whether a range lies by the margin between the true ranges of beam i and its neighbours.
+  /// Whether a range is between the true ranges of beam i and its neighbours, with the margin.
   bool lies_between(float range_m, const std::vector<Hit>& true_hits, std::size_t i) const {
     bool behind_one = false;
     bool before_one = false;
-    const auto look_at = [&](const Hit& hit) {
+    const auto compare = [&](const Hit& hit) {
       if (!hit.valid()) return;
       behind_one = behind_one || range_m > hit.t + kBleedingMargin_m;
       before_one = before_one || range_m < hit.t - kBleedingMargin_m;
     };
-    look_at(true_hits[i]);
+    compare(true_hits[i]);
     for (const std::uint32_t neighbor : neighbors_[i]) {
-      if (neighbor != kNoBeam) look_at(true_hits[neighbor]);
+      if (neighbor != kNoBeam) compare(true_hits[neighbor]);
     }
     return behind_one && before_one;
   }
@@ -163,13 +177,13 @@ DistanceSummary summary_of(std::vector<float>&& distances_m) {
   return summary;
 }
 
-/// `takes_ray` chooses the rays; ranges count those of them that meet the truth.
+/// `is_chosen` selects the rays; range errors are of those that meet the true surface.
 template <class Predicate>
-TruthAccuracy accuracy_where(const std::vector<TruthBeam>& beams, const Predicate& takes_ray) {
+TruthAccuracy accuracy_where(const std::vector<TruthBeam>& beams, const Predicate& is_chosen) {
   std::vector<float> errors_m;
   std::vector<float> distances_m;
   for (const TruthBeam& beam : beams) {
-    if (!takes_ray(beam)) continue;
+    if (!is_chosen(beam)) continue;
     if (beam.meets_truth) errors_m.push_back(beam.error_m);
     if (beam.has_point()) distances_m.push_back(beam.surface_m);
   }
@@ -211,6 +225,23 @@ TruthResult result_of(const std::vector<TruthBeam>& beams, const LabelScheme* la
 
 }  // namespace
 
+std::vector<std::array<std::uint32_t, 4>> beam_neighbors(const LidarModel& sensor) {
+  if (!sensor.free_pattern.empty()) return neighbors_on_rings(sensor);
+  const std::uint32_t columns = sensor.columns;
+  const auto rings = static_cast<std::uint32_t>(sensor.rings());
+  std::vector<std::array<std::uint32_t, 4>> neighbors;
+  neighbors.reserve(sensor.rays_per_scan());
+  for (std::uint32_t ring = 0; ring < rings; ++ring) {
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t first = ring * columns;
+      neighbors.push_back({first + (column + columns - 1) % columns, first + (column + 1) % columns,
+                           ring > 0 ? first - columns + column : kNoBeam,
+                           ring + 1 < rings ? first + columns + column : kNoBeam});
+    }
+  }
+  return neighbors;
+}
+
 TruthResult compare_with_truth(const Tracer& model, Vec3d model_origin, const MeshModel& truth,
                                const LabelScheme* labels, const LidarModel& sensor,
                                const Trajectory& poses, const TruthOptions& options,
@@ -219,8 +250,8 @@ TruthResult compare_with_truth(const Tracer& model, Vec3d model_origin, const Me
   if (truth.size() == 0) throw Error(ErrorKind::data, "no triangles in the true mesh");
   if (!repeats(sensor))
     throw Error(ErrorKind::usage, sensor.name +
-                                      ": its pattern does not repeat, so that beams have "
-                                      "no neighbours to compare them with");
+                                      ": its pattern does not repeat, so its beams have no "
+                                      "neighbours, which bleeding is computed from");
   const TruthCaster caster(model, model_origin, truth, labels, sensor, options, executor);
   std::vector<TruthBeam> beams;
   progress.begin_step("compare with the truth", poses.size());

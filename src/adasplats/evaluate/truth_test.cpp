@@ -9,13 +9,12 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
-#include "adasplats/evaluate/beam_neighbors.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::uint16_t kCar = 10, kRoad = 40, kBuilding = 50, kPole = 80, kMovingCar = 252;
-/// Where the sensor stands; the tests' coordinates are relative to it.
+/// Position of the sensor; the tests' coordinates are relative to it.
 constexpr Vec3d kSensor = {7000, 100, 2};
 
 /// A square plate as two triangles: `middle`, half the side, unit axes of the plane.
@@ -31,7 +30,7 @@ void add_plate(MeshModel& model, Vec3d middle, double half_m, Vec3d u, Vec3d v,
   model.mesh.classes.insert(model.mesh.classes.end(), 2, class_id);
 }
 
-/// A wall that stands across a direction in the xy-plane, `range_m` away.
+/// A wall perpendicular to a direction in the xy-plane, `range_m` away.
 void add_wall(MeshModel& model, Vec3d direction, double range_m, double half_m,
               std::uint16_t class_id = kBuilding) {
   const Vec3d ahead = normalized(direction);
@@ -134,7 +133,7 @@ TEST(Truth, HoleOfKnownShare) {
   EXPECT_EQ(r.all.surface.points, 7U);
 }
 
-// Analytic: five rays into the sky, of which two meet a wall that is not there.
+// Analytic: five rays into the sky, two of which hit a wall that does not exist.
 TEST(Truth, GhostWall) {
   MeshModel truth = true_mesh();
   MeshModel model = other_mesh();
@@ -170,7 +169,7 @@ TruthResult with_stray_point(Vec3d direction, double range_m) {
 // Analytic: a point in the gap bleeds where one of its beam's neighbours is on the other wall.
 TEST(Truth, BleedingOfASinglePoint) {
   EXPECT_DOUBLE_EQ(with_stray_point({1, 0.1, 0}, 7.5).bleeding_share, 0.2);
-  // The same beside the edge, but with all beams around it on the far wall.
+  // The same next to the edge, but with all beams around it on the far wall.
   EXPECT_DOUBLE_EQ(with_stray_point({1, 0.3, 0}, 7.5).bleeding_share, 0.0);
   // 6 cm before the far wall; a point nearer than both walls.
   EXPECT_DOUBLE_EQ(with_stray_point({1, 0.1, 0}, 9.99).bleeding_share, 0.0);
@@ -208,7 +207,7 @@ TEST(Truth, ClassesAreThoseOfTheTruthAndCanBeDropped) {
   EXPECT_EQ(run(model, truth, sensor, options).rays, 5U);
 }
 
-TEST(Truth, RangesOfTheSensorBoundTheTruth) {
+TEST(Truth, RangesOfTheSensorLimitTheTruth) {
   MeshModel truth = true_mesh();
   add_wall(truth, kEast, 10, 2);
   add_wall(truth, kWest, 60, 2);  // beyond 50 m: no true surface

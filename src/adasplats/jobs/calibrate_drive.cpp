@@ -26,7 +26,7 @@
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/settings_json.h"
-#include "adasplats/report/calibration_page.h"
+#include "adasplats/report/report_page.h"
 #include "adasplats/sensors/unit_sensor.h"
 
 namespace adasplats {

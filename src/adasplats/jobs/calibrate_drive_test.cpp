@@ -254,7 +254,7 @@ TEST_F(CalibrateDrive, LongDrivesAreReadAndSolvedInWindows) {
   EXPECT_EQ(report["windows"]["each"].size(), 3U);
   EXPECT_EQ(report["windows"]["count"], 3);
   EXPECT_GT(report["windows"]["overlaps"]["scans"], 0);
-  EXPECT_NE(read_file(drive.below("windows") / "report.html").find("where windows overlap"),
+  EXPECT_NE(read_file(drive.below("windows") / "report.html").find("overlaps of windows"),
             std::string::npos);
   in_windows.output = drive.below("none");
   in_windows.windows.window_scans = 2;

@@ -9,13 +9,11 @@
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/jobs/demo_page.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/pictures/mosaic.h"
 #include "adasplats/jobs/pictures/panel.h"
 #include "adasplats/jobs/pictures/render.h"
-#include "adasplats/jobs/provenance/metrics_json.h"
 #include "adasplats/jobs/synth_street.h"
 
 namespace adasplats {
@@ -42,8 +40,8 @@ ViewChoice street_view(const fs::path& sequence, std::size_t poses, int width) {
   return view;
 }
 
-/// What the demo is about in one picture: all methods by class, and below what the held-out beams
-/// say of them, from the same place of the street.
+/// The results in one picture: the models of all methods by class, and below each the errors of
+/// held-out beams, seen from the same position.
 class DemoMosaic {
  public:
   DemoMosaic(ViewChoice view, std::size_t methods)
@@ -73,16 +71,16 @@ class DemoMosaic {
   int left_ = 0;
 };
 
-/// What all methods are tried on.
+/// The data that all methods share.
 struct Drive {
   fs::path folder;         ///< of the demo
-  KittiSequence held_out;  ///< scans that no model has seen
+  KittiSequence held_out;  ///< scans that no model was made from
   std::size_t poses() const { return held_out.scans.size(); }
   fs::path mapping() const { return folder / "street" / "mapping.ply"; }
   fs::path sequence() const { return folder / "street" / "sequences" / "00"; }
 };
 
-/// A method's row and what else is drawn: the model, which is loaded once.
+/// Results of one method, with what is drawn: the model, loaded once, and the errors.
 struct DemoMethod {
   DemoRow row;
   std::shared_ptr<const ModelScene> scene;
@@ -116,7 +114,7 @@ DemoMethod run_method(const std::string& name, SplatMethod method, const Drive& 
   row.thin_c2c_m = c2c_of_classes(row.comparison, thin_classes());
 
   ResimulateOptions held_out;
-  held_out.drop_movable = true;  // parked cars are not in the models
+  held_out.drop_movable = true;  // the models contain no parked cars
   KittiSequence scans = drive.held_out;
   row.held_out = evaluate_resimulation(*result.scene, scans, kDemoLabels, held_out,
                                        {.keep = KeepBeams::yes}, session);
@@ -160,7 +158,7 @@ DemoResult run_demo(const DemoJob& job, Session& session) {
   DemoMosaic mosaic(street_view(drive.sequence(), drive.poses(), 800), std::size(kSplatMethods));
   for (const auto& [word, method] : kSplatMethods) {
     DemoMethod made = run_method(std::string(word), method, drive, session);
-    // Of our own method for the viewer; of all they would be the larger part of the demo.
+    // For the viewer. Only for our own method: files of all methods would dominate the demo's size.
     if (method == SplatMethod::consistent)
       write_error_points(folder.path() / (made.row.method + "-errors.ply"), made.errors);
     mosaic.add(made.row.method, made.scene, made.errors, session);

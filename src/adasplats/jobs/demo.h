@@ -16,15 +16,15 @@
 
 namespace adasplats {
 
-/// The paper's experiment on the procedural street, with every method.
+/// The paper's experiment with every method, on a procedural street.
 struct DemoJob {
   std::filesystem::path output = "adasplats-demo";
   bool overwrite = false;
   std::size_t points = 300'000;
-  double driving_spacing_m = 2;  ///< between the held-out scans
+  double driving_spacing_m = 2;  ///< distance between held-out scans
 };
 
-/// What one method came to.
+/// Results of one method.
 struct DemoRow {
   std::string method;
   ModelResult model;
@@ -38,16 +38,25 @@ struct DemoResult {
   StreetReport street;
   std::vector<DemoRow> rows;
   // Relative to the output folder:
-  std::vector<std::filesystem::path> pictures;  ///< two of each method
-  std::filesystem::path picture;                ///< of all methods and their errors
+  std::vector<std::filesystem::path> pictures;  ///< two per method
+  std::filesystem::path picture;                ///< all methods and their errors
   std::filesystem::path page;                   ///< HTML
 };
 
-/// Street, then for each method: model, simulation on the shifted trajectory, C2C,
-/// re-simulation of the driving sequence, pictures; then a picture of all and a page.
+/// Makes a street, then for each method: a model, a simulation on the shifted trajectory, C2C,
+/// re-simulation of the driving sequence, pictures; then an overview picture and a page.
 DemoResult run_demo(const DemoJob& job, Session& session);
 
-/// The keys of a demo's --report: those of the single jobs by method.
+/// The HTML page of a demo; pictures are read from `folder` and embedded. `name`: of the folder in
+/// the commands that the page shows.
+std::string demo_page(const DemoResult& result, const std::filesystem::path& folder,
+                      const std::filesystem::path& name);
+
+/// The command (for a POSIX shell) that opens the viewer on the demo's best model and its held-out
+/// scans.
+std::string view_command(const std::filesystem::path& name);
+
+/// The keys of --report: those of the single jobs, by method.
 nlohmann::ordered_json to_json(const DemoResult& result);
 
 }  // namespace adasplats

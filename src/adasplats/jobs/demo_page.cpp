@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/jobs/demo_page.h"
-
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adasplats/jobs/demo.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/report/document.h"
-#include "adasplats/report/html_page.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats {
@@ -27,7 +25,7 @@ page::Table table_of(const DemoResult& result) {
   table.columns = {{"", "splats", Better::neither},
                    {"", "model, s", Better::lower},
                    {"simulated to original", "C2C, cm", Better::lower},
-                   {"simulated to original", "thin things, cm", Better::lower},
+                   {"simulated to original", "thin objects, cm", Better::lower},
                    {"held-out beams", "within 10 cm", Better::higher},
                    {"held-out beams", "early", Better::lower}};
   for (const DemoRow& row : result.rows) {
@@ -42,10 +40,10 @@ page::Table table_of(const DemoResult& result) {
     table.rows.push_back(std::move(line));
   }
   table.definitions = {
-      {"C2C", "mean distance of simulated points to the nearest original one"},
-      {"thin things", "C2C of fences, poles and traffic signs"},
-      {"within 10 cm", "share of held-out beams whose range the model predicts so well"},
-      {"early", "share of held-out beams that the model stops more than 50 cm too early"}};
+      {"C2C", "mean distance of a simulated point to the nearest original point"},
+      {"thin objects", "C2C of fences, poles and traffic signs"},
+      {"within 10 cm", "share of the held-out beams whose range the model predicts within 10 cm"},
+      {"early", "share of the held-out beams that hit the model more than 50 cm too early"}};
   return page::with_best_marked(std::move(table));
 }
 
@@ -57,10 +55,10 @@ std::string sequence_in(const std::filesystem::path& folder) {
   return (folder / "street" / "sequences" / "00").string();
 }
 
-/// What to do next, as it is typed in a shell.
+/// Commands to try next.
 std::vector<page::Fact> commands_for(const std::filesystem::path& name) {
   return {
-      {"look around, drive a sensor", view_command(name)},
+      {"view the scene, drive a sensor", view_command(name)},
       {"errors of held-out beams in the viewer",
        command_text(
            {"view", model_in(name), "--errors", (name / "consistent-errors.ply").string()})},
@@ -84,13 +82,14 @@ std::string demo_page(const DemoResult& result, const std::filesystem::path& fol
                       " m: " + page::whole_text(static_cast<double>(result.street.mapping_points)) +
                       " points of a mapping drive become splat models; " +
                       std::to_string(result.street.driving_scans) +
-                      " scans that no model has seen say how good they are.";
+                      " held-out scans measure how well each model predicts ranges.";
   page::Section seen;
   seen.id = "picture";
-  seen.title = "What the methods make of it";
+  seen.title = "The models and their errors";
   seen.paragraphs = {
-      "Above each model by class, below the same view by what held-out beams say of each splat: "
-      "blue where the model stops them early, red where late, orange where they fell through it."};
+      "Top: each model by class. Bottom: the same view by the error of held-out beams at each "
+      "splat: "
+      "blue: hit too early, red: too late, orange: no hit."};
   seen.pictures = {{"All methods", {}, result.picture.string()}};
   page::Section figures;
   figures.id = "figures";
@@ -103,7 +102,7 @@ std::string demo_page(const DemoResult& result, const std::filesystem::path& fol
     more.pictures.push_back({picture.stem().string(), {}, picture.string()});
   page::Section next;
   next.id = "next";
-  next.title = "Go on";
+  next.title = "Next steps";
   next.commands = commands_for(name);
   document.sections = {std::move(seen), std::move(figures), std::move(more), std::move(next)};
   return page::html_page(document, folder);

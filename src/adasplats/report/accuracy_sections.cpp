@@ -5,8 +5,8 @@
 #include "adasplats/report/measures.h"
 #include "adasplats/report/sections.h"
 
-// What the paper does not measure: cost, both directions of the cloud distance, held-out beams and
-// exact truth (design notes, section "Metrics").
+// Measures that the paper does not have: cost, both directions of the cloud distance, held-out
+// beams and exact truth.
 namespace adasplats::page {
 namespace {
 
@@ -35,15 +35,16 @@ std::vector<Measure> range_measures(const KeyPath& at) {
 }
 
 std::vector<Fact> range_definitions() {
-  return {{"no hit", "share of the rays that meet nothing in the model."},
-          {"early, late",
-           "share of the rays whose simulated range is more than 50 cm too short, or too long."},
-          {"≤ 2, 5, 10, 50 cm",
-           "share of the rays whose range is off by at most that much; a ray without a hit is not "
-           "among them."},
-          {"median, RMSE",
-           "of the absolute range error, and the root of the mean squared one, over the rays that "
-           "hit: a model with holes leaves out its worst rays, so read them next to “no hit”."}};
+  return {
+      {"no hit", "share of the rays that do not hit the model."},
+      {"early, late",
+       "share of the rays whose simulated range is more than 50 cm too short, or too long."},
+      {"≤ 2, 5, 10, 50 cm",
+       "share of the rays with at most that range error; rays without a hit do not count as "
+       "within."},
+      {"median, RMSE",
+       "of the absolute range error, and root mean square error, over the rays that hit. A model "
+       "with holes leaves out its worst rays, so read them together with “no hit”."}};
 }
 
 Breakdown by_range(std::string title, KeyPath figure) {
@@ -122,10 +123,10 @@ Section cost_section(const std::vector<Competitor>& competitors) {
        {"complete (scans/s)", Better::higher, read({"simulate", "scans_per_second", "assembled"})},
        {"written (scans/s)", Better::higher, read({"simulate", "scans_per_second", "written"})}});
   table.definitions = {
-      {"peak memory", "the largest resident memory of the program that generated the model."},
-      {"points used", "input points that the model was made from, after filters."},
+      {"peak memory", "maximum resident memory of the program that generated the model."},
+      {"points used", "input points that the model was made from, after filtering."},
       {"traced, complete, written",
-       "scans a second: rays cast only; with making the points; with writing files."}};
+       "scans per second: casting rays; also making points; also writing files."}};
   table.charts = {
       {ChartKind::bars, "Time to generate", "", "seconds", columns_named(table, "generate (s)")},
       {ChartKind::bars, "Primitives", "", "disks or triangles",
@@ -152,14 +153,14 @@ Section clouds_section(const std::vector<Competitor>& competitors) {
   table.definitions = {
       {"C2C", "mean distance of a simulated point to the nearest original point."},
       {"completeness",
-       "the other direction: mean distance of an original point to the nearest simulated one. It "
-       "also counts what the simulated sensor could not see from its path."},
+       "the other direction: mean distance of an original point to the nearest simulated one, "
+       "including points that the simulated sensor could not see from its path."},
       {"Chamfer",
-       "in cm the mean of both means; in m² the sum of both means of squared distances, as "
-       "lidar-nerf, LiDAR4D, GS-LiDAR and LiDAR-RT print it."},
+       "in cm the mean of both means; in m² the sum of both means of squared distances, as in "
+       "lidar-nerf, LiDAR4D, GS-LiDAR and LiDAR-RT."},
       {"F",
        "harmonic mean of two shares: simulated points nearer than the bound to an original "
-       "one, and original points nearer than the bound to a simulated one. 22.4 cm is the "
+       "point, and original points nearer than the bound to a simulated one. 22.4 cm is the "
        "square root of 0.05 m², the “0.05” of those papers."}};
   section.tables.push_back(std::move(table));
   Breakdown classes;
@@ -181,9 +182,9 @@ Section beams_section(const std::vector<Competitor>& competitors) {
   section.id = "beams";
   section.title = "Held-out beams";
   section.paragraphs = {
-      "Every beam of scans that no model has seen is cast again, from where the sensor stood "
-      "through "
-      "the point that it measured, and the simulated range is compared with the measured one."};
+      "Every beam of the held-out scans is cast again, from the sensor position through the "
+      "measured "
+      "point, and the simulated range is compared with the measured one."};
   std::vector<Measure> measures = {
       {"rays", Better::neither, read({"resimulate", "rays"}), count_text}};
   for (Measure& measure : range_measures({"resimulate"})) measures.push_back(std::move(measure));
@@ -201,9 +202,8 @@ Section truth_section(const std::vector<Competitor>& competitors) {
   section.id = "truth";
   section.title = "Exact truth";
   section.paragraphs = {
-      "The true surface is known as a mesh. The rays of the sensor along the simulated path, "
-      "without "
-      "noise, are cast into the model and into the true mesh."};
+      "The rays of the sensor along the simulated path are cast, without noise, into the model and "
+      "into a mesh of the true surface."};
   const auto surface = [](const char* key) {
     return read({"truth", "surface_distance_m", key}, kCentimetres);
   };
@@ -219,16 +219,14 @@ Section truth_section(const std::vector<Competitor>& competitors) {
   section.tables.push_back(table_of("Surface", competitors, {}, measures));
   section.tables.back().definitions = {
       {"holes",
-       "share of the rays that meet the true surface, but fall through the model: nothing is "
-       "there, "
-       "or only more than 50 cm behind."},
+       "share of the rays to the true surface that fall through the model: they hit nothing, or "
+       "something more than 50 cm behind."},
       {"ghosts",
        "share of the rays without a true surface in the sensor’s range that hit the model."},
       {"bleeding",
-       "share of the simulated points that hang between two objects: more than 10 cm off the true "
-       "surface, and by as much between the nearest and the farthest true range of the beam and "
-       "the "
-       "beams around it."},
+       "share of the simulated points between two objects: more than 10 cm from the true surface, "
+       "and with the same margin between the nearest and the farthest true range of the beam and "
+       "the beams around it."},
       {"to surface",
        "distance of a simulated point to the nearest point of the true surface: mean, median, 95th "
        "percentile and root of the mean square."}};

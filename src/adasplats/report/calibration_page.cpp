@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/report/calibration_page.h"
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "adasplats/report/html_page.h"
+#include "adasplats/report/report_page.h"
 #include "adasplats/report/results.h"
 #include "adasplats/report/text_format.h"
 
@@ -19,7 +17,7 @@ constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr double kCentimetres = 100;
 constexpr double kMillimetres = 1000;
 
-/// Numbers of a list; what is none is not a number.
+/// The numbers of a list; NaN for other elements.
 std::vector<double> list_at(const Json& json, const KeyPath& path) {
   std::vector<double> list;
   const Json* found = find(json, path);
@@ -42,7 +40,7 @@ std::vector<double> component_at(const Json& json, const KeyPath& path, std::siz
   return list;
 }
 
-/// "1.23 cm"; empty for nothing.
+/// "1.23 cm"; empty without a value.
 std::string in_unit(std::optional<double> value, double scale, const std::string& unit) {
   return value ? measure_text(scale * *value) + " " + unit : std::string();
 }
@@ -51,7 +49,7 @@ void add_tile(Section& section, std::string term, std::string text) {
   if (!text.empty()) section.facts.push_back({std::move(term), std::move(text)});
 }
 
-/// "1.23, 0.00, -4.56 deg"; empty for what is no list of numbers.
+/// "1.23, 0.00, -4.56 deg"; empty unless it is a list of numbers.
 std::string numbers_text(const Json& json, const KeyPath& path, double scale,
                          const std::string& unit) {
   std::string text;
@@ -62,7 +60,7 @@ std::string numbers_text(const Json& json, const KeyPath& path, double scale,
   return text.empty() ? text : text + " " + unit;
 }
 
-/// What was found of the mount, and what was not.
+/// The estimated mount, and the directions that could not be observed.
 void add_mount(const Json& report, Section& section) {
   const Json* mount = find(report, {"mount"});
   if (mount == nullptr || !mount->is_object()) return;
@@ -73,38 +71,38 @@ void add_mount(const Json& report, Section& section) {
   const std::string objection = text_at(*mount, {"objection"});
   if (!objection.empty()) section.paragraphs.push_back("The mount is as given: " + objection + ".");
   if (!not_observed.empty())
-    section.paragraphs.push_back("Not observed of the mount, and left as given: " + not_observed +
-                                 ".");
+    section.paragraphs.push_back(
+        "Directions of the mount that cannot be observed, left as given: " + not_observed + ".");
   if (!objection.empty()) return;
   const auto with_sd = [](const std::string& text, const std::string& sd) {
     return sd.empty() ? text : text + "\nstandard deviations " + sd;
   };
-  add_tile(section, "Boresight: yaw, pitch and roll of the sensor beside the given ones",
+  add_tile(section, "Boresight: correction of the given yaw, pitch and roll",
            with_sd(numbers_text(*mount, {"yaw_pitch_roll_deg"}, 1, "deg"),
                    numbers_text(*mount, {"yaw_pitch_roll_sd_deg"}, 1, "deg")));
-  add_tile(section, "Lever arm: the sensor from where it was given, along its axes",
+  add_tile(section, "Lever arm: correction along the sensor's axes",
            with_sd(numbers_text(*mount, {"shift_m"}, kCentimetres, "cm"),
                    numbers_text(*mount, {"shift_sd_m"}, kCentimetres, "cm")));
   if (const std::string alone = text_at(*mount, {"alone_because"}); !alone.empty())
-    section.paragraphs.push_back("Nothing but the mount is corrected: " + alone + ".");
+    section.paragraphs.push_back("Only the mount is corrected: " + alone + ".");
 }
 
-/// How windows agree, and which have nothing of their own.
+/// Agreement of windows, and windows without a correction of their own.
 void add_windows(const Json& report, Section& section) {
   const Json* windows = find(report, {"windows"});
   if (windows == nullptr || !windows->is_object()) return;
   const auto overlaps = [&](const char* key) { return number_at(*windows, {"overlaps", key}); };
   if (const auto count = number_at(*windows, {"count"}))
-    add_tile(section, "Windows that the drive was cut into", count_text(*count));
-  add_tile(section, "Poses where windows overlap, median difference",
+    add_tile(section, "Windows of the drive", count_text(*count));
+  add_tile(section, "Poses in overlaps of windows, median difference",
            in_unit(overlaps("median_shift_m"), kCentimetres, "cm") + "\n" +
                in_unit(overlaps("median_rotation_rad"), kDegreesPerRadian, "deg"));
-  add_tile(section, "Poses where windows overlap, largest difference",
+  add_tile(section, "Poses in overlaps of windows, largest difference",
            in_unit(overlaps("largest_shift_m"), kCentimetres, "cm") + "\n" +
                in_unit(overlaps("largest_rotation_rad"), kDegreesPerRadian, "deg"));
   if (number_at(*windows, {"laser_windows"}).value_or(0) > 0)
     add_tile(
-        section, "Lasers of single windows beside the pooled ones (RMS)",
+        section, "Lasers: single windows against all windows (RMS)",
         in_unit(number_at(*windows, {"range_disagreement_m"}), kMillimetres, "mm") + "\n" +
             in_unit(number_at(*windows, {"elevation_disagreement_rad"}), kDegreesPerRadian, "deg"));
   if (const std::string text = text_at(*windows, {"not_done"}); !text.empty())
@@ -115,28 +113,28 @@ void add_windows(const Json& report, Section& section) {
     const std::vector<double> scans = list_at(window, {"scans"});
     if (const std::string why = text_at(window, {"objection"}); !why.empty() && scans.size() == 2)
       section.paragraphs.push_back("Scans " + count_text(scans[0]) + " to " +
-                                   count_text(scans[1] - 1) + " have nothing of their own: " + why +
-                                   ".");
+                                   count_text(scans[1] - 1) +
+                                   " have no correction of their own: " + why + ".");
   }
 }
 
 Section figures_section(const Json& report) {
-  Section section{.id = "figures", .title = "What was found"};
+  Section section{.id = "figures", .title = "Results"};
   if (const std::string objection = text_at(report, {"objection"}); !objection.empty())
     section.paragraphs.push_back("Nothing is corrected: " + objection + ".");
   if (const std::string warning = text_at(report, {"warning"}); !warning.empty())
-    section.paragraphs.push_back("Mind: " + warning + ".");
+    section.paragraphs.push_back("Warning: " + warning + ".");
   section.facts_as_tiles = true;
   const auto figure = [&](const char* key) { return number_at(report, {key}); };
   std::string residual = in_unit(figure("residual_given_m"), kCentimetres, "cm as given");
   const auto calibrated_m = figure("residual_calibrated_m");
   if (calibrated_m && *calibrated_m > 0)
     residual = in_unit(calibrated_m, kCentimetres, "cm") + "\n" + residual;
-  add_tile(section, "Points left out of the fit: median distance from the planes of the others",
+  add_tile(section, "Points left out of the fit: median distance to the planes of the others",
            std::move(residual));
   if (const auto planes = figure("planes"))
-    add_tile(section, "Planes that several scans saw", count_text(*planes));
-  add_tile(section, "Weakest direction, share of the planes' weight that holds it",
+    add_tile(section, "Planes seen by several scans", count_text(*planes));
+  add_tile(section, "Weakest direction: share of the planes' weight that constrains it",
            in_unit(figure("weakest_share"), 100, "%"));
   add_tile(section, "Largest correction of a pose",
            in_unit(figure("largest_shift_m"), kCentimetres, "cm") + "\n" +
@@ -149,11 +147,11 @@ Section figures_section(const Json& report) {
   return section;
 }
 
-/// Times since the first scan; where several drives follow one another, numbers of scans. A drive
-/// begins where times do not ascend.
+/// Times since the first scan, or for several drives in sequence, numbers of scans. A drive begins
+/// where times do not increase.
 struct ScanAxis {
   std::vector<double> values;
-  std::vector<bool> begins;  ///< a drive, behind the first
+  std::vector<bool> begins;  ///< a drive, other than the first
   std::string title;
 };
 
@@ -193,8 +191,9 @@ Section poses_section(const Json& report) {
   if (axis.values.empty()) return {};
   Section section{.id = "poses", .title = "Poses"};
   section.paragraphs = {
-      "What was added to the given pose of each scan, along and about the sensor's own axes. As a "
-      "whole the place stays where the given poses have it: nothing observes that."};
+      "Correction of the given pose of each scan, along and about the sensor's axes. The pose of "
+      "the "
+      "whole scene cannot be observed and stays as given."};
   Plot turns = pose_plot(report, axis, "rotation_rad", kDegreesPerRadian,
                          {"roll, about x", "pitch, about y", "yaw, about z"});
   turns.title = "Rotations";
@@ -223,8 +222,8 @@ Section lasers_section(const Json& report) {
   if (ranges.series[0].points.empty()) return {};
   Section section{.id = "lasers", .title = "Lasers"};
   section.paragraphs = {
-      "What is added to what each laser reports. Only differences between lasers are known: the "
-      "means are zero."};
+      "Corrections that are added to the values of each laser. Only differences between lasers can "
+      "be observed: the means are zero."};
   ranges.title = "Offsets of ranges";
   ranges.y_title = "mm";
   elevations.title = "Offsets of elevations";
@@ -237,7 +236,7 @@ Section residuals_section(const Json& report) {
   const auto bin_m = number_at(report, {"residuals", "bin_m"});
   if (!bin_m) return {};
   Plot plot;
-  plot.title = "Distances from planes of points that were left out";
+  plot.title = "Distances from planes, points left out of the fit";
   plot.x_title = "distance, cm";
   plot.y_title = "share of the points, %";
   plot.style = PlotStyle::steps;
@@ -248,7 +247,7 @@ Section residuals_section(const Json& report) {
     for (const double count : counts) sum += count;
     if (!(sum > 0)) continue;
     PlotSeries series{std::string(key) == "given" ? "as given" : key, {slot++, false}, {}};
-    counts.pop_back();  // all that is beyond
+    counts.pop_back();  // distances beyond the bins
     counts.push_back(counts.back());
     for (std::size_t i = 0; i < counts.size(); ++i)
       series.points.push_back(
@@ -257,7 +256,7 @@ Section residuals_section(const Json& report) {
   }
   if (plot.series.empty()) return {};
   Section section{.id = "residuals", .title = "Residuals"};
-  section.paragraphs = {"Every eighth point takes no part in the fit, to judge it."};
+  section.paragraphs = {"Every eighth point is left out of the fit, to test it."};
   section.plots = {std::move(plot)};
   return section;
 }
@@ -283,7 +282,7 @@ Section drives_section(const Json& report) {
 std::string calibration_html(const nlohmann::ordered_json& report) {
   page::Document document;
   document.title = "Calibration";
-  document.subtitle = "What a recording gets wrong, found by planes that its scans saw together.";
+  document.subtitle = "Errors of a recording, estimated from planes that several of its scans saw.";
   document.sections = {page::figures_section(report), page::poses_section(report),
                        page::lasers_section(report), page::residuals_section(report),
                        page::drives_section(report)};

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/report/calibration_page.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/report/plot.h"
+#include "adasplats/report/chart.h"
+#include "adasplats/report/report_page.h"
 
 namespace adasplats {
 namespace {
@@ -35,7 +34,7 @@ TEST(CalibrationPage, HasAllPlotsAndNothingUnescaped) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
-TEST(CalibrationPage, TellsTheMountAndWhatIsNotObservedOfIt) {
+TEST(CalibrationPage, ShowsTheMountAndItsUnobservableDirections) {
   Json report = sample_report();
   report["mount"] = Json::parse(R"({"applied": true, "yaw_pitch_roll_deg": [5, 0, -0.25],
     "shift_m": [0.5, 0, 0], "yaw_pitch_roll_sd_deg": [0.01, 0.01, 0.01],
@@ -50,14 +49,14 @@ TEST(CalibrationPage, TellsTheMountAndWhatIsNotObservedOfIt) {
   EXPECT_EQ(refused.find("Boresight"), std::string::npos);
 }
 
-TEST(CalibrationPage, SaysWhyNothingIsCorrected) {
+TEST(CalibrationPage, GivesTheReasonForNoCorrection) {
   const std::string html =
       calibration_html({{"applied", false}, {"objection", "too few planes"}, {"planes", 3}});
   EXPECT_NE(html.find("Nothing is corrected: too few planes."), std::string::npos);
   EXPECT_EQ(html.find("<figure"), std::string::npos);
 }
 
-TEST(CalibrationPage, TakesWhateverItIsGiven) {
+TEST(CalibrationPage, AcceptsAnyJson) {
   const Json wrong[] = {nullptr,
                         3,
                         Json::array(),
@@ -73,13 +72,13 @@ TEST(CalibrationPage, TakesWhateverItIsGiven) {
 }
 
 // Oracle: analytic.
-TEST(Plot, TicksHoldTheValuesAndAreRound) {
+TEST(Plot, TicksEncloseTheValuesAndAreRound) {
   EXPECT_EQ(page::ticks_around(-3, 11), (std::vector<double>{-4, -2, 0, 2, 4, 6, 8, 10, 12}));
   EXPECT_EQ(page::ticks_around(0, 1).front(), 0);
   EXPECT_EQ(page::ticks_around(2, 2), (std::vector<double>{0, 1}));
 }
 
-TEST(Plot, BreaksLinesAtWhatIsNotFinite) {
+TEST(Plot, InterruptsLinesAtPointsThatAreNotFinite) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   page::Plot plot;
   plot.series = {{"", {0, false}, {{0, 1}, {1, 2}, {kGap, kGap}, {2, 3}, {3, 4}}}};

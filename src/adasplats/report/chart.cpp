@@ -40,12 +40,11 @@ struct Scale {
   }
   std::string text_of(double tick) const {
     const double step = is_log ? tick : ticks[1];
-    const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-    return step >= 10000 ? count_text(tick) : fixed_text(tick, digits);
+    return step >= 10000 ? count_text(tick) : tick_text(tick, step);
   }
 };
 
-/// Logarithmic, where that is allowed, if the values differ so much that most would lie at zero.
+/// Logarithmic, if allowed, for values that differ so much that most would be drawn at zero.
 Scale scale_of(const Chart& chart, double length, bool may_be_log) {
   double highest = 0;
   double lowest = std::numeric_limits<double>::infinity();
@@ -59,7 +58,7 @@ Scale scale_of(const Chart& chart, double length, bool may_be_log) {
   Scale scale{length, may_be_log && highest > kMaxForLinear * lowest, nice_ticks(highest)};
   if (!scale.is_log) return scale;
   const double last = std::ceil(std::log10(highest));
-  // Seven decades show enough; what is smaller lies at the beginning.
+  // Show at most seven decades; smaller values are drawn at the beginning.
   const double first = std::max(std::floor(std::log10(lowest)), last - 7);
   scale.ticks.clear();
   for (double power = first; power <= last; ++power) scale.ticks.push_back(std::pow(10.0, power));
@@ -71,10 +70,6 @@ Head head_of_chart(const Chart& chart, bool with_legend, bool with_lines) {
   for (const Series& series : chart.series)
     if (with_legend) legend.push_back({series.name, series.key});
   return head_of(chart.title, legend, with_lines ? LegendMarks::both : LegendMarks::markers);
-}
-
-std::string svg_of_chart(const Chart& chart, double height, const std::string& content) {
-  return svg_of(chart.title, height, content);
 }
 
 /// The line of one series, broken where values are missing, and its markers.
@@ -121,7 +116,7 @@ std::string category_rows(const Chart& chart, std::size_t category, Mark mark, d
 }
 
 struct RowLayout {
-  std::vector<std::string> labels;  ///< one a block
+  std::vector<std::string> labels;  ///< one per block
   double label_step = 0;            ///< between labels
   double row_height = 0;            ///< of one series
   double block_height = 0;          ///< of one category
@@ -152,7 +147,7 @@ std::string row_chart(const Chart& chart, Mark mark) {
   const double top = head.bottom + 4;
   const double bottom =
       top + layout.block_height * static_cast<double>(chart.categories.size()) + 2;
-  // Figures behind bars need room to the right of the longest one.
+  // Room for the figure to the right of the longest bar.
   const double right = mark == Mark::bar ? kRight - 40 : kRight;
   const Scale scale = scale_of(chart, right - left, mark == Mark::dot);
   std::string svg = head.svg;
@@ -173,28 +168,18 @@ std::string row_chart(const Chart& chart, Mark mark) {
   }
   svg += text_mark((left + right) / 2, bottom + 34, "tick middle",
                    chart.value_title + (scale.is_log ? ", logarithmic" : ""));
-  return svg_of_chart(chart, bottom + 42, svg);
+  return svg_of(chart.title, bottom + 42, svg);
 }
 
 }  // namespace
 
 std::vector<double> nice_ticks(double highest) {
   if (!(highest > 0)) return {0, 1};
-  const double rough = highest / 5;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough * (1 - 1e-9)) {
-      step = factor * power;
-      break;
-    }
-  }
+  const double step = round_step(highest / 5);
   std::vector<double> ticks = {0};
   for (double k = 1; ticks.back() < highest * (1 - 1e-9); ++k) ticks.push_back(k * step);
   return ticks;
 }
-
-std::string key_marker(const Key& key, double x, double y) { return marker(key, x, y, ""); }
 
 std::string line_chart(const Chart& chart) {
   const Head head = head_of_chart(chart, true, true);
@@ -218,7 +203,7 @@ std::string line_chart(const Chart& chart) {
   }
   for (const Series& series : chart.series) svg += line_of(chart, series, xs, bottom, scale);
   svg += text_mark((left + kRight) / 2, bottom + 37, "tick middle", chart.category_title);
-  return svg_of_chart(chart, bottom + 45, svg);
+  return svg_of(chart.title, bottom + 45, svg);
 }
 
 std::string bar_chart(const Chart& chart) { return row_chart(chart, Mark::bar); }

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-// What a report consists of, before it becomes HTML or Markdown. Texts are plain and unescaped.
+// The content of a report, before it becomes HTML or Markdown. Texts are plain and unescaped.
 namespace adasplats::page {
 
 enum class Better { neither, lower, higher };
@@ -17,15 +18,15 @@ struct Fact {
   std::string text;
 };
 
-/// How a competitor is drawn everywhere: a colour and marker, open and dashed for a variant of
-/// another competitor. No slot: no mark.
+/// Colour and marker of a competitor in all charts; open and dashed for a variant of another one.
+/// No slot: no marker.
 struct Key {
   std::optional<std::size_t> slot;
   bool variant = false;
 };
 
 struct Column {
-  std::string group;  ///< columns of one group stand under one heading; may be empty
+  std::string group;  ///< columns of a group share a heading; may be empty
   std::string name;
   Better better = Better::neither;
   bool is_text = false;
@@ -34,11 +35,11 @@ struct Column {
 struct Cell {
   std::string text;
   std::optional<double> value;  ///< in the unit of the text
-  std::string note;             ///< small print behind the text
+  std::string note;             ///< small print after the text
   bool best = false;
 };
 
-/// Badge of a row of the paper that has no competitor here.
+/// Badge of a row of the paper without a competitor here.
 inline constexpr const char* kPaperOnly = "paper only";
 
 struct Row {
@@ -63,8 +64,8 @@ struct Table {
   std::vector<Row> rows;
   std::vector<Fact> definitions;
   std::vector<ChartPlan> charts;
-  bool folded = false;     ///< the chart is shown, the figures behind it on demand
-  bool on_demand = false;  ///< a part of the section that readers open
+  bool folded = false;     ///< only the chart is shown, the figures on demand
+  bool on_demand = false;  ///< collapsed until a reader opens it
 };
 
 enum class PlotStyle { lines, steps, marks };
@@ -94,7 +95,7 @@ struct Picture {
   std::string path;  ///< relative to the report's folder
 };
 
-/// What the colours of pictures mean, from low to high.
+/// Colour scale of pictures, from low to high.
 struct ColorScale {
   std::vector<std::string> colors;  ///< "#rrggbb"
   std::string from;
@@ -109,7 +110,7 @@ struct Section {
   std::vector<Fact> facts;
   bool facts_as_tiles = false;
   std::vector<Table> tables;
-  std::vector<Plot> plots;  ///< of HTML alone
+  std::vector<Plot> plots;  ///< only in HTML
   std::optional<ColorScale> scale;
   std::vector<Picture> pictures;
   std::vector<Fact> commands;
@@ -122,7 +123,16 @@ struct Document {
   std::string footer;
 };
 
-/// Marks the best cells of each column; equal texts share the mark, and all equal get none.
+/// Marks the best cells of each column; equal texts share the mark. A column of equal texts has
+/// none.
 Table with_best_marked(Table table);
+
+/// A PNG or JPEG below `folder` as a data URI; empty if there is no such file, it has another
+/// format, or the path leaves the folder.
+std::string picture_data_uri(const std::filesystem::path& folder, const std::string& relative);
+
+/// A document as one HTML page without scripts that loads nothing: pictures below `folder` are
+/// embedded.
+std::string html_page(const Document& document, const std::filesystem::path& folder);
 
 }  // namespace adasplats::page

@@ -67,8 +67,8 @@ std::string program_text(const Json& made_by) {
   return text;
 }
 
-/// The steps that each program has made, in the order in which they stand: one program, where
-/// nobody has put results of several together.
+/// The steps by the program that ran them. More than one program means that results were merged by
+/// hand.
 std::vector<Fact> programs_of(const std::vector<Competitor>& competitors) {
   std::vector<Fact> programs;
   for (const Competitor& competitor : competitors) {
@@ -76,7 +76,7 @@ std::vector<Fact> programs_of(const std::vector<Competitor>& competitors) {
     const Json* steps = find(*competitor.json, {"made_by"});
     if (steps == nullptr || !steps->is_object()) {
       if (!competitor.badge.empty()) continue;
-      steps = &none;  // nobody knows what made it
+      steps = &none;  // unknown program
     }
     for (const auto& [step, made_by] : steps->items()) {
       const std::string program = program_text(made_by);
@@ -100,8 +100,7 @@ void add_programs(Section& section, const std::vector<Competitor>& competitors) 
     add_fact(section, "Made by", "adasplats " + programs.front().term);
     return;
   }
-  std::string text =
-      "These figures were not made by one program, so that they cannot be compared: ";
+  std::string text = "These figures were made by different programs and cannot be compared: ";
   for (const Fact& program : programs) {
     text += "adasplats " + program.term + " (" + program.text + ")";
     text += &program == &programs.back() ? "." : "; ";
@@ -130,7 +129,7 @@ std::string removed_text(const Json& results) {
   if (!classes.empty()) text += " (" + classes + ")";
   const std::string paper = text_at(results, {"data", "removed", "paper"});
   if (!paper.empty() && paper != rule)
-    text += "; the paper removes " + (paper == "none" ? "nothing" : "what is " + paper);
+    text += "; the paper removes " + (paper == "none" ? "nothing" : paper + " objects");
   return text;
 }
 
@@ -182,7 +181,7 @@ struct Prize {
   const char* unit;
 };
 
-/// Who is best at what; only what two or more have.
+/// The best competitor by each measure that at least two have.
 Section best_section(const std::vector<Competitor>& competitors) {
   const std::vector<Prize> prizes = {
       {"Lowest C2C",
@@ -293,7 +292,7 @@ Section commands_section(const std::vector<Competitor>& competitors) {
   if (section.commands.empty()) return section;
   section.id = "commands";
   section.title = "Commands";
-  section.paragraphs = {"What compare ran, to be run again one by one."};
+  section.paragraphs = {"The commands that compare ran; each can be run again."};
   return section;
 }
 
@@ -317,7 +316,7 @@ Document document_of(const Json& results) {
       beams_section(competitors),
       truth_section(competitors),
       pictures_section(results, competitors, "render", "Renders",
-                       "The same camera in every model."),
+                       "Every model from the same camera."),
       pictures_section(results, competitors, "c2c", "Simulated points by error",
                        "Simulated points, coloured by the distance to the nearest original point."),
       pictures_section(results, competitors, "resimulate", "Held-out scans by error",
@@ -326,7 +325,8 @@ Document document_of(const Json& results) {
       commands_section(competitors)};
   std::erase_if(document.sections, [](const Section& section) { return section.id.empty(); });
   document.footer =
-      "Bold: the best of a column. –: not measured. Shares are of all rays unless said otherwise.";
+      "Bold: the best of a column. –: not measured. Shares are of all rays unless stated "
+      "otherwise.";
   return document;
 }
 

@@ -1,18 +1,38 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/report/html_page.h"
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string_view>
 
+#include "adasplats/io/base/base64.h"
 #include "adasplats/report/chart.h"
-#include "adasplats/report/page_style.h"
-#include "adasplats/report/picture.h"
-#include "adasplats/report/plot.h"
 #include "adasplats/report/report_page.h"
 #include "adasplats/report/sections.h"
+#include "adasplats/report/svg_marks.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats {
 namespace page {
 namespace {
+
+constexpr unsigned char kPage[] = {
+#include "page.inc"
+};
+
+/// page.html with the values of its {{names}}. Braces in the values have no meaning.
+std::string filled_page(const std::map<std::string, std::string, std::less<>>& values) {
+  static const std::string file(std::begin(kPage), std::end(kPage));
+  std::string_view rest = std::string_view(file).substr(file.find("<!DOCTYPE"));
+  std::string page;
+  for (std::size_t at = rest.find("{{"); at != std::string_view::npos; at = rest.find("{{")) {
+    const std::size_t end = rest.find("}}", at);
+    page.append(rest.substr(0, at)).append(values.find(rest.substr(at + 2, end - at - 2))->second);
+    rest.remove_prefix(end + 2);
+  }
+  return page.append(rest);
+}
 
 std::string element(const std::string& name, const std::string& style, const std::string& content) {
   return "<" + name + (style.empty() ? "" : " class=\"" + style + "\"") + ">" + content + "</" +
@@ -32,7 +52,7 @@ std::string facts_html(const std::vector<Fact>& facts, const std::string& style)
 
 std::string name_html(const std::string& title, const Key& key) {
   if (!key.slot) return html_escape(title);
-  return "<svg class=\"key\" viewBox=\"0 0 12 12\" aria-hidden=\"true\">" + key_marker(key, 6, 6) +
+  return "<svg class=\"key\" viewBox=\"0 0 12 12\" aria-hidden=\"true\">" + marker(key, 6, 6, "") +
          "</svg>" + html_escape(title);
 }
 
@@ -114,7 +134,7 @@ std::string chart_html(const Table& table, const ChartPlan& plan) {
   return line_chart(chart);
 }
 
-/// The charts of a section's tables side by side, with what is folded behind them.
+/// The charts of a section's tables side by side, with the tables that are folded behind them.
 std::string figures_html(const std::vector<Table>& tables) {
   std::string html;
   for (const Table& table : tables) {
@@ -194,25 +214,31 @@ std::string section_html(const Section& section, const std::filesystem::path& fo
 
 }  // namespace
 
+std::string picture_data_uri(const std::filesystem::path& folder, const std::string& relative) {
+  const std::filesystem::path path(relative);
+  const bool leaves = std::find(path.begin(), path.end(), "..") != path.end();
+  if (relative.empty() || path.is_absolute() || leaves) return {};
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(folder / path, error)) return {};
+  std::ifstream file(folder / path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return "data:image/png;base64," + to_base64(bytes);
+  if (bytes.starts_with("\xff\xd8\xff")) return "data:image/jpeg;base64," + to_base64(bytes);
+  return {};
+}
+
 std::string html_page(const Document& document, const std::filesystem::path& folder) {
-  const std::string title = html_escape(document.title);
   std::string links;
   std::string sections;
   for (const Section& section : document.sections) {
     links += "<a href=\"#" + section.id + "\">" + html_escape(section.title) + "</a>\n";
     sections += section_html(section, folder);
   }
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-         "<meta name=\"color-scheme\" content=\"light dark\">\n"
-         // Nothing may be loaded, whatever a title or a path might smuggle in.
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "
-         "data:; "
-         "style-src 'unsafe-inline'\">\n<title>" +
-         title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n" +
-         "<h1>" + title + "</h1>\n<p class=\"subtitle\">" + html_escape(document.subtitle) +
-         "</p>\n<nav>\n" + links + "</nav>\n</header>\n<main>\n" + sections + "</main>\n<footer>" +
-         html_escape(document.footer) + "</footer>\n</body>\n</html>\n";
+  return filled_page({{"title", html_escape(document.title)},
+                      {"subtitle", html_escape(document.subtitle)},
+                      {"links", links},
+                      {"sections", sections},
+                      {"footer", html_escape(document.footer)}});
 }
 
 }  // namespace page

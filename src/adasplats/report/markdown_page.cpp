@@ -126,7 +126,7 @@ std::string report_markdown(const nlohmann::ordered_json& results) {
   std::string text =
       "# " + page::escaped(document.title) + "\n\n" + page::escaped(document.subtitle) + "\n\n";
   for (const page::Section& section : document.sections) text += page::section_markdown(section);
-  return text + "Bold: the best of a column. –: not measured.\n";
+  return text + page::escaped(document.footer) + "\n";
 }
 
 }  // namespace adasplats

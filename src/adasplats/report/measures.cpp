@@ -9,7 +9,7 @@
 namespace adasplats::page {
 namespace {
 
-// A chart of more classes than this is not read any more; the table behind it has them all.
+// A chart with more classes is unreadable; the table has all of them.
 constexpr std::size_t kMaxGroupsInChart = 14;
 
 Cell cell_of(const std::optional<double>& value, NumberText text) {
@@ -21,8 +21,8 @@ bool has_value(const Row& row) {
                      [](const Cell& cell) { return cell.value.has_value(); });
 }
 
-/// A figure of a competitor. One that failed has no value, so that it is best at nothing and no
-/// chart is drawn or scaled by it; the text stays where it is of a model that was made.
+/// A figure of a competitor. A failed competitor has no values, so it is never best and no chart is
+/// scaled by it; it keeps the texts of figures of a finished model.
 Cell cell_of(const Competitor& competitor, const Reader& reader, NumberText text) {
   Cell cell = cell_of(competitor.has_model ? reader(*competitor.json) : std::nullopt, text);
   if (!competitor.badge.empty()) cell.value.reset();
@@ -47,7 +47,7 @@ std::vector<Cell> cells_of(const std::vector<Measure>& measures,
   return cells;
 }
 
-/// Names of groups, the heaviest first where there is a weight, else as they come.
+/// Names of groups, sorted by weight if there is one.
 std::vector<std::string> group_names(const Breakdown& breakdown,
                                      const std::vector<Competitor>& competitors) {
   std::vector<std::string> names;

@@ -10,13 +10,13 @@
 #include "adasplats/report/results.h"
 #include "adasplats/report/text_format.h"
 
-// From results to tables: a measure is a column, a breakdown a table with a column a group.
+// From results to tables: a measure is a column, a breakdown a table with one column per group.
 namespace adasplats::page {
 
 using Reader = std::function<std::optional<double>(const Json&)>;
 using NumberText = std::string (*)(double);
 
-/// The number at a path times a factor, which brings it to the unit that is shown.
+/// The number at a path times a factor to the unit of the table.
 Reader read(KeyPath path, double factor = 1);
 
 inline constexpr double kPercent = 100;
@@ -27,13 +27,13 @@ struct Measure {
   Better better = Better::neither;
   Reader here;  ///< from a competitor
   NumberText text = measure_text;
-  Reader paper = nullptr;           ///< from a row of the paper; null: the paper has no such figure
+  Reader paper = nullptr;           ///< from a row of the paper; null: not in the paper
   NumberText paper_text = nullptr;  ///< null: as ours
   std::function<std::string(const Json&)> note = nullptr;  ///< small print, from a competitor
 };
 
-/// A row a competitor, whatever its state. Where paper rows have figures of a measure, a column
-/// for them stands beside ours, and rows that match no competitor come last.
+/// One row per competitor, whatever its state. Measures that paper rows have get a second column,
+/// and paper rows that match no competitor come last.
 Table table_of(std::string title, const std::vector<Competitor>& competitors,
                const std::vector<const Json*>& paper_rows, const std::vector<Measure>& measures);
 
@@ -48,12 +48,12 @@ struct Breakdown {
   ChartKind chart = ChartKind::lines;
   std::string category_title;
   std::string value_title;
-  std::string group_unit;  ///< " m": taken off the end of the groups' names
-  KeyPath weight;          ///< from a group: the largest groups come first; empty: as they are
+  std::string group_unit;  ///< " m": removed from the end of the groups' names
+  KeyPath weight;          ///< from a group, to sort by; empty: keep the order
   Reader whole = nullptr;  ///< one more column, "all", from a competitor
 };
 
-/// Only competitors and groups that have values; folded behind its chart.
+/// Only competitors and groups with values; folded behind its chart.
 Table table_of(const Breakdown& breakdown, const std::vector<Competitor>& competitors);
 
 }  // namespace adasplats::page

@@ -5,7 +5,7 @@
 #include "adasplats/report/measures.h"
 #include "adasplats/report/sections.h"
 
-// The tables of the paper, section "Results", with its figures beside ours.
+// The tables of the paper, section "Results", with its figures next to ours.
 namespace adasplats::page {
 namespace {
 
@@ -48,11 +48,11 @@ std::vector<Fact> paper_definitions() {
        "memory; writing files is not counted, as in the paper."},
       {"C2C",
        "cloud to cloud: for each simulated point the distance to the nearest point of the "
-       "original cloud, the mean over all simulated points. It looks in one direction only: "
-       "what a model lacks costs it nothing."}};
+       "original cloud, the mean over all simulated points. It measures one direction only: "
+       "missing parts of a model do not count."}};
 }
 
-/// Without and with resampling, the pairs that were run.
+/// Competitors that were run without and with resampling, in pairs.
 std::vector<Competitor> resampling_pairs(const std::vector<Competitor>& competitors) {
   std::vector<Competitor> pairs;
   for (const Competitor& variant : competitors) {
@@ -81,7 +81,7 @@ std::optional<double> mean_of(const std::vector<Reader>& readers, const Json& js
   return sum / static_cast<double>(readers.size());
 }
 
-/// `paper_rows`: empty for what was measured here alone.
+/// `paper_rows`: empty for a table of our figures alone.
 Table thin_table(const std::vector<Competitor>& competitors,
                  const std::vector<const Json*>& paper_rows) {
   std::vector<Measure> measures;
@@ -106,14 +106,13 @@ Table thin_table(const std::vector<Competitor>& competitors,
   Table table = table_of("C2C of thin structures", competitors, paper_rows, measures);
   table.definitions = {
       {"C2C of a class",
-       "C2C of the simulated points of the class to the original points of the same class; where "
-       "the model’s classes are a network’s (AdaSplats-KPConv), a simulated point is of the class "
-       "of the nearest original one. The small figure is the number of simulated points: few of "
-       "them make a weak figure."},
+       "C2C of the simulated points of the class to the original points of the same class. For "
+       "classes from a network (AdaSplats-KPConv), a simulated point has the class of the nearest "
+       "original one. The small figure is the number of simulated points: with few points, C2C is "
+       "uncertain."},
       {"mean",
-       "of the three classes, each with the same weight, only where all three are there; the "
-       "paper’s "
-       "printed average where the results have it."}};
+       "of the three classes with equal weight, only if all three have points; for the paper its "
+       "printed average, if available."}};
   if (!paper_rows.empty()) return table;
   ChartPlan plan{ChartKind::bars, "C2C of thin structures", "", "C2C (cm)", {}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) plan.columns.push_back(c);
@@ -129,14 +128,14 @@ bool has_thin_classes(const std::vector<Competitor>& competitors) {
   });
 }
 
-/// What the columns of a table with the paper's figures are.
+/// Explains the columns of a table with the paper's figures.
 std::string paper_note(const Json& results) {
   std::string cpu = text_at(results, {"machine", "cpu"});
   if (cpu.empty()) cpu = "this machine";
   return "“here” was measured on " + text_at(results, {"title"}) + " with " + cpu +
-         "; “paper” is printed in the paper’s table for " + text_at(results, {"paper", "table"}) +
+         "; “paper” is from the paper’s table for " + text_at(results, {"paper", "table"}) +
          " and was measured on the paper’s own data with an NVIDIA GeForce RTX 2070 SUPER. Other "
-         "data and another machine: the order of the models can be compared, the figures cannot.";
+         "data and another machine: compare the order of the models, not the figures.";
 }
 
 }  // namespace
@@ -160,13 +159,13 @@ Section paper_section(const Json& results, const std::vector<Competitor>& compet
   if (thin) section.tables.push_back(thin_table(competitors, {}));
   const auto paper_rows = paper_rows_of(results);
   if (paper_rows.empty()) return section;
-  section.tables.push_back(table_of("Beside the paper’s figures: models, speed and C2C",
-                                    competitors, paper_rows, measures));
+  section.tables.push_back(table_of("With the paper’s figures: models, speed and C2C", competitors,
+                                    paper_rows, measures));
   section.tables.back().definitions = {{"columns", paper_note(results)}};
   section.tables.back().on_demand = true;
   if (!thin) return section;
   section.tables.push_back(thin_table(competitors, paper_rows));
-  section.tables.back().title = "Beside the paper’s figures: C2C of thin structures";
+  section.tables.back().title = "With the paper’s figures: C2C of thin structures";
   section.tables.back().on_demand = true;
   return section;
 }

@@ -1,30 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/report/plot.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "adasplats/report/chart.h"
 #include "adasplats/report/svg_marks.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats::page {
 namespace {
 
-/// From values to places along an axis.
+/// Maps values to positions along an axis.
 struct PlotAxis {
   std::vector<double> ticks;
   double lowest = 0, highest = 1;  ///< values at...
-  double from = 0, to = 0;         ///< ...these places
+  double from = 0, to = 0;         ///< ...these positions
 
   double at(double value) const {
     return from + (value - lowest) / (highest - lowest) * (to - from);
   }
-  std::string text_of(double tick) const {
-    const double step = ticks[1] - ticks[0];
-    return fixed_text(tick, std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))));
-  }
+  std::string text_of(double tick) const { return tick_text(tick, ticks[1] - ticks[0]); }
 };
 
 struct PlotBounds {
@@ -82,11 +78,7 @@ std::string grid_of(const Plot& plot, const PlotAxis& x, const PlotAxis& y) {
 std::vector<double> ticks_around(double lowest, double highest) {
   if (!(highest > lowest)) return {0, 1};
   constexpr double kMaxSteps = 7;
-  const double rough = (highest - lowest) / kMaxSteps;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {5.0, 2.0, 1.0})
-    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  const double step = round_step((highest - lowest) / kMaxSteps);
   const double first = std::floor(lowest / step + 1e-9), last = std::ceil(highest / step - 1e-9);
   std::vector<double> ticks;
   for (double k = first; k <= last; ++k) ticks.push_back(k * step);

@@ -8,12 +8,17 @@
 
 namespace adasplats {
 
-/// The results of `adasplats compare` as one HTML page without scripts that loads nothing from
-/// anywhere: pictures, named by paths relative to `folder`, are embedded. Whatever is missing, null
-/// or of another type in the results is left out; never throws for that. UTF-8.
+// Reports as pages. Anything missing, null or of another type in the JSON is left out and never an
+// error. HTML pages have no scripts and load nothing. UTF-8.
+
+/// The results of `adasplats compare` as an HTML page. Pictures, named by paths relative to
+/// `folder`, are embedded.
 std::string report_html(const nlohmann::ordered_json& results, const std::filesystem::path& folder);
 
-/// The same tables and texts in GitHub's Markdown, pictures as links relative to the report.
+/// The same tables and texts in GitHub's Markdown, with links to pictures, relative to the report.
 std::string report_markdown(const nlohmann::ordered_json& results);
+
+/// The report of `adasplats calibrate` (docs/formats.md) as an HTML page.
+std::string calibration_html(const nlohmann::ordered_json& report);
 
 }  // namespace adasplats

@@ -12,7 +12,6 @@
 #include <sstream>
 
 #include "adasplats/report/chart.h"
-#include "adasplats/report/picture.h"
 #include "adasplats/report/sample_results_test.h"
 #include "adasplats/report/sections.h"
 #include "adasplats/report/text_format.h"
@@ -69,7 +68,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-TEST(TextFormat, NumbersReadAsPeopleWriteThem) {
+TEST(TextFormat, NumbersAreReadable) {
   EXPECT_EQ(fixed_text(1234567.891, 1), "1,234,567.9");
   EXPECT_EQ(fixed_text(-1234, 0), "-1,234");
   EXPECT_EQ(fixed_text(-0.001, 1), "0.0");
@@ -88,17 +87,9 @@ TEST(TextFormat, NumbersReadAsPeopleWriteThem) {
   EXPECT_EQ(bytes_text(20e9), "20.0 GB");
 }
 
-TEST(TextFormat, NothingOfATextIsMarkup) {
+TEST(TextFormat, EscapesMarkup) {
   EXPECT_EQ(html_escape("<a href='x' b=\"&\">\x01\n"),
             "&lt;a href=&#39;x&#39; b=&quot;&amp;&quot;&gt;\n");
-}
-
-TEST(Picture, Base64AsInRfc4648) {
-  const std::array<const char*, 7> plain = {"", "f", "fo", "foo", "foob", "fooba", "foobar"};
-  const std::array<const char*, 7> coded = {"",         "Zg==",     "Zm8=",    "Zm9v",
-                                            "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
-  for (std::size_t k = 0; k < plain.size(); ++k) EXPECT_EQ(base64(plain[k]), coded[k]);
-  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
 }
 
 TEST(Picture, OnlyPicturesBelowTheFolder) {
@@ -108,7 +99,7 @@ TEST(Picture, OnlyPicturesBelowTheFolder) {
   folder.write("outside.png", png);
   folder.write("pictures/text.png", "not a picture");
   EXPECT_EQ(picture_data_uri(folder.path(), "pictures/a.png"),
-            "data:image/png;base64," + base64(png));
+            "data:image/png;base64,iVBORw0KGgpyZXN0");
   EXPECT_EQ(picture_data_uri(folder.path() / "pictures", "../outside.png"), "");
   EXPECT_EQ(picture_data_uri(folder.path(), (folder.path() / "outside.png").string()), "");
   EXPECT_EQ(picture_data_uri(folder.path(), "pictures/text.png"), "");
@@ -155,7 +146,7 @@ TEST(Chart, BarsAreAsLongAsTheirValues) {
   EXPECT_NE(svg.find("<title>series &lt;1&gt;, c1: 10.0; value (cm)</title>"), std::string::npos);
 }
 
-TEST(Chart, AMissingValueIsAGapInTheLine) {
+TEST(Chart, AMissingValueInterruptsTheLine) {
   const std::string svg = line_chart(chart_of_values({1, 2, std::nullopt, 3}));
   const auto line = svg.find("<path class=\"line");
   ASSERT_NE(line, std::string::npos);
@@ -165,7 +156,7 @@ TEST(Chart, AMissingValueIsAGapInTheLine) {
   EXPECT_EQ(count_of(svg, "<title>"), 3U);
 }
 
-TEST(Chart, DotsThatDifferMuchStandOnALogarithmicAxis) {
+TEST(Chart, DotsThatDifferMuchHaveALogarithmicAxis) {
   const std::string near = dot_chart(chart_of_values({1, 40, 7, 2}));
   EXPECT_EQ(near.find("logarithmic"), std::string::npos);
   const std::string far = dot_chart(chart_of_values({1, 10, 100, 0}));
@@ -178,7 +169,7 @@ TEST(Chart, DotsThatDifferMuchStandOnALogarithmicAxis) {
   }
   ASSERT_EQ(xs.size(), 5U);  // the first is the legend's
   EXPECT_NEAR(xs[3] - xs[2], xs[2] - xs[1], 0.2);
-  EXPECT_EQ(xs[4], xs[1]);  // zero lies at the beginning
+  EXPECT_EQ(xs[4], xs[1]);  // zero is at the beginning
 }
 
 TEST(Chart, NoCategoriesAndAllZero) {
@@ -200,23 +191,23 @@ TEST(Table, BestIsMarkedWhereValuesDifferAndTiesShareIt) {
   EXPECT_FALSE(table.rows[0].cells[1].best);
 }
 
-// What the paper alone has is no row of what was run; it stands in a part that readers open.
-TEST(ReportPage, TablesHaveWhatWasRunAndThePapersFiguresAreOpened) {
+// Rows of the paper alone are not among the rows that were run, but in a collapsed part.
+TEST(ReportPage, PaperFiguresAreInACollapsedPart) {
   const std::string html = report_html(sample_results(), std::filesystem::path());
-  const std::size_t opened = html.find("<details><summary>Beside the paper");
+  const std::size_t opened = html.find("<details><summary>With the paper");
   ASSERT_NE(opened, std::string::npos);
   EXPECT_GT(html.find("paper only</span>"), opened);
   EXPECT_GT(html.find("RTX 2070 SUPER"), opened);
   EXPECT_NE(html.find("<h3>Models, speed and C2C</h3>"), std::string::npos);
   const std::string text = report_markdown(sample_results());
-  const std::size_t details = text.find("<details><summary>Beside the paper");
+  const std::size_t details = text.find("<details><summary>With the paper");
   ASSERT_NE(details, std::string::npos);
   EXPECT_GT(text.find("(paper only)"), details);
 }
 
-TEST(ReportPage, PaperFiguresStandBesideOurs) {
+TEST(ReportPage, PaperFiguresHaveColumnsNextToOurs) {
   const std::string page = report_html(sample_results(), std::filesystem::path());
-  const std::string html = page.substr(page.find("<summary>Beside the paper"));
+  const std::string html = page.substr(page.find("<summary>With the paper"));
   const auto basic = rows_named(html, "Basic splats");
   ASSERT_FALSE(basic.empty());
   // 1.5 * 1.96 cm here, 2.3 cm in the paper; the paper's time is the best of its column.
@@ -236,7 +227,7 @@ TEST(ReportPage, MeanOfThinClassesNeedsAllThree) {
   const Document document = document_of(sample_results());
   for (const Section& section : document.sections) {
     for (const Table& table : section.tables) {
-      if (table.title != "Beside the paper’s figures: C2C of thin structures") continue;
+      if (table.title != "With the paper’s figures: C2C of thin structures") continue;
       // Paper: (4.7 + 4.3 + 1.8) / 3 = 3.6 for semantic; basic lacks the sign.
       EXPECT_EQ(table.rows[3].cells.back().text, "3.6");
       EXPECT_EQ(table.rows[0].cells.back().text, kMissing);
@@ -254,15 +245,14 @@ TEST(ReportPage, ClassesWithoutValuesAndFailedCompetitorsDrawNothing) {
   EXPECT_NE(html.find("<title>Basic splats, 10-20: "), std::string::npos);
 }
 
-/// Everything that a page says of a competitor with better figures than all others.
 Json results_with(const Json& competitor) {
   Json results = sample_results();
   results["competitors"].push_back(competitor);
   return results;
 }
 
-TEST(ReportPage, WhatFailedIsBestAtNothingAndScalesNoChart) {
-  // It ended after 11 ms: nobody is faster.
+TEST(ReportPage, AFailedCompetitorIsNeverBestAndScalesNoChart) {
+  // It ended after 11 ms, faster than all others.
   Json broken = {{"name", "broken"},
                  {"title", "Broken"},
                  {"kind", "mesh"},
@@ -308,15 +298,15 @@ TEST(ReportPage, WhatFailedIsBestAtNothingAndScalesNoChart) {
   EXPECT_NE(rows_named(late_html, "Late").at(0).find("0.023"), std::string::npos);
 }
 
-TEST(ReportPage, SaysWhereFiguresAreOfDifferentPrograms) {
+TEST(ReportPage, ReportsFiguresOfDifferentPrograms) {
   Json results = sample_results();
   std::string text = report_markdown(results);
   EXPECT_NE(text.find("adasplats 0.1.0, commit 0123456789ab"), std::string::npos);
-  EXPECT_EQ(text.find("not made by one program"), std::string::npos);
+  EXPECT_EQ(text.find("made by different programs"), std::string::npos);
   // Put together by hand: one step of one competitor is of another build.
   results["competitors"][3]["made_by"]["c2c"]["commit"] = "fedcba9876543210";
   text = report_markdown(results);
-  EXPECT_NE(text.find("not made by one program"), std::string::npos);
+  EXPECT_NE(text.find("made by different programs"), std::string::npos);
   EXPECT_NE(text.find("commit fedcba987654 (AdaSplats, semantic: c2c)"), std::string::npos);
   results = sample_results();
   results["competitors"][0].erase("made_by");

@@ -20,14 +20,14 @@ std::vector<const Json*> objects_of(const Json* list) {
 }  // namespace
 
 const Json* find(const Json& json, const KeyPath& path) {
-  const Json* place = &json;
+  const Json* value = &json;
   for (const std::string& key : path) {
-    if (!place->is_object()) return nullptr;
-    const auto found = place->find(key);
-    if (found == place->end()) return nullptr;
-    place = &*found;
+    if (!value->is_object()) return nullptr;
+    const auto found = value->find(key);
+    if (found == value->end()) return nullptr;
+    value = &*found;
   }
-  return place;
+  return value;
 }
 
 std::optional<double> number_at(const Json& json, const KeyPath& path) {

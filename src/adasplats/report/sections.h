@@ -4,10 +4,10 @@
 
 #include "adasplats/report/results.h"
 
-// The sections of the report, each from the whole results.
+// The sections of the report, made from the results.
 namespace adasplats::page {
 
-/// Everything in the order of the page; sections that would be empty are left out.
+/// Everything in the order of the page; empty sections are left out.
 Document document_of(const Json& results);
 
 Section paper_section(const Json& results, const std::vector<Competitor>& competitors);

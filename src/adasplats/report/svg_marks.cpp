@@ -3,6 +3,7 @@
 #include "adasplats/report/svg_marks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <utility>
 
@@ -11,7 +12,7 @@
 namespace adasplats::page {
 namespace {
 
-constexpr double kLetter = 6.7;     // mean width of a letter of the 12 px text
+constexpr double kLetter = 6.7;     // mean width of a character of 12 px
 constexpr double kLineHeight = 18;  // of legend and texts
 constexpr double kMarker = 4.2;     // radius
 constexpr std::size_t kColors = 8;  // of the style sheet
@@ -44,6 +45,17 @@ std::string marker_path(const Key& key, double x, double y) {
 std::string number(double value) {
   std::string text = fixed_text(value, 1);
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+
+double round_step(double rough) {
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= rough * (1 - 1e-9)) return factor * power;
+  return 10 * power;
+}
+
+std::string tick_text(double tick, double step) {
+  return fixed_text(tick, std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))));
 }
 
 std::string path_to(char command, double x, double y) {

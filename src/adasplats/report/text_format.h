@@ -5,16 +5,16 @@
 #include <string>
 #include <string_view>
 
-// Numbers as a reader wants them, whatever the locale.
+// Readable numbers, independent of the locale.
 namespace adasplats::page {
 
 inline constexpr const char* kMissing = "–";
 
-/// With that many digits behind the point and a comma between thousands.
+/// With that many decimals and a comma between thousands.
 std::string fixed_text(double number, int digits);
-/// Three digits that count: "0.123", "1.23", "12.3", "123", "1,234".
+/// Three significant digits: "0.123", "1.23", "12.3", "123", "1,234".
 std::string measure_text(double number);
-/// One or two digits behind the point, as the paper prints: "2.3", "1.97".
+/// One or two decimals, as in the paper: "2.3", "1.97".
 std::string short_text(double number);
 /// "940", "71.5 k", "5.40 M".
 std::string count_text(double number);

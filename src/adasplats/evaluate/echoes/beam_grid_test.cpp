@@ -30,7 +30,7 @@ LidarModel sensor() {
   return model;
 }
 
-/// How the lasers of the test really sit: what find_beam_grid has to find out.
+/// The true mounting of the lasers, which find_beam_grid must estimate.
 double offset_rad(std::size_t beam) { return (0.013 + 1.7 * static_cast<double>(beam)) * kDegree; }
 double beside_m(std::size_t beam) { return beam % 2 == 0 ? 0.026 : -0.026; }
 
@@ -48,7 +48,7 @@ struct Made {
   std::size_t fired = 0;
 };
 
-/// What the beams measure; `returns` of beam and firing says which come back.
+/// The measurements of the beams; `returns` decides by beam and firing which return.
 template <class Returns>
 Made make_scan(const Returns& returns) {
   const LidarModel model = sensor();
@@ -79,7 +79,7 @@ Made make_scan(const Returns& returns) {
 const auto kNineOfTen = [](std::size_t, int, Random& random) { return random.uniform() < 0.9; };
 
 /// Oracle: the beams that the scan was made of.
-TEST(BeamGrid, FindsTheBeamsThatFoundNothing) {
+TEST(BeamGrid, FindsBeamsWithoutReturn) {
   const Made made = make_scan(kNineOfTen);
   const BeamGrid grid = find_beam_grid(made.scan, sensor());
   EXPECT_EQ(grid.columns, 2150U);

@@ -11,8 +11,8 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/echoes/beam_grid.h"
-#include "adasplats/evaluate/echoes/standpoints.h"
 #include "adasplats/evaluate/share.h"
 
 namespace adasplats {
@@ -34,16 +34,9 @@ std::vector<double> ranks_of(std::span<const float> values) {
   return ranks;
 }
 
-/// Of the beam and the disk or triangle, 0..1.
+/// Of the beam to a disk or triangle, 0..1.
 float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
-  Vec3f normal;
-  if (primitive < view.disk_count()) {
-    normal = view.disks[primitive].normal;
-  } else {
-    const Triangle triangle = view.mesh->triangle(primitive - view.disk_count());
-    normal = normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
-  }
-  return std::min(std::fabs(dot(direction, normal)), 1.0F);
+  return std::min(std::fabs(dot(direction, unit_normal(view, primitive))), 1.0F);
 }
 
 /// Pairs of intensities of one scan.
@@ -105,7 +98,7 @@ void add_beams(BeamEchoes& beams, const EchoScene& scene, const BeamGrid& grid, 
   }
 }
 
-/// The beams that `keep` says by their number.
+/// The beams for whose index `keep` is true.
 template <class Keep>
 BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
   BeamEchoes result;
@@ -120,6 +113,21 @@ BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> standpoints_of(const KittiSequence& sequence,
+                                          std::span<const std::size_t> indices) {
+  constexpr double kApart_m = 2;
+  std::vector<std::uint32_t> places;
+  Vec3d begin;
+  for (const std::size_t index : indices) {
+    const Vec3d here = sequence.trajectory[index].world_from_sensor.translation;
+    const bool is_first = places.empty();
+    const bool is_new = is_first || length(here - begin) >= kApart_m;
+    if (is_new) begin = here;
+    places.push_back(is_first ? 0 : places.back() + (is_new ? 1 : 0));
+  }
+  return places;
+}
 
 EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
   const auto& intensities = scene.attributes.intensities;
@@ -150,7 +158,7 @@ IntensityAccuracy intensity_accuracy(const EchoScene& scene, const KittiSequence
                                      ProgressSink& progress) {
   if (scene.attributes.intensities.empty()) {
     throw Error(ErrorKind::data,
-                "the model has no intensities; make it from points that have some");
+                "the model has no intensities; make it from points with intensities");
   }
   IntensityPairs pairs;
   progress.begin_step("compare intensities", indices.size());

@@ -18,41 +18,48 @@
 
 namespace adasplats {
 
-/// A model as its echoes are compared: where rays end, and what is there.
+/// A model to compare echoes with.
 struct EchoScene {
   const Tracer& tracer;
   PrimitiveAttributes attributes;  ///< with the view
   Vec3d origin;                    ///< world coordinates of the local origin
 };
 
-/// What a ray that hits the scene meets, as the drop model sees it; the direction is not filled.
+/// The conditions of a hit, as input of the drop model; without the direction.
 EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit);
+
+/// The standpoint of each of the scans `indices`: scans less than 2 m from the first scan of a
+/// standpoint share its number. What is the same in successive scans is evidence of the vehicle
+/// only if the standpoint changes.
+std::vector<std::uint32_t> standpoints_of(const KittiSequence& sequence,
+                                          std::span<const std::size_t> indices);
 
 /// Predicted against measured intensities of beams that hit the model, in the unit of the file.
 struct IntensityAccuracy {
   std::size_t rays = 0;
-  double rank_correlation = 0;  ///< Spearman's; NaN where one side does not vary
+  double rank_correlation = 0;  ///< Spearman's; NaN if one side does not vary
   double mae = 0;
 };
 
 /// Spearman's rank correlation, equal values sharing the mean of their ranks; NaN for fewer than
-/// two pairs or where one side does not vary. Throws std::logic_error where sizes differ.
+/// two pairs or if one side does not vary. Throws std::logic_error if sizes differ.
 double rank_correlation(std::span<const float> a, std::span<const float> b);
 
-/// Casts the measured beams of the scans `indices` of a held-out sequence again, from where they
-/// started (sequence.beams). Errors: data (a model without intensities, no beam with an intensity
+/// Casts the measured beams of the scans `indices` of a held-out sequence again, from their origins
+/// (sequence.beams). Errors: data (a model without intensities, no beam with an intensity
 /// that hits), those of read_kitti_scan.
 IntensityAccuracy intensity_accuracy(const EchoScene& scene, const KittiSequence& sequence,
                                      std::span<const std::size_t> indices, const Executor& executor,
                                      ProgressSink& progress);
 
-/// All beams of measured scans, also those that found nothing, with what a model says of them. All
+/// All beams of measured scans, including those without return, with the model's predictions. All
 /// arrays have the same size.
 struct BeamEchoes {
-  std::vector<EchoConditions> echoes;  ///< where the model is hit; else the direction alone counts
-  std::vector<std::uint8_t> hit;       ///< 1: the beam hits the model within the sensor's range
-  std::vector<std::uint8_t> lost;      ///< 1: the real beam found nothing
-  std::vector<std::uint32_t> places;   ///< that it was fired from (standpoints_of())
+  std::vector<EchoConditions>
+      echoes;                      ///< if the model is hit; otherwise only the direction is valid
+  std::vector<std::uint8_t> hit;   ///< 1: the beam hits the model within the sensor's range
+  std::vector<std::uint8_t> lost;  ///< 1: the real beam has no return
+  std::vector<std::uint32_t> places;  ///< standpoints_of()
 
   std::size_t size() const { return echoes.size(); }
 };
@@ -64,25 +71,25 @@ BeamEchoes collect_beam_echoes(const EchoScene& scene, const KittiSequence& sequ
                                std::span<const ScanMotion> motions, const Executor& executor,
                                ProgressSink& progress);
 
-/// Fits where a real sensor reports nothing of what its beams hit: blocked sectors first, the
-/// logistic model to the rest. Errors: those of fit_ray_drop.
+/// Fits which beams of a real sensor are lost although they hit something: blocked sectors first,
+/// the logistic model to the rest. Errors: those of fit_ray_drop.
 RayDropModel fit_ray_drop(const BeamEchoes& beams);
 
-/// How well beams without return are foretold: such a beam hits nothing, or its drop is more
-/// likely than not.
+/// How well beams without return are predicted: those that hit nothing, or with a drop probability
+/// above 0.5.
 struct DropAccuracy {
   std::size_t beams = 0;
-  std::size_t empty = 0;      ///< that really found nothing
-  std::size_t predicted = 0;  ///< said to find nothing
+  std::size_t empty = 0;      ///< beams without return
+  std::size_t predicted = 0;  ///< beams predicted to be without return
   std::size_t right = 0;      ///< both
 
-  double precision() const;  ///< NaN where none is predicted
-  double recall() const;     ///< NaN where none is empty
-  double f1() const;         ///< 0 where none is right; NaN where there is nothing to find
+  double precision() const;  ///< NaN if none is predicted
+  double recall() const;     ///< NaN if none is empty
+  double f1() const;         ///< 0 if none is right; NaN if none is predicted or empty
 };
 
-/// `model`: null for hits and misses alone. `with_blocked` = false leaves out the beams that the
-/// model says are blocked.
+/// `model`: null to predict by hits and misses alone. `with_blocked` = false leaves out the beams
+/// in blocked sectors of the model.
 DropAccuracy drop_accuracy(const BeamEchoes& beams, const RayDropModel* model,
                            bool with_blocked = true);
 

@@ -42,7 +42,7 @@ TEST(DropAccuracy, CountsByHand) {
     beams.places.push_back(0);
   };
   for (int i = 0; i < 3; ++i) add(false, true);  // right
-  add(false, false);                             // said to be empty, but was not
+  add(false, false);                             // predicted to be empty, but was not
   for (int i = 0; i < 2; ++i) add(true, true);   // missed
   for (int i = 0; i < 4; ++i) add(true, false);
   const DropAccuracy alone = drop_accuracy(beams, nullptr);
@@ -63,7 +63,7 @@ TEST(DropAccuracy, CountsByHand) {
   EXPECT_TRUE(std::isnan(none.f1()));
 }
 
-/// Wide ground 1.7 m below the sensor, whose reflectance is 0.4 on the left and 0.8 on the right,
+/// Wide ground 1.7 m below the sensor, with reflectance 0.4 on the left and 0.8 on the right,
 /// and what twelve beams measure of it in four scans, in files.
 class MeasuredGround : public testing::Test {
  protected:
@@ -75,7 +75,7 @@ class MeasuredGround : public testing::Test {
                (std::string("adasplats_echo_") +
                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::create_directories(folder);
-    // The left half lies in the plane of the whole; where both are met the first counts.
+    // The left half is in the plane of the ground; the first of two hits counts.
     constexpr float kWide_m = 1e5F;
     disks = {{{5, 2 + kWide_m, 1.3F}, kWide_m, {0, 0, 1}}, {{5, 2, 1.3F}, 1000, {0, 0, 1}}};
     reflectances = {0.4F, 0.8F};
@@ -191,15 +191,15 @@ TEST_F(MeasuredGround, DropModelIsFoundAndForetellsOtherScans) {
               0.05, 0.02);
   const BeamEchoes other = collect({3});
   const DropAccuracy all = drop_accuracy(other, &model);
-  EXPECT_GT(all.precision(), 0.9);  // what is blocked; single drops cannot be foretold
+  EXPECT_GT(all.precision(), 0.9);  // blocked sectors; single drops are unpredictable
   EXPECT_NEAR(static_cast<double>(all.predicted), 4 * kFirings * 20.0 / 360, 60);
   const DropAccuracy free = drop_accuracy(other, &model, false);
   EXPECT_EQ(free.predicted, 0U);
   EXPECT_EQ(free.beams, all.beams - all.predicted);
 }
 
-// What a standing vehicle does not see may as well be the place's.
-TEST_F(MeasuredGround, StandingVehicleTellsNoBlockedSectors) {
+// What blocks the beams of a standing vehicle may be part of the scene.
+TEST_F(MeasuredGround, AStandingVehicleGivesNoBlockedSectors) {
   for (TimedPose& pose : sequence.trajectory) pose.world_from_sensor.translation = {105, 202, 3};
   EXPECT_TRUE(fit_ray_drop(collect({0, 1, 2})).blocked.empty());
 }

@@ -13,15 +13,15 @@
 namespace adasplats {
 namespace {
 
-/// Points around a scan, in the frame of its place: world axes, its position as origin.
+/// Points around a scan: world axes, with the position of the scan as origin.
 struct LabelledPoints {
   std::vector<Vec3f> positions;
   std::vector<std::uint16_t> classes;
 };
 
 bool moves(const LabelScheme& labels, std::uint16_t id) {
-  const SemanticClass* const known = labels.find(id);
-  return known != nullptr && known->mobility == Mobility::moving;
+  const SemanticClass* const found = labels.find(id);
+  return found != nullptr && found->mobility == Mobility::moving;
 }
 
 void append_scan(const KittiSequence& sequence, std::size_t index, Vec3d origin, bool with_moving,

@@ -51,7 +51,7 @@ TEST(LabelAgreement, NearestPointOfTheWindow) {
       folder.path() / "o", {scan_of(0, place, {{{10, 0, 0}, 50}}),
                             scan_of(1, place + Vec3d{1, 0, 0}, {{{10, 5, 0}, 40}, {{20, 0, 0}, 0}}),
                             scan_of(2, place + Vec3d{2, 0, 0}, {{{8, 0.5F, 0}, 70}})});
-  // In the world: 0.1 m beside the building, 0.4 m beside it and 0.1 m beside the vegetation, on
+  // In the world: 0.1 m from the building, 0.4 m from it and 0.1 m from the vegetation, on
   // the road, on what has no label.
   const KittiSequence simulated =
       sequence_of(folder.path() / "s", {scan_of(1.2, place + Vec3d{1, 0, -0.5},
@@ -73,7 +73,7 @@ TEST(LabelAgreement, NearestPointOfTheWindow) {
 }
 
 // Oracle: by hand: a car of another scan is no neighbour.
-TEST(LabelAgreement, WhatMovesIsOfItsOwnScan) {
+TEST(LabelAgreement, MovingPointsCountInTheirOwnScan) {
   const TemporaryFolder folder;
   const KittiSequence original = sequence_of(
       folder.path() / "o",

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t kMovableGroup = kSemanticGroups;
 
-/// An id that no scheme has: they are of 16 bits.
+/// No scheme has this id: ids have 16 bits.
 constexpr std::uint32_t kNoId = std::numeric_limits<std::uint32_t>::max();
 
-/// What a chunk of points adds, and the smallest ids that the scheme does not have: so the error
-/// does not depend on the order of chunks.
+/// The counts of a chunk of points, and the smallest ids that the scheme does not have, so the
+/// error does not depend on the order of chunks.
 struct ChunkCounts {
   SegmentationConfusion confusion;
   std::uint32_t unknown_prediction = kNoId;

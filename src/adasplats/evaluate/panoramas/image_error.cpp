@@ -12,12 +12,12 @@
 namespace adasplats {
 namespace {
 
-constexpr double kLeast = 1e-6;  // what LiDAR4D's metrics raise zeros to
+constexpr double kMinValue = 1e-6;  // LiDAR4D's metrics raise zeros to this
 constexpr std::size_t kWindow = 7;
 
-std::vector<double> clamped(std::span<const float> image, double greatest) {
+std::vector<double> clamped(std::span<const float> image, double max_value) {
   std::vector<double> result(image.begin(), image.end());
-  for (double& value : result) value = std::clamp(value, kLeast, greatest);
+  for (double& value : result) value = std::clamp(value, kMinValue, max_value);
   return result;
 }
 
@@ -55,22 +55,22 @@ double similarity(const Window& sums, double value_range) {
 double mean_similarity(const std::vector<double>& a, const std::vector<double>& b,
                        std::size_t columns) {
   const std::size_t rows = a.size() / columns;
-  const auto [least, most] = std::minmax_element(b.begin(), b.end());
+  const auto [min, max] = std::minmax_element(b.begin(), b.end());
   double sum = 0;
   for (std::size_t row = 0; row + kWindow <= rows; ++row)
     for (std::size_t column = 0; column + kWindow <= columns; ++column)
-      sum += similarity(window_at(a, b, row * columns + column, columns), *most - *least);
+      sum += similarity(window_at(a, b, row * columns + column, columns), *max - *min);
   return sum / static_cast<double>((rows - kWindow + 1) * (columns - kWindow + 1));
 }
 
 }  // namespace
 
 ImageError image_error(std::span<const float> predicted, std::span<const float> truth,
-                       std::uint32_t columns, double greatest) {
+                       std::uint32_t columns, double max_value) {
   if (predicted.size() != truth.size() || columns < kWindow || truth.size() % columns != 0 ||
       truth.size() / columns < kWindow)
     throw std::logic_error("image_error: sizes do not fit");
-  const std::vector<double> a = clamped(predicted, greatest), b = clamped(truth, greatest);
+  const std::vector<double> a = clamped(predicted, max_value), b = clamped(truth, max_value);
   std::vector<float> sizes(a.size());
   double squares = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -79,7 +79,7 @@ ImageError image_error(std::span<const float> predicted, std::span<const float> 
   }
   const double mean_square = squares / static_cast<double>(a.size());
   return {std::sqrt(mean_square), median_of(sizes), mean_similarity(a, b, columns),
-          10 * std::log10(greatest * greatest / mean_square)};
+          10 * std::log10(max_value * max_value / mean_square)};
 }
 
 DropError drop_error(std::span<const float> predicted_m, std::span<const float> truth_m) {
@@ -87,10 +87,10 @@ DropError drop_error(std::span<const float> predicted_m, std::span<const float> 
     throw std::logic_error("drop_error: sizes do not fit");
   std::size_t wrong = 0, both = 0, either = 0;
   for (std::size_t i = 0; i < truth_m.size(); ++i) {
-    const bool said = predicted_m[i] > 0, is = truth_m[i] > 0;
-    wrong += said != is ? 1 : 0;
-    both += said && is ? 1 : 0;
-    either += (said ? 1 : 0) + (is ? 1 : 0);
+    const bool predicted = predicted_m[i] > 0, is = truth_m[i] > 0;
+    wrong += predicted != is ? 1 : 0;
+    both += predicted && is ? 1 : 0;
+    either += (predicted ? 1 : 0) + (is ? 1 : 0);
   }
   const double share = static_cast<double>(wrong) / static_cast<double>(truth_m.size());
   const double f_score =

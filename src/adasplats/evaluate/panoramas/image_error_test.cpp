@@ -92,7 +92,8 @@ TEST(ImageError, AConstantDifference) {
   EXPECT_GT(error.ssim, 0.9);
 }
 
-// Oracle: counted by hand. Of six pixels three have a return, two of them are told, one wrongly.
+// Oracle: counted by hand. Three of six pixels have a return, two of them are predicted, and one
+// more wrongly.
 TEST(DropError, CountsByHand) {
   const DropError error =
       drop_error(std::vector<float>{1, 0, 5, 7, 0, 0}, std::vector<float>{2, 0, 5, 0, 9, 0});

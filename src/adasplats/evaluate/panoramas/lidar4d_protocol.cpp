@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-/// The largest finite intensity of all scans; none where no scan has intensities.
+/// The largest finite intensity of all scans; none without intensities.
 std::optional<float> largest_intensity(const KittiSequence& sequence, const Executor& executor) {
   std::optional<float> largest;
   for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
@@ -31,7 +31,7 @@ double scale_for(float largest) {
   return 65535;
 }
 
-/// Of 0 to 1; what is not finite counts as 0.
+/// To 0..1; values that are not finite become 0.
 void normalize(std::vector<float>& intensities, double scale) {
   for (float& intensity : intensities)
     intensity = std::isfinite(intensity) ? intensity / static_cast<float>(scale) : 0.0F;
@@ -44,7 +44,7 @@ Panorama measured_image(const KittiSequence& sequence, std::size_t index,
   const auto returned = [](float range_m) { return range_m > 0; };
   if (std::ranges::none_of(image.ranges_m, returned))
     throw Error(ErrorKind::data,
-                sequence.scans[index].string() + ": no points where the range image looks");
+                sequence.scans[index].string() + ": no points within the range image");
   return image;
 }
 
@@ -79,7 +79,7 @@ class Lidar4dMeans {
     sum_.intensity_scale = *intensity_scale;
   }
 
-  /// False where the images have no points to compare.
+  /// False if the images have no points to compare.
   bool add_scan(Panorama predicted, Panorama measured, const Executor& executor) {
     const PanoramaLayout& layout = sum_.layout;
     ++sum_.scans;

@@ -39,10 +39,10 @@ KittiSequence sequence_of(std::vector<KittiScan> scans) {
   return sequence;
 }
 
-/// A model that is a wall 10 m ahead of the sensor, 80 m wide and high, all of one reflectance.
+/// A wall 10 m ahead of the sensor, 80 m wide and high, of uniform reflectance.
 class Lidar4d : public ::testing::Test {
  protected:
-  /// What each pixel that sees the wall measures, its range longer by `longer_m`.
+  /// The measurements of all pixels on the wall, with ranges longer by `longer_m`.
   KittiScan scan(double longer_m, float intensity) const {
     KittiScan scan;
     const Panorama ones{std::vector<float>(layout_.pixels(), 1.0F), {}};
@@ -76,7 +76,7 @@ class Lidar4d : public ::testing::Test {
   std::vector<float> intensities_ = {0.5F};
 };
 
-// Analytic: a model that is right about everything but that 25 cm lie between all ranges.
+// Analytic: a perfect model, except for 25 cm in all ranges.
 TEST_F(Lidar4d, KnownRangesGiveKnownErrors) {
   const Lidar4dResult exact = run({scan(0, 0.5F)});
   EXPECT_EQ(exact.scans, 1U);
@@ -117,8 +117,8 @@ TEST_F(Lidar4d, ScansAreAveraged) {
   EXPECT_NEAR(both.intensity->rmse, 0.5 * (one.intensity->rmse + other.intensity->rmse), 1e-9);
 }
 
-// Oracle: counts. Half of what was measured lies where the model has nothing.
-TEST_F(Lidar4d, PixelsWithoutReturnAreTold) {
+// Oracle: counts. Half of the measured points are outside the model.
+TEST_F(Lidar4d, PredictsPixelsWithoutReturn) {
   KittiScan more = scan(0, 0.5F);
   const std::size_t seen = more.positions.size();
   for (std::size_t i = 0; i < seen; ++i) {
@@ -128,7 +128,7 @@ TEST_F(Lidar4d, PixelsWithoutReturnAreTold) {
   }
   const Lidar4dResult result = run({more});
   const double recall = result.drop.f_score / (2 - result.drop.f_score);  // precision is 1
-  EXPECT_NEAR(recall, 0.5, 0.01);  // mirrored points of one column lie beyond the seam
+  EXPECT_NEAR(recall, 0.5, 0.01);  // mirrored points of one column are beyond the seam
   EXPECT_NEAR(1 - result.drop.accuracy, result.drop.rmse * result.drop.rmse, 1e-12);
 }
 
@@ -141,7 +141,7 @@ TEST_F(Lidar4d, IntensitiesOfEightBitsAreScaled) {
   EXPECT_FALSE(run({scan(0, 100)}).intensity.has_value());
 }
 
-TEST_F(Lidar4d, NothingPredictedAndNothingMeasured) {
+TEST_F(Lidar4d, NoPredictedAndNoMeasuredPoints) {
   disks_[0].center.x = -500;
   const Lidar4dResult nothing = run({scan(0, 0.5F)});
   EXPECT_TRUE(std::isnan(nothing.chamfer_m2));

@@ -37,9 +37,9 @@ Panorama panorama_of(std::span<const Vec3f> points, std::span<const float> inten
     if (!(range_m > 0 && range_m < layout.max_range_m)) continue;
     const std::optional<std::size_t> pixel = pixel_of(layout, point);
     if (!pixel) continue;
-    float& taken_m = image.ranges_m[*pixel];
-    if (taken_m > 0 && static_cast<double>(taken_m) <= range_m) continue;
-    taken_m = static_cast<float>(range_m);
+    float& nearest_m = image.ranges_m[*pixel];
+    if (nearest_m > 0 && static_cast<double>(nearest_m) <= range_m) continue;
+    nearest_m = static_cast<float>(range_m);
     image.intensities[*pixel] = i < intensities.size() ? intensities[i] : 0.0F;
   }
   return image;

@@ -13,14 +13,14 @@
 
 namespace adasplats {
 
-/// How a scan is laid out as an image: rows by elevation from the top, columns by azimuth,
-/// clockwise seen from above, from the rear. The numbers are those that LiDAR4D (Zheng et al., CVPR
-/// 2024) has for KITTI-360, in its data/preprocess/generate_rangeview.py.
+/// Layout of a scan as an image: rows by elevation from the top, columns by azimuth, clockwise seen
+/// from above, from the rear. The numbers are those of LiDAR4D (Zheng et al., CVPR 2024) for
+/// KITTI-360, in its data/preprocess/generate_rangeview.py.
 struct PanoramaLayout {
   std::uint32_t rows = 66;
   std::uint32_t columns = 1030;
   double top_rad = 2.0 * kDegree;    ///< elevation of the first row
-  double span_rad = 26.9 * kDegree;  ///< from there to where a row below the last would be
+  double span_rad = 26.9 * kDegree;  ///< from there to a row below the last one
   double max_range_m = 80;           ///< points at this range or beyond are left out
 
   std::size_t pixels() const { return std::size_t{rows} * columns; }
@@ -32,18 +32,18 @@ struct Panorama {
   std::vector<float> intensities;  ///< in the unit of the points; 0 without return
 };
 
-/// Lays out points (sensor frame, m): each in the pixel whose direction is nearest, the nearest
-/// point of a pixel counts. Points outside, not finite or at the origin are left out, and, as in
-/// the code of LiDAR4D, those within half a pixel of the rear's seam on its far side.
-/// `intensities`: one a point, or none.
+/// Projects points (sensor frame, m) to the pixel with the nearest direction; the nearest point of
+/// a pixel counts. Points outside, not finite or at the origin are left out, and, as in the code of
+/// LiDAR4D, those within half a pixel of the seam at the rear, on its far side. `intensities`: one
+/// per point, or none.
 Panorama panorama_of(std::span<const Vec3f> points, std::span<const float> intensities,
                      const PanoramaLayout& layout);
 
-/// The points that the pixels with a return stand for, sensor frame, m.
+/// The points of the pixels with a return, sensor frame, m.
 std::vector<Vec3f> points_of(const Panorama& image, const PanoramaLayout& layout);
 
-/// The sensor whose rays are the pixels: a ring a row, all at once, all from one point, without
-/// noise.
+/// The sensor with one ray per pixel: one ring per row, all rays at once and from one point,
+/// without noise.
 LidarModel sensor_of(const PanoramaLayout& layout);
 
 }  // namespace adasplats

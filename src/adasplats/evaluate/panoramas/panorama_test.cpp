@@ -70,7 +70,7 @@ TEST(Panorama, DirectionsOfPixels) {
   EXPECT_EQ(pixel_of(point_at(-170, 2, 10)), -1);  // LiDAR4D does not wrap around
 }
 
-TEST(Panorama, TheNearestOfAPixelCountsAndOthersAreLeftOut) {
+TEST(Panorama, TheNearestPointOfAPixelCounts) {
   const PanoramaLayout layout = small_layout();
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Vec3f> points = {point_at(0, 2, 30),    point_at(1, 2, 20), point_at(2, 2, 25),
@@ -85,7 +85,7 @@ TEST(Panorama, TheNearestOfAPixelCountsAndOthersAreLeftOut) {
   EXPECT_TRUE(points_of(panorama_of({}, {}, layout), layout).empty());
 }
 
-// Oracle: the points that pixels stand for.
+// Oracle: the points of the pixels.
 TEST(Panorama, TheSensorsRaysAreThePixels) {
   const PanoramaLayout layout = small_layout();
   const Panorama ones{std::vector<float>(layout.pixels(), 1.0F), {}};

@@ -12,7 +12,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kBootstrapStream = 0x617563;  // "auc"
-constexpr std::size_t kReplicates = 1000;             // bounds are good to a hundredth of them
+constexpr std::size_t kReplicates = 1000;             // enough for the bounds
 
 /// Samples by rising score; those with equal scores have the same group.
 struct Ranked {
@@ -56,7 +56,7 @@ void add_pairs(const Ranked& samples, std::span<const double> weights, Pairs& pa
   pairs.all += positives * below;
 }
 
-double share_of(std::span<const Ranked> parts, std::span<const double> weights) {
+double share_won(std::span<const Ranked> parts, std::span<const double> weights) {
   Pairs pairs;
   for (const Ranked& part : parts) add_pairs(part, weights, pairs);
   return pairs.all > 0 ? pairs.won / pairs.all : std::numeric_limits<double>::quiet_NaN();
@@ -79,7 +79,7 @@ double auc(std::span<const double> scores, std::span<const std::uint8_t> positiv
   samples.scans.assign(scores.size(), 0);
   const Ranked one = ranked(samples);
   const double weight = 1;
-  return share_of({&one, 1}, {&weight, 1});
+  return share_won({&one, 1}, {&weight, 1});
 }
 
 AucInterval auc_interval(std::span<const ScoredSplit> splits, std::span<const std::size_t> sets,
@@ -91,7 +91,7 @@ AucInterval auc_interval(std::span<const ScoredSplit> splits, std::span<const st
     std::vector<Ranked>& parts = sorted.emplace_back();
     for (const ScoredSamples& part : split) parts.push_back(ranked(part));
     result.mean +=
-        share_of(parts, std::vector<double>(scans, 1)) / static_cast<double>(splits.size());
+        share_won(parts, std::vector<double>(scans, 1)) / static_cast<double>(splits.size());
   }
   std::vector<double> drawn;
   for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
@@ -101,8 +101,8 @@ AucInterval auc_interval(std::span<const ScoredSplit> splits, std::span<const st
       draw(std::span(weights).subspan(first, set), random);
       first += set;
     }
-    const double share = share_of(sorted[replicate % sorted.size()], weights);
-    if (share == share) drawn.push_back(share);  // no part has scans of both: says nothing
+    const double share = share_won(sorted[replicate % sorted.size()], weights);
+    if (share == share) drawn.push_back(share);  // NaN: no part has scans of both classes
   }
   if (drawn.empty()) return {result.mean, result.mean, result.mean};
   std::ranges::sort(drawn);

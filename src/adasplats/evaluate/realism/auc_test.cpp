@@ -62,7 +62,8 @@ TEST(Auc, OfFewSamples) {
 }
 
 TEST(AucInterval, ComparesWithinPartsAlone) {
-  // The second part has all its scores beyond those of the first: pairs across would tell classes.
+  // All scores of the second part exceed those of the first: pairs across parts would separate
+  // classes.
   ScoredSplit split = {samples_of(1, 200, 0.5), samples_of(2, 300, 0.5)};
   for (double& score : split[1].scores) score += 100;
   WonPairs pairs;
@@ -73,7 +74,7 @@ TEST(AucInterval, ComparesWithinPartsAlone) {
 }
 
 TEST(AucInterval, IsAsWideAsRepetitionsAre) {
-  // Oracle: the spread of the figure itself over 200 sets of scans drawn anew.
+  // Oracle: the spread of the figure itself over 200 new sets of scans.
   const std::size_t sets[] = {10, 10};
   double sum = 0, squares = 0, width = 0;
   constexpr int kRepetitions = 200;

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/realism/boosted_trees.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "adasplats/evaluate/realism/classifiers.h"
+
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kBins = 64;  // the first one is for NaN and the least values
+constexpr std::size_t kBins = 64;  // the first one is for NaN and the smallest values
 
 /// Bounds between the bins of a feature, ascending: bin b holds values of [bounds[b - 1],
 /// bounds[b]).
@@ -45,12 +45,12 @@ struct Split {
 
 }  // namespace
 
-/// What growing trees needs.
+/// State while trees are grown.
 struct BoostedTrees::Growth {
   const SampleTable& samples;
   const TreeOptions& options;
   std::vector<std::vector<float>> bounds;       ///< feature by feature
-  std::vector<std::vector<std::uint8_t>> bins;  ///< likewise, one a sample
+  std::vector<std::vector<std::uint8_t>> bins;  ///< ..., one per sample
   std::vector<double> scores;
   std::vector<Slopes> slopes;
   std::vector<std::uint32_t> leaves;  ///< node of each sample

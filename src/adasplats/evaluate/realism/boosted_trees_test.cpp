@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/realism/boosted_trees.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/auc.h"
+#include "adasplats/evaluate/realism/classifiers.h"
 
 namespace adasplats {
 namespace {
@@ -47,12 +46,12 @@ TEST(BoostedTrees, TellShiftedNormalsAsWellAsCanBe) {
   }
 }
 
-TEST(BoostedTrees, FindNothingWhereNothingIs) {
+TEST(BoostedTrees, FindNothingInNoise) {
   const BoostedTrees trees(shifted(1, 4000, 0), {});
   EXPECT_NEAR(auc_on(trees, shifted(2, 4000, 0)), 0.5, 0.03);
 }
 
-TEST(BoostedTrees, TellWhatOnlyTwoFeaturesTogetherTell) {
+TEST(BoostedTrees, LearnAnInteractionOfTwoFeatures) {
   SampleTable table{2, {}, {}};
   for (std::size_t i = 0; i < 2000; ++i) {
     Random random(3, 3, i);
@@ -77,7 +76,7 @@ TEST(BoostedTrees, KnowThatAFeatureIsMissing) {
   EXPECT_LT(trees.score(something), 0.0);  // a third of these
 }
 
-TEST(BoostedTrees, OfConstantFeaturesKnowTheOddsAlone) {
+TEST(BoostedTrees, OfConstantFeaturesPredictTheOdds) {
   SampleTable table{1, std::vector<float>(100, 1.0F), std::vector<std::uint8_t>(100, 0)};
   for (std::size_t i = 0; i < 25; ++i) table.positive[i] = 1;
   const float row[] = {1};

@@ -15,7 +15,7 @@
 
 namespace adasplats::test {
 
-/// What a beam of a drawn scan measures.
+/// The measurement of a beam of a synthetic scan.
 struct DrawnReturn {
   double range_m;
   float intensity = 0.5F;
@@ -25,7 +25,7 @@ inline constexpr std::size_t kDrawnRings = 64;
 inline constexpr std::size_t kDrawnColumns = 2048;
 inline constexpr double kDrawnStep_rad = 2 * std::numbers::pi / kDrawnColumns;
 
-/// Of ring 0 at the top, 2 degrees up, to 25 degrees down.
+/// From ring 0 at the top, 2 degrees up, to 25 degrees down.
 inline double drawn_elevation_rad(std::size_t ring) {
   return (2 - 27.0 * static_cast<double>(ring) / (kDrawnRings - 1)) * std::numbers::pi / 180;
 }
@@ -39,7 +39,7 @@ inline Vec3d drawn_direction(std::size_t ring, std::size_t column) {
           std::sin(drawn_elevation_rad(ring))};
 }
 
-/// A scan whose beams leave the origin and measure what `beam` says; nothing: no return.
+/// A scan with beams from the origin and measurements from `beam`; nothing: no return.
 inline KittiScan drawn_points(
     const std::function<std::optional<DrawnReturn>(std::size_t ring, std::size_t column)>& beam) {
   KittiScan scan;

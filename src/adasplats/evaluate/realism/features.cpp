@@ -24,7 +24,7 @@ double ratio(std::size_t of, std::size_t all) {
   return ratio(static_cast<double>(of), static_cast<double>(all));
 }
 
-/// Logarithm of lengths and intensities, of which some are zero.
+/// Logarithm of lengths and intensities that may be zero.
 double log_of_small(double value) { return std::log(std::max(value, 1e-4)); }
 
 double deviation_of(const std::vector<double>& values) {
@@ -45,7 +45,7 @@ double median_of_pieces(const Counts& counts, double (*of)(const PlanePiece&)) {
   return median_of_known(std::move(values));
 }
 
-/// How much rings differ from the mean of the ones above and below.
+/// Differences of rings from the mean of the rings above and below.
 std::vector<double> steps_between_rings(const std::vector<double>& values) {
   std::vector<double> steps;
   for (std::size_t ring = 1; ring + 1 < values.size(); ++ring)
@@ -70,8 +70,8 @@ double deviation_of_one(std::span<const float> second) {
   return mean_between(second, 0.25, 0.75) / 0.6933 / std::sqrt(6.0);
 }
 
-/// Intensities come in steps, of which files hold the nearest float or the one beside it: that is
-/// no matter of the sensor. 0.37: so that no hundredth, and no half or sixth of one, is on the
+/// Intensities come in steps, stored in files as the nearest float or its neighbour; this
+/// difference is not due to the sensor. 0.37: no hundredth, nor half or sixth of one, is on the
 /// border of two steps.
 double to_thousandths(double value) { return 0.001 * std::floor(1000 * value + 0.37); }
 
@@ -84,86 +84,86 @@ std::vector<double> logs_of(std::vector<double> values) {
 }
 
 constexpr PatchFeature kPatchFeatures[] = {
-    {"range_about", kOfContext, "", "logarithm of the median range in steps of 0.2",
+    {"range_about", kOfContext, "logarithm of the median range in steps of 0.2",
      [](const Counts& c) {
        return 0.2 * std::round(5 * log_of_small(quantile_of(c.ranges_m, 0.5)));
      }},
 
-    {"range_least", kOfGeometry, "", "logarithm of the least range",
+    {"range_least", kOfGeometry, "logarithm of the minimum range",
      [](const Counts& c) { return log_of_small(quantile_of(c.ranges_m, 0)); }},
-    {"range_most", kOfGeometry, "", "logarithm of the largest range",
+    {"range_most", kOfGeometry, "logarithm of the maximum range",
      [](const Counts& c) { return log_of_small(quantile_of(c.ranges_m, 1)); }},
-    {"second_low", kOfGeometry, "",
-     "logarithm of the mean lower half of second differences of range",
+    {"second_low", kOfGeometry, "logarithm of the mean lower half of second differences of range",
      [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0, 0.5)); }},
-    {"second_middle", kOfGeometry, "", "of the mean of their middle half",
+    {"second_middle", kOfGeometry, "of the mean of their middle half",
      [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.25, 0.75)); }},
-    {"second_high", kOfGeometry, "", "of the mean from their median to their 90th percentile",
+    {"second_high", kOfGeometry, "of the mean from their median to their 90th percentile",
      [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.5, 0.9)); }},
-    {"second_most", kOfGeometry, "", "of the mean of their highest tenth",
+    {"second_most", kOfGeometry, "of the mean of their highest tenth",
      [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.9, 1)); }},
-    {"second_lag", kOfGeometry, "", "correlation of neighbouring ones (white noise: -2/3)",
+    {"second_lag", kOfGeometry, "correlation of neighbouring ones (white noise: -2/3)",
      [](const Counts& c) { return ratio(c.product_m2, c.square_m2); }},
-    {"second_rings", kOfGeometry, "", "deviation over rings of the logarithm of second_middle",
+    {"second_rings", kOfGeometry, "deviation over rings of the logarithm of second_middle",
      [](const Counts& c) { return deviation_of(logs_of(c.ring_second_m)); }},
-    {"rings_off_plane", kOfGeometry, "", "logarithm of the spread of rings about planes",
+    {"rings_off_plane", kOfGeometry, "logarithm of the spread of rings about planes",
      [](const Counts& c) { return median_of_pieces(c, piece_between); }},
-    {"beams_off_plane", kOfGeometry, "", "logarithm of the spread of a ring's ranges there",
+    {"beams_off_plane", kOfGeometry, "logarithm of the spread of a ring's ranges there",
      [](const Counts& c) { return median_of_pieces(c, piece_within); }},
-    {"planes", kOfGeometry, "", "pieces that are planes, per return",
+    {"planes", kOfGeometry, "pieces that are planes, per return",
      [](const Counts& c) { return ratio(c.planes.size(), c.returns); }},
-    {"edges", kOfGeometry, "", "neighbours with ranges 0.5 m apart, of all",
+    {"edges", kOfGeometry, "share of neighbours with ranges 0.5 m apart",
      [](const Counts& c) { return ratio(c.edges, c.neighbors); }},
-    {"between", kOfGeometry, "", "returns by 0.3 m between their neighbours, of all",
+    {"between", kOfGeometry, "share of returns between their neighbours by 0.3 m",
      [](const Counts& c) { return ratio(c.between, c.triples); }},
-    {"isolated", kOfGeometry, "", "returns by 0.3 m nearer or farther than both neighbours, of all",
+    {"isolated", kOfGeometry, "share of returns nearer or farther than both neighbours by 0.3 m",
      [](const Counts& c) { return ratio(c.isolated, c.triples); }},
 
-    {"missing", kOfDropout, "",
-     "beams without return in runs of 20 at most, of these and the returns",
+    {"missing", kOfDropout,
+     "share of beams without return in runs of at most 20, of these and the returns",
      [](const Counts& c) { return ratio(c.missing, c.missing + c.returns); }},
-    {"nothing", kOfDropout, "", "beams without return in longer runs, of all",
+    {"nothing", kOfDropout, "share of beams without return in longer runs",
      [](const Counts& c) { return ratio(c.nothing, c.beams); }},
-    {"runs_of_1", kOfDropout, "", "runs of one beam without return, per return",
+    {"runs_of_1", kOfDropout, "runs of one beam without return, per return",
      [](const Counts& c) { return ratio(c.runs_of_1, c.returns); }},
-    {"runs_to_5", kOfDropout, "", "runs of two to five",
+    {"runs_to_5", kOfDropout, "runs of two to five",
      [](const Counts& c) { return ratio(c.runs_to_5, c.returns); }},
-    {"runs_to_20", kOfDropout, "", "runs of six to twenty",
+    {"runs_to_20", kOfDropout, "runs of six to twenty",
      [](const Counts& c) { return ratio(c.runs_to_20, c.returns); }},
-    {"missing_next", kOfDropout, "", "beams without return whose next one has none, too, of all",
+    {"missing_next", kOfDropout, "share of beams without return that are followed by another one",
      [](const Counts& c) {
        return ratio(c.missing - c.runs_of_1 - c.runs_to_5 - c.runs_to_20, c.missing);
      }},
-    {"missing_below", kOfDropout, "", "beams without return, with one in the ring below beside it",
+    {"missing_below", kOfDropout,
+     "share of beams without return with another one in the ring below",
      [](const Counts& c) { return ratio(c.missing_across, c.missing_above); }},
-    {"missing_rings", kOfDropout, "", "deviation over rings of the share of missing beams",
+    {"missing_rings", kOfDropout, "deviation over rings of the share of missing beams",
      [](const Counts& c) { return deviation_of(c.ring_missing); }},
-    {"runs_at_edges", kOfDropout, "", "runs with ranges 0.5 m apart on both sides, of all",
+    {"runs_at_edges", kOfDropout, "share of runs with ranges 0.5 m apart on both sides",
      [](const Counts& c) {
        return ratio(c.runs_at_edges, c.runs_of_1 + c.runs_to_5 + c.runs_to_20);
      }},
 
-    {"intensity_10", kOfIntensity, "", "10th percentile",
+    {"intensity_10", kOfIntensity, "10th percentile",
      [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.1)); }},
-    {"intensity_50", kOfIntensity, "", "median",
+    {"intensity_50", kOfIntensity, "median",
      [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.5)); }},
-    {"intensity_90", kOfIntensity, "", "90th percentile",
+    {"intensity_90", kOfIntensity, "90th percentile",
      [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.9)); }},
-    {"intensity_most", kOfIntensity, "", "the highest",
+    {"intensity_most", kOfIntensity, "the highest",
      [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 1)); }},
-    {"zeros", kOfIntensity, "", "intensities of zero, of all",
+    {"zeros", kOfIntensity, "share of zero intensities",
      [](const Counts& c) { return ratio(c.zeros, c.known); }},
-    {"zero_next", kOfIntensity, "", "neighbours of zeros that are zero",
+    {"zero_next", kOfIntensity, "share of zeros among neighbours of zeros",
      [](const Counts& c) { return ratio(c.zero_next, c.zero_pairs); }},
-    {"equal", kOfIntensity, "", "neighbours with the same intensity, of all",
+    {"equal", kOfIntensity, "share of neighbours with the same intensity",
      [](const Counts& c) { return ratio(c.equal, c.known_pairs); }},
-    {"intensity_second_50", kOfIntensity, "", "median second difference of intensity",
+    {"intensity_second_50", kOfIntensity, "median second difference of intensity",
      [](const Counts& c) { return to_thousandths(quantile_of(c.second_intensity, 0.5)); }},
-    {"intensity_second_90", kOfIntensity, "", "its 90th percentile",
+    {"intensity_second_90", kOfIntensity, "its 90th percentile",
      [](const Counts& c) { return to_thousandths(quantile_of(c.second_intensity, 0.9)); }},
-    {"intensity_second_lag", kOfIntensity, "", "correlation of neighbouring ones",
+    {"intensity_second_lag", kOfIntensity, "correlation of neighbouring ones",
      [](const Counts& c) { return ratio(c.product_intensity, c.square_intensity); }},
-    {"intensity_rings", kOfIntensity, "", "mean step of a ring's median from those beside it",
+    {"intensity_rings", kOfIntensity, "mean difference of a ring's median from adjacent rings",
      [](const Counts& c) {
        return to_thousandths(mean_size(steps_between_rings(c.ring_intensity)));
      }},
@@ -173,23 +173,23 @@ constexpr ScanStatistic kScanStatistics[] = {
     {"returns", "", "returns of a scan"},
     {"range_noise_m", "m", "noise of ranges, by second differences along rings"},
     {"laser_offsets_m", "m", "deviation of single lasers' ranges about planes"},
-    {"missing", "", "beams without return in runs of 20 at most"},
+    {"missing", "", "beams without return in runs of at most 20"},
     {"missing_runs_of_1", "", "of these in runs of one"},
     {"missing_runs_6_to_20", "", "of these in runs of 6 to 20"},
     {"intensity_noise", "", "noise of intensities, by second differences along rings"},
-    {"intensity_rings", "", "deviation of rings' median intensities from those beside them"},
+    {"intensity_rings", "", "deviation of rings' median intensities from adjacent rings"},
     {"intensity_zeros", "", "share of returns with intensity zero"},
-    {"intensity_zero_next", "", "probability that the next one is zero, too"},
-    {"intensity_most", "", "highest intensity"},
-    {"range_most_m", "m", "farthest range"},
+    {"intensity_zero_next", "", "probability that the next one is zero after a zero"},
+    {"intensity_most", "", "maximum intensity"},
+    {"range_most_m", "m", "maximum range"},
     {"azimuth_jitter", "", "deviation of azimuths from one firing to the next, in steps"},
-    {"near_points", "", "points nearer than 2.5 m, such as on the vehicle itself"},
+    {"near_points", "", "points nearer than 2.5 m, mostly on the vehicle itself"},
     {"unfolded_rings", "", "rings that 'scan unfolding' finds in the file"},
 };
 
 /// Deviation over lasers of the median error of their ranges about planes of eight rings (the
-/// median, because some pieces are bent). A plane takes two of eight freedoms away across the
-/// rings: a laser's own share is larger.
+/// median, because some pieces are bent). A plane removes two of eight degrees of freedom across
+/// the rings, which is corrected.
 double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
   constexpr std::size_t kMinPieces = 10;
   std::vector<std::vector<double>> errors_m(rings);
@@ -200,8 +200,8 @@ double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
   std::vector<double> medians_m;
   for (std::vector<double>& of_ring : errors_m)
     if (of_ring.size() >= kMinPieces) medians_m.push_back(median_of_known(std::move(of_ring)));
-  constexpr double kFreedoms = static_cast<double>(kPlaneRings);
-  return deviation_of(medians_m) * std::sqrt(kFreedoms / (kFreedoms - 2));
+  constexpr double kDegreesOfFreedom = static_cast<double>(kPlaneRings);
+  return deviation_of(medians_m) * std::sqrt(kDegreesOfFreedom / (kDegreesOfFreedom - 2));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@
 
 namespace adasplats {
 
-/// What a feature is of. Context tells where a patch is and takes part in all tests: what noise is
-/// usual depends on the range. It is coarse, so that it tells no noise by itself.
+/// Kind of a feature. Context locates a patch and is part of all tests, because the usual noise
+/// depends on the range. It is coarse, so it does not reveal noise itself.
 enum class FeatureGroup : std::uint8_t { context, geometry, dropout, intensity };
 inline constexpr std::pair<std::string_view, FeatureGroup> kFeatureGroups[] = {
     {"context", FeatureGroup::context},
@@ -28,34 +28,33 @@ inline Words<FeatureGroup> words_of(FeatureGroup) { return kFeatureGroups; }
 /// A patch of a range image: rings by columns (azimuth steps).
 inline constexpr std::size_t kPatchRings = 8;
 inline constexpr std::size_t kPatchColumns = 64;
-/// A patch with fewer returns, a quarter of its cells, is sky or void and tells nothing.
+/// Patches with fewer returns, a quarter of the cells, are sky or void and are ignored.
 inline constexpr std::size_t kMinInPatch = kPatchRings * kPatchColumns / 4;
 
-/// One number of a patch; NaN where the patch does not have it.
+/// One number of a patch; NaN if undefined.
 struct PatchFeature {
   const char* name;
   FeatureGroup group;
-  const char* unit;  ///< "" of shares, ratios and logarithms
-  const char* text;
+  const char* text;  ///< definition, for readers of the table
   double (*of)(const PartCounts&);
 };
 
-/// All features, in the order of the columns of patch_features(). The one place that knows them.
+/// All features, in the order of the columns of features_of_patches().
 std::span<const PatchFeature> patch_features();
 
 /// Features of all patches of a scan, patch by patch. Patches are 8 rings high, from the top, and
-/// cut the turn into equal sectors as near to 64 steps as it goes; those with fewer than
-/// kMinInPatch returns are left out. Needs count_missing().
+/// divide the turn into equal sectors of about 64 steps; those with fewer than kMinInPatch returns
+/// are left out. Requires count_missing().
 std::vector<float> features_of_patches(const RingScan& scan, double step_rad);
 
-/// What a scan as a whole says, beside the tests: the statistics that users see side by side.
+/// A statistic of a whole scan, reported for both sides in addition to the tests.
 struct ScanStatistic {
   const char* name;
   const char* unit;
   const char* text;
 };
 
-/// What of a scan does not lie in its rings.
+/// Properties of a scan that its rings do not have.
 struct ScanFile {
   std::size_t unfolded_rings = 0;
   std::size_t near_points = 0;  ///< nearer than kNear_m to the origin of the scan's frame
@@ -65,7 +64,7 @@ struct ScanFile {
 std::span<const ScanStatistic> scan_statistics();
 std::vector<double> statistics_of_scan(const RingScan& scan, double step_rad, const ScanFile& file);
 
-/// Nearer points are mostly on the vehicle itself (so is ResimulateOptions::min_range_m chosen).
+/// Nearer points are mostly on the vehicle itself (like ResimulateOptions::min_range_m).
 inline constexpr double kNear_m = 2.5;
 
 }  // namespace adasplats

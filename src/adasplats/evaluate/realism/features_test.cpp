@@ -71,7 +71,7 @@ TEST(Features, TheNoiseOfRangesIsFound) {
   }
 }
 
-TEST(Features, StepsOfRangesAndFloatsOfIntensitiesAreNoMatter) {
+TEST(Features, IgnoreStepsOfRangesAndFloatsOfIntensities) {
   // Ranges in steps of 2 mm, as a sensor has them, and the same moved by half a millimetre;
   // intensities in hundredths, and the next floats.
   const auto scan_with = [](double moved_m, float towards) {
@@ -233,7 +233,7 @@ TEST(Features, JitterOfAzimuthsIsFound) {
               1e-4);
 }
 
-TEST(Features, WithoutIntensitiesAreNotKnown) {
+TEST(Features, AreNaNWithoutIntensities) {
   KittiScan points = test::drawn_points([](std::size_t, std::size_t) { return DrawnReturn{10}; });
   points.intensities.clear();
   RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnHeights_m);

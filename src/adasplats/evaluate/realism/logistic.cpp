@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/realism/logistic.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "adasplats/evaluate/realism/classifiers.h"
 
 namespace adasplats {
 namespace {
 
-/// As little as keeps separable classes finite: one hundredth of a sample's own information.
+/// Small, but enough to keep the weights of separable classes finite.
 constexpr double kRidge = 1;
-constexpr double kCutoff = 4;  // standard deviations: few samples shall not decide
+constexpr double kCutoff = 4;  // standard deviations: limits the influence of single samples
 constexpr int kMaxSteps = 25;
 
 /// Solves a x = b for a symmetric positive definite matrix by rows, by Cholesky's factors.
@@ -35,7 +35,7 @@ std::vector<double> solved_symmetric(std::vector<double> a, std::vector<double> 
   return b;
 }
 
-/// Without the bias: it is the last weight.
+/// The bias is the last weight.
 double log_odds(std::span<const float> row, std::span<const double> weights) {
   double sum = weights.back();
   for (std::size_t k = 0; k < row.size(); ++k) sum += weights[k] * static_cast<double>(row[k]);
@@ -76,12 +76,12 @@ std::vector<double> fit_logistic(const SampleTable& samples, double ridge) {
       sums.hessian[a * n + a] += ridge;
     }
     const std::vector<double> move = solved_symmetric(sums.hessian, sums.gradient);
-    double most = 0;
+    double max_move = 0;
     for (std::size_t a = 0; a < n; ++a) {
       weights[a] += std::clamp(move[a], -2.0, 2.0);  // far steps overshoot where classes separate
-      most = std::max(most, std::fabs(move[a]));
+      max_move = std::max(max_move, std::fabs(move[a]));
     }
-    if (most < 1e-8) break;
+    if (max_move < 1e-8) break;
   }
   return weights;
 }

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/realism/logistic.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/auc.h"
+#include "adasplats/evaluate/realism/classifiers.h"
 
 namespace adasplats {
 namespace {
@@ -31,7 +30,7 @@ TEST(FitLogistic, FindsTheWeightsThatSamplesWereDrawnWith) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(weights[k], kTrue[k], 0.07) << k;
 }
 
-TEST(FitLogistic, OfFewSamplesIsTheSolutionOfItsEquations) {
+TEST(FitLogistic, SolvesItsEquationsForFewSamples) {
   // Where the likelihood is largest its gradient vanishes: sum of (y - p) x = ridge w.
   SampleTable table{1, {-2, -1, 0.5, 1, 3}, {0, 1, 0, 1, 1}};
   const std::vector<double> weights = fit_logistic(table, 0.5);

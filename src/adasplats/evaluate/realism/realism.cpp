@@ -9,21 +9,19 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/evaluate/realism/boosted_trees.h"
-#include "adasplats/evaluate/realism/logistic.h"
-#include "adasplats/evaluate/realism/sample_table.h"
+#include "adasplats/evaluate/realism/classifiers.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kPatchStream = 0x7061746368;  // "patch"
-/// That a classifier learns from, of both classes: more teach it little and take long. A choice.
+/// Maximum number of training patches of both classes: more improve little and take long.
 constexpr std::size_t kMaxPatches = 24000;
 constexpr std::size_t kTests = std::size(kRealismFeatures);
 constexpr std::size_t kOrders = 8;     // a power of two
 constexpr std::size_t kFewScans = 32;  // eight orders of them take as long as the test itself
 
-/// A scan in a test: which class, which fold.
+/// A scan in a test, with class and fold.
 struct TestScan {
   const RealismScan* scan;
   std::uint8_t positive;
@@ -37,7 +35,7 @@ std::size_t patches_of(const RealismScan& scan) {
 /// Folds are blocks of consecutive scans.
 std::size_t fold_of(std::size_t scan, std::size_t scans) { return scan * kRealismFolds / scans; }
 
-/// Groups of which both classes have a feature in some patch.
+/// Groups of features that both classes have in at least one patch.
 using KnownGroups = std::array<bool, std::size(kFeatureGroups)>;
 
 KnownGroups known_groups(std::span<const TestScan> scans) {
@@ -52,13 +50,13 @@ KnownGroups known_groups(std::span<const TestScan> scans) {
   return known[0];
 }
 
-/// Columns of the features that a test sees. None of a group that is not known; none at all where
-/// that leaves context alone.
+/// Columns of the features of a test. Groups that are not known are left out; empty if only context
+/// would remain.
 std::vector<std::size_t> columns_of(RealismFeatures features, const KnownGroups& known) {
   constexpr FeatureGroup kGroups[] = {FeatureGroup::context, FeatureGroup::geometry,
                                       FeatureGroup::dropout, FeatureGroup::intensity};
   std::vector<std::size_t> columns;
-  bool is_seen = false;
+  bool is_known = false;
   for (std::size_t f = 0; f < patch_features().size(); ++f) {
     const FeatureGroup group = patch_features()[f].group;
     const bool is_context = group == FeatureGroup::context;
@@ -66,9 +64,9 @@ std::vector<std::size_t> columns_of(RealismFeatures features, const KnownGroups&
                                         group == kGroups[static_cast<std::size_t>(features)]);
     if (!known[static_cast<std::size_t>(group)] || !(is_own || is_context)) continue;
     columns.push_back(f);
-    is_seen = is_seen || is_own;
+    is_known = is_known || is_own;
   }
-  return is_seen ? columns : std::vector<std::size_t>();
+  return is_known ? columns : std::vector<std::size_t>();
 }
 
 std::vector<float> row_of(const RealismScan& scan, std::size_t patch,
@@ -79,9 +77,9 @@ std::vector<float> row_of(const RealismScan& scan, std::size_t patch,
   return row;
 }
 
-/// The patches of all folds but one; of very many, some at random.
-SampleTable learned_from(std::span<const TestScan> scans, std::size_t left_out,
-                         std::span<const std::size_t> columns, std::uint64_t seed) {
+/// The patches of all folds but one; a random selection of very many.
+SampleTable training_table(std::span<const TestScan> scans, std::size_t left_out,
+                           std::span<const std::size_t> columns, std::uint64_t seed) {
   std::size_t count = 0;
   for (const TestScan& one : scans) count += one.fold == left_out ? 0 : patches_of(*one.scan);
   const double share = static_cast<double>(kMaxPatches) / static_cast<double>(count);
@@ -114,13 +112,13 @@ ScoredSamples scored(std::span<const TestScan> scans, std::size_t fold,
   return samples;
 }
 
-/// Whether both classes have patches to learn from.
+/// Whether both classes have training patches.
 bool has_both(const SampleTable& table) {
   const auto positives = std::ranges::count(table.positive, std::uint8_t{1});
   return positives > 0 && static_cast<std::size_t>(positives) < table.size();
 }
 
-/// Learns from three folds and scores the fourth, for each kind of features and each fold.
+/// Trains on three folds and scores the fourth, for each group of features and each fold.
 struct FoldScores {
   std::vector<ScoredSamples> trees, logistic;  ///< tests x folds
 
@@ -131,7 +129,7 @@ struct FoldScores {
       const std::vector<std::size_t> columns =
           columns_of(kRealismFeatures[k / kRealismFolds].second, known);
       const std::size_t fold = k % kRealismFolds;
-      const SampleTable table = learned_from(scans, fold, columns, seed);
+      const SampleTable table = training_table(scans, fold, columns, seed);
       if (columns.empty() || !has_both(table)) return;
       trees[k] = scored(scans, fold, columns, BoostedTrees(table, {}));
       logistic[k] = scored(scans, fold, columns, LogisticScore(table));
@@ -164,15 +162,15 @@ RealismTest test_of(std::span<const TestScan> scans, std::span<const FoldScores>
   return test;
 }
 
-/// Whether the second scan of a pair of neighbours stands for a simulated one, else the first.
-/// Columns of an 8 x 8 Walsh matrix: over all orders any two of eight pairs are as often split
-/// alike as not; the first order is that of Thue and Morse, in which trends cancel.
+/// Whether the second scan of a pair of neighbours has the role of a simulated one, or the first.
+/// Columns of an 8 x 8 Walsh matrix: over all orders, any two of eight pairs are split alike as
+/// often as not; the first order is the Thue-Morse sequence, in which trends cancel.
 bool second_is_positive(std::size_t pair, std::size_t order) {
   return std::popcount(pair & (kOrders - 1 - order)) % 2 == 0;
 }
 
-/// Halves of the real scans: of each two neighbours one stands for a simulated scan. What differs
-/// along a drive is no help but misleads: where three folds saw it rise, the fourth sees it fall.
+/// Halves of the real scans: one of every two neighbours has the role of a simulated scan. Changes
+/// along the drive mislead the classifiers: a trend that rises in three folds falls in the fourth.
 /// With few scans that costs some hundredths of AUC, so they are split in all eight orders.
 RealismTest test_of_halves(std::span<const RealismScan> real, std::uint64_t seed,
                            const Executor& executor) {
@@ -208,7 +206,7 @@ class TwoSides {
       sums[simulated_[k]] += values_[k];
       ++counts[simulated_[k]];
     }
-    // Of none: 0 / 0, which is NaN.
+    // Without values: 0 / 0, which is NaN.
     return {sums[0] / counts[0], sums[1] / counts[1], auc(values_, simulated_)};
   }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kRings = 8;  // one row of patches suffices
 
-/// Scans with walls 10 m around that come and go as places do; of noise and missing beams.
+/// Scans with walls around 10 m away that change along the drive, with noise and missing beams.
 std::vector<RealismScan> drawn_scans(std::uint64_t seed, std::size_t count, double sigma_m,
                                      bool with_intensities = true) {
   std::vector<RealismScan> scans;
@@ -39,7 +39,7 @@ std::vector<RealismScan> drawn_scans(std::uint64_t seed, std::size_t count, doub
   return scans;
 }
 
-TEST(Realism, ScansOfOneProcessCannotBeToldApart) {
+TEST(Realism, ScansOfOneProcessAreIndistinguishable) {
   const Executor executor;
   const auto real = drawn_scans(1, 24, 0.01), same = drawn_scans(2, 24, 0.01);
   const RealismResult result = compare_realism(same, real, 1, executor);
@@ -57,7 +57,7 @@ TEST(Realism, ScansOfOneProcessCannotBeToldApart) {
   }
 }
 
-TEST(Realism, OtherNoiseIsToldByGeometryAlone) {
+TEST(Realism, OtherNoiseIsDetectedByGeometryAlone) {
   const Executor executor;
   const RealismResult result =
       compare_realism(drawn_scans(2, 8, 0.02), drawn_scans(1, 8, 0.01), 1, executor);
@@ -84,7 +84,7 @@ TEST(Realism, OtherNoiseIsToldByGeometryAlone) {
   }
 }
 
-TEST(Realism, TheNumberOfThreadsIsNoMatter) {
+TEST(Realism, SameForAnyNumberOfThreads) {
   const auto real = drawn_scans(1, 9, 0.01), simulated = drawn_scans(2, 8, 0.0105);
   const RealismResult one = compare_realism(simulated, real, 7, Executor(1));
   const RealismResult many = compare_realism(simulated, real, 7, Executor(3));
@@ -101,7 +101,7 @@ TEST(Realism, WithoutIntensitiesThatTestIsLeftOut) {
       compare_realism(drawn_scans(2, 8, 0.01, false), drawn_scans(1, 8, 0.01, false), 1, executor);
   EXPECT_FALSE(result.simulated_real.trees[3]);
   EXPECT_TRUE(result.simulated_real.trees[0]);
-  // Of one side alone they would tell everything.
+  // Present on one side only, they would distinguish all patches.
   const RealismResult one_side =
       compare_realism(drawn_scans(2, 8, 0.01, false), drawn_scans(1, 8, 0.01), 1, executor);
   EXPECT_FALSE(one_side.simulated_real.trees[3]);

@@ -20,7 +20,7 @@ TEST(RingScan, HasEveryReturnInItsPlace) {
   KittiScan points = test::drawn_points([](std::size_t ring, std::size_t column) {
     return DrawnReturn{5 + 0.1 * static_cast<double>(ring), 0.001F * static_cast<float>(column)};
   });
-  // The order of the file says nothing; what is not finite, at the origin or of no laser is no
+  // The order of the file is irrelevant; what is not finite, at the origin or of no laser is no
   // return.
   std::ranges::reverse(points.positions);
   std::ranges::reverse(points.intensities);
@@ -44,7 +44,7 @@ TEST(RingScan, HasEveryReturnInItsPlace) {
 }
 
 TEST(RingScan, RangesBeginAtTheLaser) {
-  // The sensor's origin stands at (1, 2, 3), its second laser 0.2 m above; 3, 4, 12 is 13 long.
+  // The sensor's origin is at (1, 2, 3), its second laser 0.2 m above; 3, 4, 12 is 13 long.
   KittiScan points;
   points.positions = {{4, 6, 15.2F}};
   points.origins = {{1, 2, 3}};
@@ -55,7 +55,7 @@ TEST(RingScan, RangesBeginAtTheLaser) {
   EXPECT_NEAR(scan.ranges_m[0], 13, 1e-6);
 }
 
-TEST(RingScan, OfNothingIsEmpty) {
+TEST(RingScan, WithoutPointsIsEmpty) {
   const std::vector<double> heights_m(4, 0);
   RingScan scan = arrange_in_rings({}, 0, {}, heights_m);
   EXPECT_EQ(scan.rings(), 4U);
@@ -65,7 +65,7 @@ TEST(RingScan, OfNothingIsEmpty) {
   EXPECT_TRUE(scan.missing.empty());
 }
 
-TEST(RingScan, TheStepIsTheMeanOfWhatAnEncoderReports) {
+TEST(RingScan, TheStepIsTheMeanOfEncoderSteps) {
   // An HDL-64E fires every 1.86 steps of its encoder and reports whole ones; some return nothing.
   RingScan scan;
   scan.begins = {0};

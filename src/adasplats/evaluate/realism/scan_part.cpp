@@ -14,15 +14,15 @@ namespace adasplats {
 namespace {
 
 constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
-constexpr float kOneSurface_m = 0.3F;  // choices: ten times the noise of rotating LiDARs, and more
+constexpr float kOneSurface_m = 0.3F;  // more than ten times the noise of rotating LiDARs
 constexpr float kEdge_m = 0.5F;
 constexpr std::size_t kMinOfRing = 8;  // values that a ring's median is of
 
-/// Of a piece that is fitted with a plane.
+/// A piece that a plane is fitted to.
 constexpr std::size_t kPieceColumns = 8;
 constexpr std::size_t kMinInPiece = 32;     // of 64
 constexpr std::size_t kMinInPieceRing = 3;  // returns that a ring's mean is of
-constexpr double kMaxOffPlane_m = 0.15;     // RMS; beyond, it is no plane: five times real noise
+constexpr double kMaxOffPlane_m = 0.15;     // RMS of a plane: five times real noise
 
 /// Returns [begin, end) of a ring.
 struct RingSpan {
@@ -39,7 +39,7 @@ RingSpan span_of(const RingScan& scan, std::size_t ring, double begin_rad, doubl
   return {static_cast<std::size_t>(begin - first), static_cast<std::size_t>(end - first)};
 }
 
-/// Beams of long runs of a ring that lie in a part.
+/// Beams of long runs of a ring within a part.
 double nothing_in(const RingScan& scan, std::size_t ring, const RingSpan& span,
                   const PartOfScan& part, double step_rad) {
   const std::size_t begin = scan.begins[ring], end = scan.begins[ring + 1];
@@ -186,8 +186,8 @@ void count_across(const MissingBeams& missing, const PartOfScan& part, double st
   }
 }
 
-/// The plane a . p = 1 through points p = range * direction, by least squares; the errors of the
-/// ranges about it become a piece. Nothing where the points are no plane.
+/// Fits the plane a . p = 1 to points p = range * direction by least squares and adds the range
+/// errors as a piece, if the points form a plane.
 void add_plane(const RingScan& scan, std::size_t first_ring, std::span<const RingSpan> spans,
                std::vector<PlanePiece>& pieces) {
   std::array<double, 9> matrix{};

@@ -12,18 +12,18 @@
 
 namespace adasplats {
 
-/// Runs of beams without return that are longer are sky or what is out of range, not drop-outs.
+/// Longer runs of beams without return are sky or out of range, not drop-outs.
 inline constexpr std::uint32_t kLongestRun = 20;
 inline constexpr std::size_t kPlaneRings = 8;
 
-/// Where a scan has beams without return in runs of kLongestRun at most: ring by ring, column by
-/// column (of the azimuth, in steps).
+/// Beams without return in runs of at most kLongestRun: ring by ring, column by column (azimuth in
+/// steps).
 struct MissingBeams {
   std::size_t columns = 0;
   std::vector<std::uint8_t> at;  ///< rings x columns
 
   MissingBeams(const RingScan& scan, double step_rad);
-  /// Whether one is there, or in a column beside.
+  /// Whether there is one in this or an adjacent column.
   bool near(std::size_t ring, std::size_t column) const;
 };
 
@@ -33,22 +33,22 @@ struct PartOfScan {
   double begin_rad = 0, end_rad = 0;
 };
 
-/// How ranges of eight rings lie about the plane that fits a small piece of them best.
+/// Deviations of the ranges of eight rings from the best plane in a small piece.
 struct PlanePiece {
   std::size_t first_ring = 0;
   std::array<double, kPlaneRings> ring_m{};  ///< mean of each ring's range errors; NaN: too few
-  double within_m = 0;                       ///< of ranges about their ring's mean, RMS
-  double between_m = 0;                      ///< of the rings' means, RMS
+  double within_m = 0;                       ///< RMS of ranges about the mean of their ring
+  double between_m = 0;                      ///< RMS of the rings' means
 };
 
-/// What is counted in a part of a scan; features are made of it. Absolute second differences are
-/// those of three neighbouring beams of a ring that all returned from one surface (ranges less than
-/// 0.3 m apart).
+/// Counts in a part of a scan, from which features are computed. Absolute second differences are
+/// those of three neighbouring beams of a ring that returned from one surface (ranges less than 0.3
+/// m apart).
 struct PartCounts {
-  std::size_t beams = 0;  ///< that a sensor fired there, about
+  std::size_t beams = 0;  ///< estimate of the fired beams
   std::size_t returns = 0;
   std::vector<float> ranges_m, intensities;       ///< ascending
-  std::vector<float> second_m, second_intensity;  ///< likewise
+  std::vector<float> second_m, second_intensity;  ///< ascending
   double square_m2 = 0, product_m2 = 0;           ///< of signed ones, and of neighbouring ones
   double square_intensity = 0, product_intensity = 0;
   std::vector<double> ring_second_m;   ///< mean middle half, of each ring with enough of them
@@ -57,7 +57,7 @@ struct PartCounts {
   double gap_steps = 0, gap_square_steps2 = 0;  ///< azimuths from one neighbour to the next
   std::size_t neighbors = 0;                    ///< pairs of neighbouring beams that both returned
   std::size_t edges = 0;                        ///< of these, ranges more than 0.5 m apart
-  std::size_t triples = 0;                      ///< three neighbours that returned
+  std::size_t triples = 0;                      ///< three neighbours with return
   std::size_t between = 0;   ///< of these, the middle one by 0.3 m between the others' ranges
   std::size_t isolated = 0;  ///< by 0.3 m nearer or farther than both
   std::size_t runs_of_1 = 0, runs_to_5 = 0, runs_to_20 = 0;  ///< of beams without return
@@ -76,16 +76,16 @@ struct PartCounts {
   double gap_deviation() const;
 };
 
-/// Counts in one part. Needs count_missing().
+/// Counts in one part. Requires count_missing().
 PartCounts count_part(const RingScan& scan, const MissingBeams& missing, const PartOfScan& part,
                       double step_rad);
 
-/// The value below which a share of ascending values lies; NaN of none.
+/// The quantile of ascending values; NaN without values.
 double quantile_of(std::span<const float> ascending, double share);
-/// Mean of ascending values from one share of them to another; NaN of none. Ranges come in steps of
-/// millimetres, of which a quantile would be one; means are not.
+/// Mean of ascending values between two quantiles; NaN without values. Unlike a quantile, it does
+/// not jump in the millimetre steps of ranges.
 double mean_between(std::span<const float> ascending, double from, double to);
-/// Median of values in any order, NaN left out; NaN of none.
+/// Median of values in any order, without NaN; NaN without values.
 double median_of_known(std::vector<double> values);
 
 }  // namespace adasplats

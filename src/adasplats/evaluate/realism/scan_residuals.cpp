@@ -11,25 +11,26 @@
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/small_matrix.h"
 #include "adasplats/evaluate/realism/scan_part.h"
+#include "adasplats/evaluate/registration_sums.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/surface/local_shape.h"
 
 namespace adasplats {
 namespace {
 
-// Points that take part: nearer ones are the car's own, farther ones too sparse for planes.
+// Points that are used: nearer ones are on the car, farther ones too sparse for planes.
 constexpr float kNearestUsed_m = 4, kFarthestUsed_m = 30;
-/// Neighbours along a ring are centimetres apart, rings decimetres: thinned to voxels of this side
-/// a few neighbours are of several rings.
+/// Neighbours along a ring are centimetres apart, rings decimetres: after thinning to voxels of
+/// this size, neighbourhoods contain several rings.
 constexpr float kVoxel_m = 0.2F;
 constexpr std::uint32_t kPlanePoints = 16;
 constexpr float kPlaneRadius_m = 1.5F;
 constexpr double kMaxThickness_m = 0.05;  // RMS of a plane's points: twice real noise
-constexpr double kMinRoundness = 0.1;     // of variances within the plane: no single ring
-constexpr std::size_t kMaxMoved = 6000;   // points that are laid on planes
+constexpr double kMinRoundness = 0.1;     // of variances within the plane: more than a single ring
+constexpr std::size_t kMaxMoved = 6000;   // points that are registered
 constexpr int kSteps = 15;
 constexpr double kWidest_m = 0.5, kNarrowest_m = 0.05;
-constexpr double kMaxApart_m = 0.3;  // of points that count in the end: the rest is occluded
+constexpr double kMaxDistance_m = 0.3;  // of points that count at the end: others are occluded
 constexpr std::size_t kMinOnPlanes = 100;
 
 struct PlaneAtPoint {
@@ -76,7 +77,7 @@ std::vector<PlaneAtPoint> planes_at(const PointIndex& index, std::span<const Vec
         std::array<std::uint32_t, kPlanePoints> near{};
         for (std::uint32_t k = 0; k < neighbors.size; ++k)
           near[k] = index.index_of(neighbors.ranks[k]);
-        std::sort(near.begin(), near.begin() + neighbors.size);  // neighbours come in no order
+        std::sort(near.begin(), near.begin() + neighbors.size);  // neighbours are unordered
         Moments moments;
         for (std::uint32_t k = 0; k < neighbors.size; ++k)
           moments.add(points[near[k]] - points[own]);
@@ -87,7 +88,7 @@ std::vector<PlaneAtPoint> planes_at(const PointIndex& index, std::span<const Vec
   return planes;
 }
 
-/// One point on the plane of its nearest.
+/// A point and the plane of its nearest neighbour.
 struct PlanePair {
   Vec3d point, normal;  ///< the point in its own scan's frame
   Vec3d on_plane;
@@ -118,23 +119,13 @@ double distance_m(const PlanePair& pair, const RigidTransform& pose) {
 
 RigidTransform closer(std::span<const PlanePair> pairs, const RigidTransform& pose,
                       double width_m) {
-  constexpr double kPriorOfStep = 1e-3;  // keeps directions that no plane holds
-  std::array<double, 36> matrix{};
-  std::array<double, 6> right{};
-  for (const PlanePair& pair : pairs) {
-    const double away_m = distance_m(pair, pose);
-    const double share = width_m * width_m / (width_m * width_m + away_m * away_m);
-    const Vec3d turning = cross(pose * pair.point - pose.translation, pair.normal);
-    const std::array<double, 6> row = {turning.x,     turning.y,     turning.z,
-                                       pair.normal.x, pair.normal.y, pair.normal.z};
-    for (std::size_t a = 0; a < 6; ++a) {
-      right[a] -= share * share * row[a] * away_m;
-      for (std::size_t b = 0; b < 6; ++b) matrix[a * 6 + b] += share * share * row[a] * row[b];
-    }
-  }
-  for (std::size_t a = 0; a < 6; ++a) matrix[a * 7] += kPriorOfStep;
-  factor<6>(matrix);
-  const std::array<double, 6> x = solved<6>(matrix, right);
+  constexpr double kPriorOfStep = 1e-3;  // for directions that no plane constrains
+  RegistrationSums sums;
+  for (const PlanePair& pair : pairs)
+    sums.add(pose * pair.point - pose.translation, pair.normal, -distance_m(pair, pose), width_m);
+  for (std::size_t a = 0; a < 6; ++a) sums.matrix[a * 7] += kPriorOfStep;
+  factor<6>(sums.matrix);
+  const std::array<double, 6> x = solved<6>(sums.matrix, sums.right);
   return moved_about(pose.translation, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * pose;
 }
 
@@ -166,16 +157,16 @@ double scan_residual_m(std::span<const Vec3f> points, std::span<const Vec3f> pla
   std::vector<double> distances_m;
   for (const PlanePair& pair : pairs_of(moved, index, targets, planes, pose, executor)) {
     const double away_m = std::fabs(distance_m(pair, pose));
-    if (away_m < kMaxApart_m) distances_m.push_back(away_m);
+    if (away_m < kMaxDistance_m) distances_m.push_back(away_m);
   }
   if (distances_m.size() < kMinOnPlanes) return std::numeric_limits<double>::quiet_NaN();
   return median_of_known(std::move(distances_m));
 }
 
 std::vector<double> scan_residuals_m(const KittiSequence& sequence,
-                                     std::span<const std::size_t> chosen, std::size_t most,
+                                     std::span<const std::size_t> chosen, std::size_t max_pairs,
                                      const Executor& executor) {
-  const std::size_t pairs = chosen.empty() ? 0 : std::min(most, chosen.size() - 1);
+  const std::size_t pairs = chosen.empty() ? 0 : std::min(max_pairs, chosen.size() - 1);
   std::vector<double> residuals_m;
   for (std::size_t k = 0; k < pairs; ++k) {
     const std::size_t at = k * (chosen.size() - 1) / pairs;

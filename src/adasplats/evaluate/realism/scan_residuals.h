@@ -11,18 +11,17 @@
 
 namespace adasplats {
 
-/// How far points of one scan lie from the planes of another one, once the scans are laid on each
-/// other as well as a rigid motion can: the median distance, m; NaN where fewer than 100 points of
-/// one lie on planes of the other. Point to plane, with weights that fall with the distance
-/// (Geman-McClure, from 50 to 5 cm). `points` and `planes_of`: in the frames of their scans, m.
-/// `guess`: to begin with; poses need not be exact.
+/// Median distance, m, of points of one scan to the planes of another, after registration by a
+/// rigid motion; NaN if fewer than 100 points of one are on planes of the other. Point to plane,
+/// with weights that decrease with distance (Geman-McClure, from 50 to 5 cm). `points` and
+/// `planes_of`: in the frames of their scans, m. `guess`: initial motion; poses need not be exact.
 double scan_residual_m(std::span<const Vec3f> points, std::span<const Vec3f> planes_of,
                        const RigidTransform& guess, const Executor& executor);
 
-/// That of up to `most` of the chosen scans of a sequence, evenly spread, each against the chosen
-/// one behind it.
+/// The same for up to `max_pairs` of the chosen scans of a sequence, evenly spread, each against
+/// the next chosen one.
 std::vector<double> scan_residuals_m(const KittiSequence& sequence,
-                                     std::span<const std::size_t> chosen, std::size_t most,
+                                     std::span<const std::size_t> chosen, std::size_t max_pairs,
                                      const Executor& executor);
 
 }  // namespace adasplats

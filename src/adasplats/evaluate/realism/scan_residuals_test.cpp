@@ -55,7 +55,7 @@ TEST(ScanResiduals, DoNotDependOnPoses) {
   EXPECT_NEAR(scan_residual_m(one, next, wrong, executor), residual_m, 0.1 * residual_m);
 }
 
-TEST(ScanResiduals, OfTooFewPointsAreNotKnown) {
+TEST(ScanResiduals, AreNaNForTooFewPoints) {
   const Executor executor;
   EXPECT_TRUE(std::isnan(scan_residual_m({}, {}, {}, executor)));
   const std::vector<Vec3f> few = {{5, 0, 0}, {5, 1, 0}};
@@ -63,7 +63,7 @@ TEST(ScanResiduals, OfTooFewPointsAreNotKnown) {
   EXPECT_TRUE(scan_residuals_m({}, {}, 12, executor).empty());
 }
 
-TEST(ScanResiduals, TheNumberOfThreadsIsNoMatter) {
+TEST(ScanResiduals, SameForAnyNumberOfThreads) {
   const std::vector<Vec3f> one = hall_seen({0, 0, 0}, 0.01, 1);
   const std::vector<Vec3f> next = hall_seen({0.8, 0.1, 0}, 0.01, 2);
   EXPECT_EQ(scan_residual_m(one, next, {}, Executor(1)),

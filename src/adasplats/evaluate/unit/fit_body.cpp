@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What of the carrier of a sensor its beams meet.
+// The parts of the vehicle that the beams of its sensor hit.
 
 #include <algorithm>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kFarthest_m = 4, kBeforeModel_m = 0.5F, kOneRange_m = 0.2F;
 
-bool is_in_the_way(const UnitBeam& beam) {
+bool is_blocked(const UnitBeam& beam) {
   if (!beam.returned() || beam.range_m > kFarthest_m) return false;
   return !beam.hit || beam.range_m < beam.expected_m - kBeforeModel_m;
 }
@@ -26,17 +26,17 @@ bool is_in_the_way(const UnitBeam& beam) {
 struct CellBeams {
   std::size_t beams = 0;
   std::set<std::uint32_t> places, places_with_returns;
-  std::vector<float> ranges_m, intensities;  // of those that are in the way
+  std::vector<float> ranges_m, intensities;  // of blocked beams
 
   void add(const UnitBeam& beam) {
     ++beams;
     places.insert(beam.place);
-    if (!is_in_the_way(beam)) return;
+    if (!is_blocked(beam)) return;
     places_with_returns.insert(beam.place);
     ranges_m.push_back(beam.range_m);
     if (beam.intensity == beam.intensity) intensities.push_back(beam.intensity);
   }
-  bool stands_still() {
+  bool is_static() {
     const std::size_t seen = places_with_returns.size();
     if (seen < kMinBlockedPlaces || 2 * seen < places.size()) return false;
     std::ranges::sort(ranges_m);
@@ -56,7 +56,7 @@ std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams) {
   std::set<std::uint32_t> places;
   for (const UnitBeam& beam : beams) {
     places.insert(beam.place);
-    if (is_in_the_way(beam)) cells[{beam.ring, body_column(beam.direction)}];
+    if (is_blocked(beam)) cells[{beam.ring, body_column(beam.direction)}];
   }
   if (places.size() < kMinBlockedPlaces) return std::nullopt;
   for (const UnitBeam& beam : beams) {
@@ -65,7 +65,7 @@ std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams) {
   }
   VehicleBody body;
   for (auto& [place, cell] : cells) {
-    if (!cell.stands_still()) continue;
+    if (!cell.is_static()) continue;
     const auto returns = static_cast<float>(cell.ranges_m.size());
     body.cells.push_back({place.first, static_cast<std::uint16_t>(place.second),
                           returns / static_cast<float>(cell.beams), middle_of(cell.ranges_m),

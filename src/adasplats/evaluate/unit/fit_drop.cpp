@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Which beams a unit loses: blocked sectors, range edges, and by chance.
+// The lost beams of a sensor: in blocked sectors, at range edges, and by chance.
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,13 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/scan_part.h"
-#include "adasplats/evaluate/unit/common_share.h"
+#include "adasplats/evaluate/unit/beam_shares.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 
 namespace adasplats {
 namespace {
 
-/// Why a beam did not come back, as far as its neighbours tell.
+/// How a beam ended, inferred from its neighbours.
 enum class BeamEnd : std::uint8_t { returned, lost, lost_at_edge, lost_in_long_run };
 
 struct BeamEnds {

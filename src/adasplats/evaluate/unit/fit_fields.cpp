@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Turns of a unit as it measured them, in what its parameters leave open.
+// Measured turns of a sensor, for the variation that its parameters do not describe.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-constexpr float kUntold = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnestimated = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMaxTurns = 2;  // 0.8 MB of an HDL-64E
 
 /// [begin, end) of the beams of each scan.
@@ -27,25 +27,25 @@ std::vector<std::pair<std::size_t, std::size_t>> spans_of_scans(std::span<const 
   return spans;
 }
 
-/// Numbers of the beams of a ring, a column each; gaps of what is not told are filled with what
-/// stands beside them, mirrored, half from either side. `otherwise`: where nothing is told.
-void fill_untold(std::span<float> ring, float otherwise) {
-  std::vector<std::size_t> told;
+/// Fills the gaps (NaN) in the numbers of a ring, one per column, with the mirrored values next to
+/// them, half from either side. `otherwise`: for a ring without values.
+void fill_gaps(std::span<float> ring, float otherwise) {
+  std::vector<std::size_t> known;
   for (std::size_t c = 0; c < ring.size(); ++c)
-    if (ring[c] == ring[c]) told.push_back(c);
-  if (told.empty()) {
+    if (ring[c] == ring[c]) known.push_back(c);
+  if (known.empty()) {
     std::ranges::fill(ring, otherwise);
     return;
   }
   const std::vector<float> measured(ring.begin(), ring.end());
-  // Number k of those told, counted on around the turn.
+  // Value k of the known ones, continued around the turn.
   const auto around = [&](std::ptrdiff_t k) {
-    const auto count = static_cast<std::ptrdiff_t>(told.size());
-    return measured[told[static_cast<std::size_t>((k % count + count) % count)]];
+    const auto count = static_cast<std::ptrdiff_t>(known.size());
+    return measured[known[static_cast<std::size_t>((k % count + count) % count)]];
   };
-  for (std::size_t next = 0; next <= told.size(); ++next) {
-    const std::size_t begin = next == 0 ? 0 : told[next - 1] + 1;
-    const std::size_t end = next == told.size() ? ring.size() : told[next];
+  for (std::size_t next = 0; next <= known.size(); ++next) {
+    const std::size_t begin = next == 0 ? 0 : known[next - 1] + 1;
+    const std::size_t end = next == known.size() ? ring.size() : known[next];
     for (std::size_t c = begin; c < end; ++c) {
       const auto from_left = static_cast<std::ptrdiff_t>(c - begin);
       const auto from_right = static_cast<std::ptrdiff_t>(end - 1 - c);
@@ -55,8 +55,8 @@ void fill_untold(std::span<float> ring, float otherwise) {
   }
 }
 
-/// Makes the noise of a ring as large as it is by neighbouring returns on smooth surfaces: on
-/// others the model's errors are in it.
+/// Scales the noise of a ring to that of neighbouring returns on smooth surfaces; elsewhere it
+/// includes errors of the model.
 void scale_noise(std::span<float> ring, double noise_m) {
   std::vector<float> second;
   for (std::size_t c = 0; c + 2 < ring.size(); ++c)
@@ -79,16 +79,18 @@ std::uint8_t coded(UnitField field, float value) {
   return byte_of(128.5 + (v < 0 ? -root : root));
 }
 
-/// What the range of a beam has beside the model's; not told where they mean other surfaces.
+/// Measured less modelled range; NaN if they are of different surfaces.
 float noise_m_of(const UnitBeam& beam) {
   const float noise_m = beam.range_m - beam.expected_m;
-  const bool told = beam.hit && std::fabs(noise_m) < static_cast<float>(kMaxFieldNoise_m);
-  return told ? noise_m : kUntold;
+  const bool is_one_surface = beam.hit && std::fabs(noise_m) < static_cast<float>(kMaxFieldNoise_m);
+  return is_one_surface ? noise_m : kUnestimated;
 }
 
-/// What field a byte is of, of one beam; not told where `all` is empty.
+/// The value of a field for one beam; NaN if not estimated.
 float number_of(UnitField field, const UnitBeam& beam, std::size_t i, const BeamShares& shares) {
-  const auto share = [&](std::span<const float> all) { return all.empty() ? kUntold : all[i]; };
+  const auto share = [&](std::span<const float> all) {
+    return all.empty() ? kUnestimated : all[i];
+  };
   switch (field) {
     case UnitField::drop: return share(shares.drop);
     case UnitField::intensity: return share(shares.intensity);
@@ -113,7 +115,7 @@ UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& p
   std::vector<float> numbers(rings * columns);
   const auto fill_ring = [&](UnitField field, std::size_t ring) {
     const std::span<float> of_ring = std::span(numbers).subspan(ring * columns, columns);
-    fill_untold(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
+    fill_gaps(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
     if (field == UnitField::noise)
       scale_noise(of_ring, ring < ring_noise_m.size() ? ring_noise_m[ring] : 0.0);
   };
@@ -121,7 +123,7 @@ UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& p
     const auto [begin, end] = spans[turn * spans.size() / turns];
     for (const UnitField field :
          {UnitField::drop, UnitField::intensity, UnitField::noise, UnitField::zero}) {
-      std::ranges::fill(numbers, kUntold);
+      std::ranges::fill(numbers, kUnestimated);
       for (std::size_t i = begin; i < end; ++i)
         if (beams[i].ring < rings && beams[i].column < columns)
           numbers[beams[i].ring * columns + beams[i].column] =

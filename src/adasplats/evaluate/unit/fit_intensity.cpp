@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a unit reports as intensity: levels of its lasers, zeros, how the others scatter.
+// The intensities of a sensor: levels of its lasers, zeros, and the scatter of the others.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/scan_part.h"
-#include "adasplats/evaluate/unit/common_share.h"
-#include "adasplats/evaluate/unit/damp_shares.h"
+#include "adasplats/evaluate/unit/beam_shares.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 #include "adasplats/simulate/scan/intensity_rules.h"
 
@@ -21,15 +20,15 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kMinReturns = 10'000;
-constexpr std::size_t kMinOfLaser = 500;  // else it has the levels of all
-constexpr std::size_t kMinOfLevel = 100;  // that do not report zero
-/// Parts of the expected intensities of a laser, and of the levels of all: finer where it is dark,
-/// since zeros are there.
+constexpr std::size_t kMinOfLaser = 500;  // otherwise the laser gets the levels of all
+constexpr std::size_t kMinOfLevel = 100;  // non-zero returns
+/// Quantiles of the expected intensities of a laser, and of the levels of all: finer for dark
+/// surfaces, which report zeros.
 constexpr double kLaserParts[] = {0, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 1};
 constexpr double kLevelParts[] = {0,    0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13,
                                   0.17, 0.22, 0.3,  0.4,  0.55, 0.75, 0.9, 1};
 
-/// A return of which both intensities are known.
+/// A return with a measured and an expected intensity.
 struct KnownReturn {
   std::uint32_t beam;
   std::uint16_t ring;
@@ -48,7 +47,7 @@ std::vector<KnownReturn> known_returns(std::span<const UnitBeam> beams, std::siz
   return known;
 }
 
-/// The step that all values are multiples of; 0: there is none.
+/// The step that all values are multiples of; 0: none.
 double step_of(std::vector<float> values) {
   constexpr std::size_t kMaxSteps = 4096;
   std::ranges::sort(values);
@@ -57,7 +56,7 @@ double step_of(std::vector<float> values) {
   double step = 1e9;
   for (std::size_t i = 1; i < values.size(); ++i)
     step = std::min(step, static_cast<double>(values[i]) - static_cast<double>(values[i - 1]));
-  // The widest span that is a whole number of steps says it best.
+  // The widest span that is a whole number of steps gives the best estimate.
   const double span = static_cast<double>(values.back()) - static_cast<double>(values.front());
   step = span / std::round(span / step);
   for (const float value : values) {
@@ -67,7 +66,7 @@ double step_of(std::vector<float> values) {
   return std::round(step * 1e7) / 1e7;
 }
 
-/// Means of pairs sorted by the first, one of each part; the firsts made to ascend.
+/// Means of pairs sorted by the first value, one per part; the first values made to ascend.
 struct PartMeans {
   std::vector<float> expected, measured;
 };
@@ -153,7 +152,7 @@ void fit_zeros(std::span<const KnownReturn> known, const LevelParts& parts, Unit
   }
 }
 
-/// What the returns of a part report that do not report zero.
+/// The non-zero intensities of a part.
 std::vector<double> reported_values(std::span<const KnownReturn> known,
                                     std::span<const std::uint32_t> part) {
   std::vector<double> values;
@@ -162,7 +161,7 @@ std::vector<double> reported_values(std::span<const KnownReturn> known,
   return values;
 }
 
-/// Numbers in steps, as they were before.
+/// Undoes the rounding to steps with random numbers.
 void spread_steps(std::vector<double>& values, double step) {
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] += step * (Random(0, 0, i).uniform() - 0.5);
@@ -172,7 +171,7 @@ void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
                   UnitIntensity& unit) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     std::vector<double> values = reported_values(known, parts.part(k));
-    // A level with too few has what the one before it has.
+    // A level with too few returns gets the values of the level before.
     if (values.size() < kMinOfLevel && k > 0) {
       for (std::size_t n = 0; n < kTextureNodes; ++n)
         unit.reported.push_back(unit.reported[unit.reported.size() - kTextureNodes]);
@@ -189,8 +188,8 @@ void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
   }
 }
 
-/// Of each beam that does not report zero the share of such beams of its level that report less;
-/// equal ones, as neighbours often are, in the order of the beams, side by side.
+/// For each non-zero beam the share of the non-zero beams of its level that report less. Equal
+/// values, common among neighbours, are ranked in the order of the beams.
 std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> known,
                                 const LevelParts& parts) {
   std::vector<float> shares(beams, std::numeric_limits<float>::quiet_NaN());
@@ -208,7 +207,7 @@ std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> 
   return shares;
 }
 
-/// Of each beam the share of those of its level that report zero before it.
+/// For each beam the share of the beams of its level that report zero before it.
 std::vector<float> zero_shares(std::span<const UnitBeam> beams, std::span<const KnownReturn> known,
                                const LevelParts& parts, const UnitIntensity& unit) {
   constexpr SharePatch kPatch = {4, 16};
@@ -231,10 +230,10 @@ std::optional<IntensityFit> fit_unit_intensity(std::span<const UnitBeam> beams, 
   std::vector<float> measured;
   measured.reserve(known.size());
   for (const KnownReturn& one : known) measured.push_back(one.measured);
-  const auto [least, most] = std::ranges::minmax(measured);
-  if (!(most > least)) return std::nullopt;
+  const auto [min, max] = std::ranges::minmax(measured);
+  if (!(max > min)) return std::nullopt;
   IntensityFit fit;
-  fit.unit.highest = static_cast<double>(most);
+  fit.unit.highest = static_cast<double>(max);
   fit.unit.step = step_of(std::move(measured));
   if (fit.unit.step > 0)
     fit.unit.highest = fit.unit.step * std::round(fit.unit.highest / fit.unit.step);

@@ -19,8 +19,8 @@ constexpr std::size_t kMinOfRing = 300;
 /// The middle half of second differences of white noise has this mean (see features.cpp).
 constexpr double kMiddleHalf = 0.6933 * 2.449489742783178;
 
-/// Likewise in the model.
-bool modelled_as_one(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
+/// Whether three beams hit one surface in the model.
+bool is_one_in_model(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
   return a.hit && b.hit && c.hit && std::fabs(b.expected_m - a.expected_m) < kOneSurface_m &&
          std::fabs(c.expected_m - b.expected_m) < kOneSurface_m;
 }
@@ -31,8 +31,6 @@ std::size_t places_of(std::span<const UnitBeam> beams) {
   return places.size();
 }
 
-float second_difference(float a, float b, float c) { return std::fabs(a - 2 * b + c); }
-
 }  // namespace
 
 double noise_of_second_differences(std::vector<float>& second) {
@@ -42,12 +40,12 @@ double noise_of_second_differences(std::vector<float>& second) {
 }
 
 std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_t rings) {
-  constexpr double kLeast_m = 1e-4;
+  constexpr double kMinNoise_m = 1e-4;
   std::vector<std::vector<float>> measured(rings), modelled(rings);
   for (std::size_t i = 0; i + 2 < beams.size(); ++i) {
     const UnitBeam* const three = &beams[i];
     if (three->ring >= rings || !on_one_surface(three[0], three[1], three[2]) ||
-        !modelled_as_one(three[0], three[1], three[2]))
+        !is_one_in_model(three[0], three[1], three[2]))
       continue;
     const float of_model =
         second_difference(three[0].expected_m, three[1].expected_m, three[2].expected_m);
@@ -63,7 +61,7 @@ std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_
     const double all_m = noise_of_second_differences(measured[ring]);
     const double of_model_m = noise_of_second_differences(modelled[ring]);
     noise_m[ring] =
-        std::sqrt(std::max(all_m * all_m - of_model_m * of_model_m, kLeast_m * kLeast_m));
+        std::sqrt(std::max(all_m * all_m - of_model_m * of_model_m, kMinNoise_m * kMinNoise_m));
     known.push_back(noise_m[ring]);
   }
   if (4 * known.size() < rings) return {};
@@ -90,22 +88,22 @@ UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
   fit.max_range_m = fit_max_range_m(beams);
   fit.ring_noise_m = fit_ring_noise_m(beams, rings);
   if (fit.ring_noise_m.empty())
-    fit.not_told.emplace_back(
+    fit.not_estimated.emplace_back(
         "range noise: fewer than a quarter of the rings have 300 neighbouring returns on smooth "
         "surfaces of the model");
   std::optional<IntensityFit> intensity = fit_unit_intensity(beams, rings);
   if (!intensity)
-    fit.not_told.emplace_back(
+    fit.not_estimated.emplace_back(
         "intensities: fewer than 10,000 returns with an intensity meet the model where it has "
         "one, or all are alike");
   std::optional<DropFit> drop = fit_unit_drop(beams, fit.max_range_m.value_or(pattern.max_range_m));
   if (places_of(beams) < kMinBlockedPlaces)
-    fit.not_told.emplace_back(
+    fit.not_estimated.emplace_back(
         "the vehicle's body, and directions that it blocks: the scans are from fewer than three "
         "places 2 m apart");
   fit.body = fit_vehicle_body(beams);
   if (!drop)
-    fit.not_told.emplace_back(
+    fit.not_estimated.emplace_back(
         "drop-outs: fewer than 100 beams that met the model did not return, or did");
   if (!fit.ring_noise_m.empty() || intensity || drop)
     fit.fields = fit_unit_fields(

@@ -9,7 +9,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/evaluate/unit/damp_shares.h"
+#include "adasplats/evaluate/unit/beam_shares.h"
 #include "adasplats/simulate/scan/firing_report.h"
 
 namespace adasplats {
@@ -19,7 +19,7 @@ constexpr std::uint16_t kRings = 16;
 constexpr std::uint32_t kColumns = 1000, kScans = 8;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// A unit whose parameters are known: of the beams with one level those that report less.
+/// A sensor with known parameters.
 struct Truth {
   UnitIntensity unit;
   IntensityRules rules;
@@ -40,13 +40,13 @@ double noise_m_of(std::uint32_t ring) { return 0.004 + 0.001 * ring; }
 
 constexpr double kLostShare = 0.1, kLostAtEdge = 0.3;
 
-/// What is alike in four beams one after the other.
+/// The common value of four successive beams.
 double patchy_share(std::uint32_t scan, std::uint16_t ring, std::uint32_t column,
                     std::uint64_t stream) {
   return Random(scan, stream, std::uint64_t{ring} << 32 | column / 4).uniform();
 }
 
-/// Beams of scans that the truth measured: walls whose reflectance wanders, 10 to 30 m away, and
+/// Simulated beams of scans: walls with varying reflectance, 10 to 30 m away, and
 /// one in sixteen farther than the unit sees. Every fifty beams a wall steps forward or back: of
 /// these edges some lose one beam.
 std::vector<UnitBeam> measured_by(const Truth& truth) {
@@ -101,7 +101,7 @@ class FitUnit : public testing::Test {
 };
 
 // Oracle: the noise that was drawn. 6 %: five deviations of a ring's 7,000 differences, which
-// overlap, and the middle half tells half of what all would.
+// overlap, and the middle half contains half of their information.
 TEST_F(FitUnit, FindsTheNoiseOfEachRing) {
   const std::vector<double> noise_m = fit_ring_noise_m(beams_, kRings);
   ASSERT_EQ(noise_m.size(), kRings);
@@ -110,7 +110,7 @@ TEST_F(FitUnit, FindsTheNoiseOfEachRing) {
 }
 
 // Oracle: the unit that was drawn.
-TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
+TEST_F(FitUnit, FindsTheIntensityModel) {
   const auto fit = fit_unit_intensity(beams_, kRings);
   ASSERT_TRUE(fit.has_value());
   EXPECT_NEAR(fit->unit.step, 0.01, 1e-6);
@@ -148,9 +148,10 @@ TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
   EXPECT_LT(errors / count, 0.03);  // shares are drawn together
 }
 
-// Oracle: beams whose expected intensities jump from one to the next, as models' do and measured
-// ones do not: their shares have the opposite jumps, and in another place both would be there.
-TEST_F(FitUnit, DrawsSharesTogetherWhereTheModelJumps) {
+// Oracle: beams with expected intensities that jump from one to the next, as models' do and
+// measured ones do not: their shares have the opposite jumps, and in another scene both would
+// appear.
+TEST_F(FitUnit, SmoothsSharesWhereTheModelJumps) {
   const std::vector<UnitBeam> smooth = beams_;
   std::vector<float> shares = fit_unit_intensity(smooth, kRings)->shares;
   const std::vector<float> as_fitted = shares;
@@ -174,7 +175,7 @@ TEST_F(FitUnit, DrawsSharesTogetherWhereTheModelJumps) {
 }
 
 // Oracle: the shares that were drawn. 0.04: five deviations of 2,400 edges.
-TEST_F(FitUnit, FindsWhereBeamsAreLost) {
+TEST_F(FitUnit, FindsLostBeams) {
   const auto drop = fit_unit_drop(beams_, 50);
   ASSERT_TRUE(drop.has_value());
   // A tenth of the edges has lost its neighbours anyhow, and runs are longer there.
@@ -192,7 +193,7 @@ TEST_F(FitUnit, FindsWhereBeamsAreLost) {
 
 // Oracle: patches of four beams: three in four of neighbours are of one patch, the others are alike
 // as often as not.
-TEST_F(FitUnit, KeepsWhatIsAlikeInNeighbours) {
+TEST_F(FitUnit, KeepsSimilarityOfNeighbours) {
   const UnitFit fit = fit_unit(beams_, kPattern);
   ASSERT_TRUE(fit.fields.has_value());
   EXPECT_EQ(fit.fields->rings, kRings);
@@ -221,7 +222,7 @@ TEST_F(FitUnit, FieldsHaveTheNoiseOfEachRing) {
 }
 
 // Oracle: no return is from beyond 30 m, where a sixteenth of the beams meet something.
-TEST_F(FitUnit, FindsWhereReturnsEnd) {
+TEST_F(FitUnit, FindsTheMaximumRange) {
   const auto limit_m = fit_max_range_m(beams_);
   ASSERT_TRUE(limit_m.has_value());
   EXPECT_GE(*limit_m, 30);
@@ -262,17 +263,17 @@ TEST_F(FitUnit, FindsTheBodyOfTheVehicle) {
   EXPECT_NEAR(cell.share, static_cast<double>(of_roof) / static_cast<double>(roofs), 1e-6);
   EXPECT_NEAR(cell.range_m, 1.505, 0.006);
   EXPECT_EQ(cell.intensity, 0.25F);
-  // Two places tell nothing: a car behind stands still as well.
+  // Two standpoints are not enough: a car behind may be standing, too.
   for (UnitBeam& beam : beams_) beam.place = beam.scan % 2;
   EXPECT_FALSE(fit_vehicle_body(beams_).has_value());
 }
 
-TEST(FitUnitOfFew, TellsNothingAndSaysSo) {
+TEST(FitUnitOfFew, ReportsThatNothingIsEstimated) {
   const std::vector<UnitBeam> none;
   const UnitFit fit = fit_unit(none, {16, 100, 100});
   EXPECT_TRUE(fit.ring_noise_m.empty());
   EXPECT_FALSE(fit.intensity || fit.drop || fit.fields || fit.max_range_m);
-  EXPECT_EQ(fit.not_told.size(), 4U);  // blocked directions, too
+  EXPECT_EQ(fit.not_estimated.size(), 4U);  // blocked directions, too
 }
 
 }  // namespace

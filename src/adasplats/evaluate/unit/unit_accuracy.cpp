@@ -21,8 +21,8 @@ struct MeasuredIntensities {
   std::vector<float> expected, measured;
 };
 
-/// Values that never fall, nearest to those in the order of `order`: pools of neighbours that would
-/// (pool adjacent violators). Equal expected values are one pool.
+/// Sum of squares about the best non-decreasing curve (pool adjacent violators). Equal expected
+/// values form one pool.
 double squares_after_curve(const MeasuredIntensities& pairs) {
   std::vector<std::uint32_t> order(pairs.expected.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -71,23 +71,23 @@ UnitIntensityAccuracy accuracy_of(const MeasuredIntensities& pairs) {
   return accuracy;
 }
 
-/// What is foretold of a beam.
-struct Foretold {
-  double chance = 0;  ///< to be lost
+/// The prediction for a beam.
+struct BeamPrediction {
+  double chance = 0;  ///< probability of being lost
   bool blocked = false;
 };
 
-Foretold foretold_of(const UnitBeam& beam, const LidarModel& unit) {
-  Foretold foretold;
+BeamPrediction prediction_of(const UnitBeam& beam, const LidarModel& unit) {
+  BeamPrediction prediction;
   const bool out_of_range = !beam.hit || static_cast<double>(beam.expected_m) > unit.max_range_m;
-  foretold.chance = out_of_range ? 1 : 0;
-  if (!unit.drop) return foretold;
-  foretold.blocked = unit.drop->blocks(beam.direction);
-  if (foretold.blocked) foretold.chance = 1;
-  if (foretold.chance < 1)
-    foretold.chance =
+  prediction.chance = out_of_range ? 1 : 0;
+  if (!unit.drop) return prediction;
+  prediction.blocked = unit.drop->blocks(beam.direction);
+  if (prediction.blocked) prediction.chance = 1;
+  if (prediction.chance < 1)
+    prediction.chance =
         drop_probability(*unit.drop, {beam.expected_m, beam.cos_incidence, beam.reflectance, {}});
-  return foretold;
+  return prediction;
 }
 
 struct DropCount {
@@ -108,7 +108,7 @@ struct DropCount {
   }
 };
 
-/// The chance above which as many lie as all add up to.
+/// The threshold that as many chances exceed as the sum of all chances.
 double chance_by_rate(std::vector<double> chances) {
   const double lost = std::accumulate(chances.begin(), chances.end(), 0.0);
   std::ranges::sort(chances, std::greater<>());
@@ -126,11 +126,11 @@ UnitAccuracy unit_accuracy(std::span<const UnitBeam> beams, const LidarModel& un
   std::vector<double> chances;
   std::vector<std::uint8_t> lost;
   for (const UnitBeam& beam : beams) {
-    const Foretold foretold = foretold_of(beam, unit);
-    drop.add(!beam.returned(), foretold.chance > 0.5);
-    if (!foretold.blocked) {
-      unblocked.add(!beam.returned(), foretold.chance > 0.5);
-      chances.push_back(foretold.chance);
+    const BeamPrediction prediction = prediction_of(beam, unit);
+    drop.add(!beam.returned(), prediction.chance > 0.5);
+    if (!prediction.blocked) {
+      unblocked.add(!beam.returned(), prediction.chance > 0.5);
+      chances.push_back(prediction.chance);
       lost.push_back(beam.returned() ? 0 : 1);
     }
     if (!beam.returned() || !beam.hit || !std::isfinite(beam.intensity) ||
@@ -144,8 +144,9 @@ UnitAccuracy unit_accuracy(std::span<const UnitBeam> beams, const LidarModel& un
       pairs->measured.push_back(beam.intensity);
     }
   }
-  const double least = chance_by_rate(chances);
-  for (std::size_t i = 0; i < chances.size(); ++i) by_rate.add(lost[i] != 0, chances[i] > least);
+  const double threshold = chance_by_rate(chances);
+  for (std::size_t i = 0; i < chances.size(); ++i)
+    by_rate.add(lost[i] != 0, chances[i] > threshold);
   return {accuracy_of(all), accuracy_of(near), drop.result(), unblocked.result(), by_rate.result()};
 }
 

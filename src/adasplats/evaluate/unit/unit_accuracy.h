@@ -11,34 +11,34 @@
 
 namespace adasplats {
 
-/// How well a unit foretells intensities, over returns whose model has one.
+/// How well intensities are predicted, over returns from surfaces with a model intensity.
 struct UnitIntensityAccuracy {
   std::size_t returns = 0;
-  double rank_correlation = 0;  ///< Spearman's; NaN where nothing varies
-  /// Root mean square of what is left when one monotonous curve has made measured intensities of
-  /// the expected ones, in shares of the scale (1, or 255 where intensities are above 1).
+  double rank_correlation = 0;  ///< Spearman's; NaN without variation
+  /// Root mean square error after the best monotonic curve from expected to measured intensities,
+  /// as a share of the scale (1, or 255 if intensities exceed 1).
   double rmse_after_curve = 0;
 };
 
-/// Which beams are foretold to be lost: those that meet nothing, or nothing near enough to be
-/// reported, those that the vehicle blocks, and those that the drop model gives more than half a
-/// chance to be.
+/// How well lost beams are predicted: those that hit nothing within range, those blocked by the
+/// vehicle, and those with a drop probability above 0.5.
 struct UnitDropAccuracy {
   DropAccuracy beams;
-  double right_share = 0;  ///< of all decisions, 0..1
+  double right_share = 0;  ///< of all predictions, 0..1
 };
 
 struct UnitAccuracy {
   UnitIntensityAccuracy intensity;
   UnitIntensityAccuracy near;  ///< of the returns within 0.5 m of the model
   UnitDropAccuracy drop;
-  UnitDropAccuracy unblocked;  ///< outside of the vehicle's shadow
-  /// Outside of it, but as many are foretold to be lost as the chances add up to: the likeliest.
+  UnitDropAccuracy unblocked;  ///< outside the vehicle's shadow
+  /// Outside it, and with as many beams predicted as lost as the sum of probabilities: the
+  /// likeliest.
   UnitDropAccuracy by_rate;
 };
 
-/// Of beams that the unit was not fitted to. A unit without intensities foretells the model's; one
-/// without a drop model, none lost.
+/// Evaluates a calibrated sensor on beams that it was not fitted to. Without fitted intensities, it
+/// predicts those of the model; without a drop model, no lost beams.
 UnitAccuracy unit_accuracy(std::span<const UnitBeam> beams, const LidarModel& unit);
 
 }  // namespace adasplats

@@ -7,8 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "adasplats/evaluate/echoes/standpoints.h"
-
 namespace adasplats {
 namespace {
 
@@ -20,7 +18,7 @@ struct FiredBeam {
   double azimuth_rad, elevation_rad;  ///< azimuth clockwise from the rear
   float range_m, intensity;
   Vec3d origin;
-  std::uint32_t point;  ///< of the scan; for an order that is always the same
+  std::uint32_t point;  ///< of the scan; makes the order unique
 };
 
 std::vector<FiredBeam> returns_of(const KittiSequence& sequence, std::size_t index,
@@ -49,15 +47,15 @@ std::vector<FiredBeam> returns_of(const KittiSequence& sequence, std::size_t ind
   return returns;
 }
 
-/// `count` beams without return beside `beam`, `step_rad` apart, the nearest first.
-void add_beside(const FiredBeam& beam, int count, double step_rad, std::vector<FiredBeam>& beams) {
+/// `count` beams without return next to `beam`, `step_rad` apart, the nearest first.
+void add_missing(const FiredBeam& beam, int count, double step_rad, std::vector<FiredBeam>& beams) {
   for (int k = 1; k <= count; ++k)
     beams.push_back({beam.ring, beam.azimuth_rad + k * step_rad, beam.elevation_rad, kNothing,
                      kNothing, beam.origin, beam.point});
 }
 
-/// With the beams between returns of a ring, and those before the first and behind the last one, as
-/// far as the scan has returns of any ring: nobody fired in a sector that is not there.
+/// Adds the beams between returns of a ring, and those before the first and after the last one,
+/// within the azimuths of all returns: the scan may not cover a full turn.
 std::vector<FiredBeam> with_missing(const std::vector<FiredBeam>& returns, double step_rad) {
   std::vector<FiredBeam> beams;
   if (returns.empty()) return beams;
@@ -69,12 +67,12 @@ std::vector<FiredBeam> with_missing(const std::vector<FiredBeam>& returns, doubl
     const FiredBeam& one = returns[i];
     if (i == 0 || returns[i - 1].ring != one.ring) {
       const auto begin = static_cast<std::ptrdiff_t>(beams.size());
-      add_beside(one, steps_between(first->azimuth_rad, one.azimuth_rad), -step_rad, beams);
+      add_missing(one, steps_between(first->azimuth_rad, one.azimuth_rad), -step_rad, beams);
       std::reverse(beams.begin() + begin, beams.end());
     }
     beams.push_back(one);
     if (i + 1 == returns.size() || returns[i + 1].ring != one.ring) {
-      add_beside(one, steps_between(one.azimuth_rad, last->azimuth_rad), step_rad, beams);
+      add_missing(one, steps_between(one.azimuth_rad, last->azimuth_rad), step_rad, beams);
       continue;
     }
     const FiredBeam& next = returns[i + 1];

@@ -15,19 +15,19 @@
 
 namespace adasplats {
 
-/// A beam that a real sensor fired, with what a model of the place says of it.
+/// A beam fired by a real sensor, with the prediction of a model of the scene.
 struct UnitBeam {
   std::uint32_t scan = 0;    ///< number in the sequence
-  std::uint32_t place = 0;   ///< that it was fired from (standpoints_of())
+  std::uint32_t place = 0;   ///< standpoints_of()
   std::uint32_t column = 0;  ///< azimuth step within its ring; the next beam's is one more
   std::uint16_t ring = 0;    ///< topmost 0
-  bool hit = false;          ///< the model is there; else its three values mean nothing
-  float range_m = 0;         ///< measured, lasers' offsets taken out; NaN: nothing came back
-  float intensity = 0;       ///< measured; NaN: nothing came back, or not known
+  bool hit = false;          ///< the model is hit; otherwise its values are invalid
+  float range_m = 0;         ///< measured, corrected by the lasers' offsets; NaN: no return
+  float intensity = 0;       ///< measured; NaN: no return or unknown
   float expected_m = 0;      ///< range of the model
   float cos_incidence = 1;
-  float reflectance = 0;         ///< of the model; NaN: not known
-  float expected_intensity = 0;  ///< with the model's response; NaN: not known
+  float reflectance = 0;         ///< of the model; NaN: unknown
+  float expected_intensity = 0;  ///< with the model's response; NaN: unknown
   Vec3f direction;               ///< in the scan's frame
 
   bool returned() const { return range_m == range_m; }
@@ -38,17 +38,20 @@ inline bool same_ring(const UnitBeam& a, const UnitBeam& b) {
 }
 
 /// Whether three neighbouring beams of a ring returned from one surface: ranges less than 0.3 m
-/// apart, as the statistics of realism have it.
+/// apart, as in the statistics of the realism test.
 inline bool on_one_surface(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
   constexpr float kOneSurface_m = 0.3F;
   return same_ring(a, c) && std::fabs(b.range_m - a.range_m) < kOneSurface_m &&
          std::fabs(c.range_m - b.range_m) < kOneSurface_m;
 }
 
-/// All beams of the scans `indices` of a sequence whose sensor is recognised, scan by scan, ring by
-/// ring, clockwise. Beams without return are those that `step_rad` leaves between two returns of a
-/// ring, and beside its first and last one, as far as the scan has any; where they went is between
-/// these or level with the nearest. Errors: those of read_kitti_scan.
+/// Absolute second difference of three neighbouring values.
+inline float second_difference(float a, float b, float c) { return std::fabs(a - 2 * b + c); }
+
+/// All beams of the scans `indices` of a sequence with a recognised sensor, scan by scan, ring by
+/// ring, clockwise. Beams without return are inferred from `step_rad` in the gaps between returns
+/// of a ring, and before its first and after its last return within the azimuths of the scan; their
+/// directions are interpolated, or those of the nearest return. Errors: those of read_kitti_scan.
 std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
                                          std::span<const std::size_t> indices,
                                          std::span<const double> heights_m, double step_rad,

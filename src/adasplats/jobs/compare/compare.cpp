@@ -11,9 +11,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/compare/competitors.h"
-#include "adasplats/jobs/compare/paper_figures.h"
 #include "adasplats/jobs/compare/steps.h"
-#include "adasplats/jobs/compare/work_folder.h"
 #include "adasplats/jobs/provenance/machine.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/segment/point_classes.h"
@@ -29,9 +27,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxPoses = 20;
 constexpr double kBehind_m = 12, kAbove_m = 6, kAhead_m = 15;
-constexpr double kMemoryShare = 0.9;  // of the machine's, where no limit is given
+constexpr double kMemoryShare = 0.9;  // of the machine's memory, if no limit is given
 
-/// What the user says goes before what was found.
+/// Settings of the user override what is found in the data.
 ComparisonData data_of(const CompareJob& job) {
   ComparisonData data = find_comparison_data(job.data, job.preset);
   if (!job.labels.empty()) data.labels = job.labels;
@@ -41,6 +39,8 @@ ComparisonData data_of(const CompareJob& job) {
   data.held_out_scans = job.held_out_scans;
   if (!job.truth.empty()) data.truth = job.truth;
   if (job.offset_m) data.offset_m = job.offset_m;
+  data.removal = job.remove.value_or(paper_removal(job.preset));
+  data.removal_is_asked = job.remove.has_value();
   for (const fs::path* path : {&data.trajectory, &data.held_out, &data.truth}) {
     if (!path->empty()) require_input(*path);
   }
@@ -49,34 +49,31 @@ ComparisonData data_of(const CompareJob& job) {
   return data;
 }
 
-RemovalRule removal_rule_of(const CompareJob& job) {
-  return {job.remove.value_or(paper_removal(job.preset)), job.remove.has_value()};
-}
-
-/// Throws what every competitor would fail with.
+/// Reports errors that every competitor would fail with.
 void check_rules(const CompareJob& job, const ComparisonData& data) {
   check_settings(job);
   check_settings(job.limits);
   if (data.held_out.empty() && data.held_out_scans != ScanRange()) {
-    throw Error(ErrorKind::usage, "`held_out_scans` has no effect: there is no held-out sequence");
+    throw Error(ErrorKind::usage, "`held_out_scans` has no effect without a held-out sequence");
   }
   if (!data.labels.empty()) load_label_scheme(data.labels);
   load_lidar_model(job.sensor);
 }
 
-/// Behind and above the middle pose, looking along the way.
-PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
+/// Camera behind and above the middle pose, looking along the trajectory.
+void set_view(const Trajectory& trajectory, CompetitionRules& rules) {
   const std::size_t middle = trajectory.size() / 2;
-  const Vec3d place = trajectory[middle].world_from_sensor.translation + offset_m;
+  const Vec3d position = trajectory[middle].world_from_sensor.translation + rules.offset_m;
   Vec3d ahead = trajectory.back().world_from_sensor.translation -
                 trajectory.front().world_from_sensor.translation;
   ahead.z = 0;
   ahead = length(ahead) > 0 ? normalized(ahead) : Vec3d{1, 0, 0};
   const Vec3d up = {0, 0, 1};
-  return {place - kBehind_m * ahead + kAbove_m * up, place + kAhead_m * ahead};
+  rules.eye = position - kBehind_m * ahead + kAbove_m * up;
+  rules.target = position + kAhead_m * ahead;
 }
 
-/// How the steps are run; asks the program what it is.
+/// How the steps are run; asks the program for its version.
 StepRules step_rules_of(const CompareJob& job, const fs::path& program, const WorkFolder& folder,
                         ProgressSink& progress) {
   StepRules rules;
@@ -96,7 +93,7 @@ StepRules step_rules_of(const CompareJob& job, const fs::path& program, const Wo
   return rules;
 }
 
-/// What every competitor is asked with: data, poses, camera, limits.
+/// What all competitors share: data, poses, camera.
 CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
                           const PointFacts& facts, const WorkFolder& folder,
                           const DeviceChoice& device) {
@@ -104,10 +101,9 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.original = facts.original;
   rules.has_classes = facts.has_classes;
   rules.labelled = facts.labelled && !data.labels.empty();
-  // What can remove nothing is not asked of the steps: they would refuse it.
-  const DynamicRemoval removal = removal_rule_of(job).removal;
-  if (!facts.removed.ids.empty()) rules.removal = removal;
-  if (removal != DynamicRemoval::moving) rules.network_removal = removal;
+  // A rule that removes nothing is not passed to the steps: they would reject it.
+  if (!facts.removed.ids.empty()) rules.removal = data.removal;
+  if (data.removal != DynamicRemoval::moving) rules.network_removal = data.removal;
   if (!facts.trajectory.empty()) {
     rules.data.trajectory = folder.work() / "trajectory.csv";
     write_if_changed(rules.data.trajectory,
@@ -119,7 +115,7 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   }
   rules.offset_m = data.offset_m.value_or(Vec3d{});
   rules.every = job.every > 0 ? job.every : (trajectory.size() + kMaxPoses - 1) / kMaxPoses;
-  rules.view = view_along(trajectory, rules.offset_m);
+  set_view(trajectory, rules);
   rules.pictures = folder.pictures();
   rules.device = device_key(device);
   return rules;
@@ -152,7 +148,7 @@ Json data_json(const CompareJob& job, const CompetitionRules& rules, const Point
   return json;
 }
 
-/// Whether a competitor that nobody asked for can be made.
+/// Whether the data and this build allow a competitor that was not requested by name.
 bool is_possible(const Competitor& competitor, const CompetitionRules& rules) {
   return (rules.labelled || !competitor.needs_labels) && (can_segment() || !competitor.segments);
 }
@@ -197,8 +193,7 @@ Json run_compare(const CompareJob& job, Session& session) {
   const fs::path program = program_of(job.program);
   const WorkFolder folder(job.output, data.title);
   const StepRules steps = step_rules_of(job, program, folder, session.progress);
-  const PointFacts facts =
-      look_at_points(data, removal_rule_of(job), folder.work() / "original.ply", session);
+  const PointFacts facts = survey_points(data, folder.work() / "original.ply", session);
   if (!job.labels.empty() && !facts.has_classes) {
     throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }
@@ -225,7 +220,7 @@ Json run_compare(const CompareJob& job, Session& session) {
     if (job.methods.empty() && !is_possible(competitor, rules)) continue;
     const StepRunner runner(folder.work() / competitor.name, steps, session.progress);
     results["competitors"].push_back(compete(competitor, rules, runner));
-    // After every competitor, so that an interrupted run has shown what it knows.
+    // After every competitor, so that an interrupted run leaves a report.
     write_reports(job.output, results);
   }
   write_reports(job.output, results);

@@ -19,11 +19,11 @@
 
 namespace adasplats {
 
-/// Of every step.
+/// Limits of every step.
 struct CompareLimits {
   double seconds = ChildLimits().seconds;
-  double memory_gib = 0;  ///< 0: 90 % of the machine's
-  bool retry = false;     ///< steps are run again that failed before
+  double memory_gib = 0;  ///< 0: 90 % of the machine's memory
+  bool retry = false;     ///< run failed steps again
 };
 
 template <class Visit>
@@ -36,24 +36,25 @@ void visit_settings(CompareLimits& limits, Visit&& visit) {
                 .exclusive_min = true},
         limits.seconds);
   visit(Setting{.name = "memory_limit",
-                .help = "GiB; 0: 90 % of the machine's",
+                .help = "GiB; 0: 90 % of the machine's memory",
                 .value = "GIB",
                 .min = 0,
                 .max = 1e9},
         limits.memory_gib);
-  visit(Setting{.name = "retry", .help = "Run steps again that failed"}, limits.retry);
+  visit(Setting{.name = "retry", .help = "Run failed steps again"}, limits.retry);
 }
 
-/// Every competitor on the same points with the same rays. What is empty is found in the data.
+/// Every competitor on the same points with the same rays. Empty fields are filled from the data.
 struct CompareJob {
   std::filesystem::path data;
   std::filesystem::path output;
   Preset preset = Preset::none;
-  std::vector<std::string> methods;  ///< empty: all that the data allow
-  std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< name and file, ready-made
+  std::vector<std::string> methods;  ///< empty: all that the data allows
+  std::vector<std::pair<std::string, std::filesystem::path>>
+      meshes;  ///< name and file of existing meshes
   std::string labels, sensor = kDefaultSensor;
   ScanRange scans, held_out_scans;
-  std::optional<DynamicRemoval> remove;  ///< else what the paper removes: paper_removal()
+  std::optional<DynamicRemoval> remove;  ///< default: paper_removal()
   std::filesystem::path trajectory, held_out, truth;
   std::optional<Vec3d> offset_m;
   std::size_t every = 0;    ///< 0: at most 20 poses
@@ -61,8 +62,8 @@ struct CompareJob {
   int poisson_depth = 13;
   std::filesystem::path network;  ///< of the method kpconv; empty: default_network()
   CompareLimits limits;
-  std::filesystem::path program;  ///< adasplats, which runs the steps; empty: that of PATH
-  // What the steps are given where it is not the default.
+  std::filesystem::path program;  ///< adasplats, which runs the steps; empty: found on PATH
+  // Passed to the steps if not the default.
   int threads = 0;
   std::uint64_t seed = 1;
   DeviceKind device = DeviceKind::automatic;
@@ -71,7 +72,7 @@ struct CompareJob {
 template <class Visit>
 void visit_settings(CompareJob& job, Visit&& visit) {
   visit(Setting{.name = "every",
-                .help = "Take every n-th pose; 0: at most 20 poses",
+                .help = "Use every n-th pose; 0: at most 20 poses",
                 .value = "N",
                 .min = 0},
         job.every);
@@ -88,27 +89,26 @@ void visit_settings(CompareJob& job, Visit&& visit) {
                 .max = 16},
         job.poisson_depth);
   visit(Setting{.name = "network",
-                .help = "File of the network of the method kpconv; else the one that comes with "
-                        "the program"},
+                .help = "Network file for the method kpconv; default: the network of the program"},
         job.network);
 }
 
-/// The settings of a method that is not compared.
+/// Settings of methods that are not compared.
 std::vector<UnusedSetting> unused_settings(const CompareJob& job);
 
-/// What the paper removes from the data of a preset, with whatever scheme they are labelled: all
-/// that is movable (section "Adaptive Splatting" and both "Results"), from every input. M-City has
-/// no dynamic objects. Without a preset as with PC3D-Paris: the methods are the paper's.
+/// What the paper removes from the data of a preset, whatever their label scheme: everything
+/// movable (section "Adaptive Splatting" and both "Results"), from every input. M-City has no
+/// dynamic objects. Without a preset: as for PC3D-Paris, because the methods are the paper's.
 DynamicRemoval paper_removal(Preset preset);
 
-/// What `methods` can name.
+/// The values of `methods`.
 std::vector<std::string> compare_method_names();
 
-/// Runs what is not done yet, writes compare.json, report.md and report.html into the output
-/// folder and gives back what compare.json holds (its layout: docs/formats.md). A competitor that
-/// fails is a row that says so. Errors: those of finding the data; usage for what no competitor
-/// could work with (limits, sensor, labels, names); no_input where the program is not there;
-/// cannot_create where the folder holds something else or another run works in it.
+/// Runs the steps that are not done yet, writes compare.json, report.md and report.html into the
+/// output folder and returns the content of compare.json (its layout: docs/formats.md). A
+/// competitor that fails is reported in its row. Errors: those of find_comparison_data; usage for
+/// settings that no competitor could work with (limits, sensor, labels, names); no_input if the
+/// program is not found; cannot_create if the folder has other content or is used by another run.
 nlohmann::ordered_json run_compare(const CompareJob& job, Session& session);
 
 }  // namespace adasplats

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
-#include "adasplats/jobs/compare/work_folder.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/jobs/compare/steps.h"
 #include "adasplats/jobs/model/label_use.h"
 #include "adasplats/jobs/session/inputs.h"
 
@@ -26,12 +26,6 @@ constexpr double kTrajectoryCell_m = 1.0;
 constexpr std::size_t kLinePoses = 20;
 constexpr double kSensorHeight_m = 1.8;
 constexpr double kScanPeriod_s = 0.1;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::string title_of(const fs::path& data) {
   const fs::path normal = fs::absolute(data).lexically_normal();
@@ -61,29 +55,29 @@ ComparisonData street_data(const fs::path& data) {
   return found;
 }
 
-/// The first number in a text; empty where there is none.
+/// The first number in a text, or an empty text.
 std::string first_number(const std::string& text) {
   constexpr const char* kDigits = "0123456789";
   const std::size_t first = std::min(text.find_first_of(kDigits), text.size());
   return text.substr(first, text.find_first_not_of(kDigits, first) - first);
 }
 
-/// The PLY file below `data` whose name begins with "soufflot" and whose first number is `number`.
+/// The PLY file below `data` with a name that begins with "soufflot" and contains `number` first.
 fs::path soufflot_file(const fs::path& data, const std::string& number) {
   std::vector<fs::path> matches;
   std::error_code failure;
   constexpr auto kOptions = fs::directory_options::skip_permission_denied;
   for (fs::recursive_directory_iterator entry(data, kOptions, failure), end;
        !failure && entry != end; entry.increment(failure)) {
-    const std::string name = lower(entry->path().filename().string());
-    if (lower(entry->path().extension().string()) != ".ply") continue;
+    const std::string name = lower_case(entry->path().filename().string());
+    if (lower_case(entry->path().extension().string()) != ".ply") continue;
     if (name.rfind("soufflot", 0) != 0 || first_number(name) != number) continue;
     matches.push_back(entry->path());
   }
   std::sort(matches.begin(), matches.end());
   if (matches.empty()) {
-    throw Error(ErrorKind::data, data.string() + ": no Soufflot-" + number +
-                                     " PLY file below it, as Paris-CARLA-3D has it");
+    throw Error(ErrorKind::data, data.string() + ": contains no PLY file of Soufflot-" + number +
+                                     ", expected the layout of Paris-CARLA-3D");
   }
   return matches.front();
 }
@@ -105,8 +99,9 @@ ComparisonData kitti_data(const fs::path& data) {
     found.scans.count = 150;
     return found;
   }
-  throw Error(ErrorKind::data,
-              data.string() + ": no sequence 00 in it (sequences/00 with velodyne, labels, poses)");
+  throw Error(
+      ErrorKind::data,
+      data.string() + ": contains no sequence 00 (sequences/00 with velodyne, labels, poses)");
 }
 
 double quantile(std::vector<float>& values, double share) {
@@ -115,7 +110,7 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(k)]);
 }
 
-/// Main direction of points in the plane, unit; x where all are one point.
+/// Horizontal main direction of points, unit; x if all points coincide.
 Vec3d main_direction(const std::vector<Vec3f>& points) {
   Vec3d mean;
   for (const Vec3f& p : points) mean = mean + vec_cast<double>(p);
@@ -135,18 +130,18 @@ Vec3d main_direction(const std::vector<Vec3f>& points) {
   return axis.x < 0 ? -1.0 * axis : axis;
 }
 
-Trajectory poses_at(const std::vector<Vec3d>& places) {
+Trajectory poses_at(const std::vector<Vec3d>& positions) {
   Trajectory trajectory;
-  for (const Vec3d& place : places) {
+  for (const Vec3d& position : positions) {
     TimedPose pose;
     pose.time_s = kScanPeriod_s * static_cast<double>(trajectory.size());
-    pose.world_from_sensor.translation = place;
+    pose.world_from_sensor.translation = position;
     trajectory.push_back(pose);
   }
   return trajectory;
 }
 
-std::vector<Vec3d> along_sensor_positions(const PointCloud& cloud) {
+std::vector<Vec3d> path_of_sensor_positions(const PointCloud& cloud) {
   struct Cell {
     Vec3d sum;
     double count = 0;
@@ -164,20 +159,20 @@ std::vector<Vec3d> along_sensor_positions(const PointCloud& cloud) {
     cell.sum = cell.sum + d;
     cell.count += 1;
   }
-  std::vector<Vec3d> places;
+  std::vector<Vec3d> positions;
   std::vector<Vec3f> local;
   for (const auto& [key, cell] : cells) {
-    places.push_back(cell.sum / cell.count);
-    local.push_back(vec_cast<float>(places.back()));
+    positions.push_back(cell.sum / cell.count);
+    local.push_back(vec_cast<float>(positions.back()));
   }
   const Vec3d axis = main_direction(local);
-  std::sort(places.begin(), places.end(),
+  std::sort(positions.begin(), positions.end(),
             [&](const Vec3d& a, const Vec3d& b) { return dot(a, axis) < dot(b, axis); });
-  for (Vec3d& place : places) place = place + cloud.origin;
-  return places;
+  for (Vec3d& position : positions) position = position + cloud.origin;
+  return positions;
 }
 
-std::vector<Vec3d> along_the_points(const PointCloud& cloud) {
+std::vector<Vec3d> path_through_points(const PointCloud& cloud) {
   const Vec3d axis = main_direction(cloud.positions);
   const Vec3d side = {-axis.y, axis.x, 0};
   std::vector<float> along, across, heights;
@@ -190,17 +185,17 @@ std::vector<Vec3d> along_the_points(const PointCloud& cloud) {
   const double first = quantile(along, 0.1), last = quantile(along, 0.9);
   const double middle = quantile(across, 0.5);
   const double height = quantile(heights, 0.05) + kSensorHeight_m;
-  std::vector<Vec3d> places;
+  std::vector<Vec3d> positions;
   for (std::size_t k = 0; k < kLinePoses; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(kLinePoses - 1);
-    Vec3d place = (first + share * (last - first)) * axis + middle * side;
-    place.z = height;
-    places.push_back(place + cloud.origin);
+    Vec3d position = (first + share * (last - first)) * axis + middle * side;
+    position.z = height;
+    positions.push_back(position + cloud.origin);
   }
-  return places;
+  return positions;
 }
 
-/// Where the vehicle was while it took these scans.
+/// The poses of the chosen scans.
 Trajectory poses_of_scans(const fs::path& sequence, const ScanRange& range) {
   const Trajectory all = load_trajectory(sequence);
   Trajectory chosen;
@@ -240,8 +235,8 @@ ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
   return found;
 }
 
-PointFacts look_at_points(const ComparisonData& data, const RemovalRule& rule,
-                          const fs::path& original_file, Session& session) {
+PointFacts survey_points(const ComparisonData& data, const fs::path& original_file,
+                         Session& session) {
   LoadOptions options;
   const bool all_scans = data.scans == ScanRange();
   options.first_scan = data.scans.first;
@@ -262,8 +257,8 @@ PointFacts look_at_points(const ComparisonData& data, const RemovalRule& rule,
   }
   const std::optional<LabelScheme> scheme = label_scheme_for(data.labels, data.inputs);
   const LabelScheme* const labels = scheme ? &*scheme : nullptr;
-  check_label_use({"", rule.removal, rule.is_asked}, cloud, labels, session.progress);
-  facts.removed = points_to_remove(cloud, labels, rule.removal);
+  check_label_use({"", data.removal, data.removal_is_asked}, cloud, labels, session.progress);
+  facts.removed = points_to_remove(cloud, labels, data.removal);
   const bool whole = data.inputs.size() == 1 && all_scans && facts.removed.points == 0;
   facts.original = whole ? data.inputs.front() : original_file;
   if (facts.removed.points > 0) cloud = without(cloud, facts.removed);
@@ -275,7 +270,7 @@ PointFacts look_at_points(const ComparisonData& data, const RemovalRule& rule,
 }
 
 Trajectory trajectory_of(const PointCloud& cloud) {
-  return poses_at(cloud.has_beams() ? along_sensor_positions(cloud) : along_the_points(cloud));
+  return poses_at(cloud.has_beams() ? path_of_sensor_positions(cloud) : path_through_points(cloud));
 }
 
 }  // namespace adasplats

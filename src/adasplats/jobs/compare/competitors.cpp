@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Arguments = std::vector<std::string>;
 
-constexpr const char* kPlainLetters =
+constexpr const char* kNameCharacters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
 
-/// "1.500000,0.000000,-2.250000", as options take three numbers.
+/// "1.500000,0.000000,-2.250000".
 std::string comma_text(Vec3d v) {
   return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
 }
@@ -29,8 +29,8 @@ void add(Arguments& words, const Arguments& more) {
 
 /// The common view, 16:9.
 Arguments camera(const CompetitionRules& rules, int width) {
-  return {"--eye=" + comma_text(rules.view.eye),
-          "--target=" + comma_text(rules.view.target),
+  return {"--eye=" + comma_text(rules.eye),
+          "--target=" + comma_text(rules.target),
           "--width",
           std::to_string(width),
           "--height",
@@ -52,7 +52,7 @@ void note_failure(Json& entry, const Step& step, const StepResult& result) {
   entry["message"] = result.child.message;
 }
 
-/// Whether a mesh cannot have the name: folders and pictures of others are called so.
+/// Whether a mesh of this name would collide with the folders or pictures of others.
 bool is_taken(const std::string& name, const std::vector<Competitor>& chosen) {
   const auto is_named = [&](const Competitor& other) {
     return name == other.name || name == other.name + "-c2c" || name == other.name + "-beams" ||
@@ -62,7 +62,7 @@ bool is_taken(const std::string& name, const std::vector<Competitor>& chosen) {
          std::any_of(known_competitors().begin(), known_competitors().end(), is_named);
 }
 
-/// One competitor on its way through the steps.
+/// Runs the steps of one competitor.
 class Run {
  public:
   Run(const Competitor& competitor, const CompetitionRules& rules, const StepRunner& runner)
@@ -75,7 +75,7 @@ class Run {
   }
 
   Json result() {
-    // Nothing else can be done without a model; every later step stands for itself.
+    // All other steps need the model, but not each other.
     if (!generate()) return entry_;
     time_rendering();
     draw();
@@ -86,9 +86,9 @@ class Run {
   }
 
  private:
-  /// Runs a step; the first failure is noted in the entry.
+  /// Runs a step; the entry reports the first failure.
   StepResult run(Step step) {
-    // Names of built-in schemes and sensors are no files: nothing changes there.
+    // Built-in schemes and sensors are not files and never change.
     for (const std::string& file : {rules_.data.labels, rules_.job.sensor}) {
       if (is_file(file)) step.inputs.emplace_back(file);
     }
@@ -99,7 +99,7 @@ class Run {
     return result;
   }
 
-  /// Runs a step that makes or asks a model on the device of the rules.
+  /// Runs a step that makes or uses a model, on the device of the job.
   StepResult run_on_device(Step step) {
     if (rules_.job.device != DeviceKind::automatic) {
       add(step.arguments, {"--device", device_word(rules_.job.device)});
@@ -108,8 +108,8 @@ class Run {
     return run(std::move(step));
   }
 
-  /// The version and the first and last date of the steps. A step that another build of the program
-  /// has done is done again (see steps.cpp), so there is one version.
+  /// The version and the first and last date of the steps. Steps of another build of the program
+  /// are run again (key_of() in steps.cpp), so there is one version.
   void note_provenance(const StepResult& result) {
     if (!result.report.contains("provenance")) return;
     const Json& from = result.report["provenance"];
@@ -120,14 +120,14 @@ class Run {
     own["last_date"] = std::max(own.value("last_date", date), date);
   }
 
-  /// What a step computed on in the end, where it had a choice.
+  /// The device that a step has used.
   void note_device(const char* key, const StepResult& result) {
     if (!result.done() || !result.report.contains("device")) return;
     entry_[key]["device"] = result.report["device"].value("kind", Json());
   }
 
-  /// In place of generate() for a ready-made mesh.
-  bool look_at_mesh() {
+  /// Replaces generate() for an existing mesh.
+  bool inspect_mesh() {
     entry_["generate"] = {{"command", nullptr}, {"seconds", nullptr}};
     const Step step = {"info", {"info", model_.string()}, {model_}, {}};
     StepResult looked = run(step);
@@ -145,12 +145,12 @@ class Run {
   }
 
   bool generate() {
-    if (!competitor_.file.empty()) return look_at_mesh();
+    if (!competitor_.file.empty()) return inspect_mesh();
     Arguments words = {competitor_.is_mesh ? "mesh" : "model"};
     for (const fs::path& input : rules_.data.inputs) words.push_back(input.string());
     add(words, {"-o", model_.string()});
     add(words, competitor_.arguments);
-    // Meshes are of the points as given, and so are the clouds that all are compared with.
+    // Meshes and the reference clouds use the points as given, so models must, too.
     if (!competitor_.is_mesh) add(words, {"--no-calibrate"});
     if (competitor_.name == "poisson") {
       add(words, {"--depth", std::to_string(rules_.job.poisson_depth)});
@@ -234,12 +234,12 @@ class Run {
   void compare_clouds() {
     const fs::path picture = rules_.pictures / (competitor_.name + "-c2c.png");
     Arguments words = {"evaluate", "c2c", scans_.string(), rules_.original.string()};
-    add(words, {"--picture", picture.string(), "--eye=" + comma_text(rules_.view.eye),
-                "--target=" + comma_text(rules_.view.target), "--picture-width",
+    add(words, {"--picture", picture.string(), "--eye=" + comma_text(rules_.eye),
+                "--target=" + comma_text(rules_.target), "--picture-width",
                 std::to_string(rules_.job.picture_width)});
     if (rules_.labelled) add(words, {"--by-class", "--labels", rules_.data.labels});
-    // The errors of a network would hide those of the surface: metres, where it sees a fence in a
-    // facade.
+    // Classes of the network would hide errors of the surface: a facade classified as a fence gives
+    // metres.
     if (rules_.labelled && competitor_.segments) words.push_back("--nearest-classes");
     const StepResult compared = run({"c2c", words, {scans_, rules_.original}, {picture}});
     store("c2c", compared, picture);
@@ -267,7 +267,7 @@ class Run {
           {});
   }
 
-  /// Beams and rays on what was removed from the points are left out as well.
+  /// Leaves out the beams and rays on objects that were removed from the points.
   void add_left_out(Arguments& words) const {
     if (rules_.removal == DynamicRemoval::movable) words.push_back("--drop-movable");
     if (rules_.removal == DynamicRemoval::none) words.push_back("--keep-moving");
@@ -277,7 +277,7 @@ class Run {
     if (!result.done()) return;
     Json& part = entry_[key];
     part = result.report;
-    // What every report has and no table shows.
+    // Keys of every report that no table shows.
     for (const char* common :
          {"program", "version", "provenance", "parameters", "threads", "warnings"}) {
       part.erase(common);
@@ -348,9 +348,9 @@ std::vector<Competitor> chosen_competitors(
     chosen.push_back(known_competitors()[static_cast<std::size_t>(found - known.begin())]);
   }
   for (const auto& [name, file] : meshes) {
-    if (name.empty() || name.find_first_not_of(kPlainLetters) != std::string::npos) {
+    if (name.empty() || name.find_first_not_of(kNameCharacters) != std::string::npos) {
       throw Error(ErrorKind::usage,
-                  "the mesh's name '" + name + "' is not one of letters, digits, - and _");
+                  "the mesh's name '" + name + "' must consist of letters, digits, - and _");
     }
     if (is_taken(name, chosen)) {
       throw Error(ErrorKind::usage, "the mesh's name '" + name + "' is taken");

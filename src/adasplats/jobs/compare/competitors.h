@@ -13,45 +13,39 @@
 
 namespace adasplats {
 
-/// One way to a model of the scene.
+/// One way to make a model of the scene.
 struct Competitor {
   std::string name;
   std::string title;
   bool is_mesh = false;
   bool needs_labels = false;
-  bool segments = false;               ///< its classes are a network's, not the data's labels
-  std::vector<std::string> arguments;  ///< of `model` or `mesh`; empty for a ready-made mesh
-  std::filesystem::path file;          ///< of a ready-made mesh
+  bool segments = false;               ///< classes from a network instead of labels
+  std::vector<std::string> arguments;  ///< of `model` or `mesh`; empty for an existing mesh
+  std::filesystem::path file;          ///< of an existing mesh
 };
 
-/// Camera of the pictures.
-struct PictureView {
-  Vec3d eye;
-  Vec3d target;
-};
-
-/// What all competitors are asked with.
+/// What all competitors share.
 struct CompetitionRules {
   const CompareJob& job;
   ComparisonData data;
   std::filesystem::path original;  ///< the measured points
   bool has_classes = false;        ///< the points have labels
   bool labelled = false;
-  DynamicRemoval removal = DynamicRemoval::none;  ///< that removes something, or none
-  /// Of a competitor that segments, whose network tells nothing that moves from what could.
+  DynamicRemoval removal = DynamicRemoval::none;  ///< none if nothing would be removed
+  /// For a competitor that segments: its network does not distinguish moving from movable objects.
   DynamicRemoval network_removal = DynamicRemoval::none;
   Vec3d offset_m;
   std::size_t every = 1;
-  PictureView view;
+  Vec3d eye, target;               ///< of the pictures' camera
   std::filesystem::path pictures;  ///< folder
-  std::string device;              ///< what steps compute on that have a choice
+  std::string device;              ///< for steps that can use the CPU or a GPU
 };
 
-/// Every method that this program has, in the order of the tables.
+/// Every method of this program, in the order of the tables.
 const std::vector<Competitor>& known_competitors();
 
-/// Those of the names (empty: all known ones), each once, and the ready-made meshes behind them.
-/// Errors: usage for a name that is not known and for a mesh whose name others have.
+/// The competitors of these names (empty: all), each once, followed by the existing meshes. Errors:
+/// usage (an unknown name, a mesh with a name that is taken).
 std::vector<Competitor> chosen_competitors(
     const std::vector<std::string>& names,
     const std::vector<std::pair<std::string, std::filesystem::path>>& meshes);
@@ -60,8 +54,8 @@ std::vector<Competitor> chosen_competitors(
 nlohmann::ordered_json compete(const Competitor& competitor, const CompetitionRules& rules,
                                const StepRunner& runner);
 
-/// A picture of the measured points from the same camera: {"picture": FILE}, or what a competitor
-/// that failed says.
+/// A picture of the measured points from the same camera: {"picture": FILE}, or the keys of a
+/// failed competitor.
 nlohmann::ordered_json original_picture(const CompetitionRules& rules, const StepRunner& runner);
 
 }  // namespace adasplats

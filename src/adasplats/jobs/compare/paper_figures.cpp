@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/jobs/compare/paper_figures.h"
-
 #include <nlohmann/json.hpp>
+
+#include "adasplats/jobs/compare/comparison_data.h"
 
 namespace adasplats {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Every figure of this file is printed in the paper's tables "Results on PC3D-Paris", "Results on
+// All figures are from the paper's tables "Results on PC3D-Paris", "Results on
 // SemanticKITTI", "Results on M-City", "Results of the LiDAR simulation on the PC3D-Paris ...
 // without resampling" and "Cloud-to-Cloud distance (in cm) computed on PC3D-Paris for points that
 // belong to classes of thin structures".

@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/compare/steps.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <fstream>
 #include <optional>
 #include <system_error>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats {
@@ -20,8 +27,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kProgramName = "adasplats";
 constexpr std::array<const char*, 4> kEndNames = {"done", "failed", "timeout", "out of memory"};
 
-/// Sizes and the newest time of the files that lie in a folder itself; what lies deeper belongs to
-/// others (a comparison beside its data, say).
+/// Sizes and newest time of the files directly in a folder. Deeper files may belong to something
+/// else, such as a comparison written into its data folder.
 void stamp_files_in(const fs::path& folder, Json& stamp) {
   std::uint64_t files = 0, bytes = 0;
   fs::file_time_type newest = fs::file_time_type::min();
@@ -39,7 +46,7 @@ void stamp_files_in(const fs::path& folder, Json& stamp) {
   if (files > 0) stamp["newest"] = newest.time_since_epoch().count();
 }
 
-/// What changes where a file, a folder of point files or a sequence folder changes.
+/// Changes if a file, a folder of point files or a sequence folder changes.
 Json stamp_of(const fs::path& path) {
   std::error_code failure;
   Json stamp = {{"path", path.string()}};
@@ -55,8 +62,8 @@ Json stamp_of(const fs::path& path) {
   return stamp;
 }
 
-/// A program of another version or commit has another key: its results are not taken over. So has
-/// one of the same commit that was built again, whose sources may have been changed.
+/// A program of another version or commit has another key: its results are not reused. So has one
+/// of the same commit that was built again, because its sources may have changed.
 Json key_of(const Step& step, const std::vector<std::string>& arguments, const StepRules& rules) {
   std::error_code failure;
   Json key = {{"program", rules.made_by}, {"arguments", arguments}};
@@ -66,7 +73,7 @@ Json key_of(const Step& step, const std::vector<std::string>& arguments, const S
   return key;
 }
 
-bool all_there(const std::vector<fs::path>& outputs) {
+bool all_exist(const std::vector<fs::path>& outputs) {
   return std::all_of(outputs.begin(), outputs.end(), [](const fs::path& output) {
     std::error_code failure;
     return fs::exists(output, failure);
@@ -83,7 +90,7 @@ Json to_json(const ChildResult& child, const ChildLimits& limits) {
           {"memory_limit_bytes", limits.memory_bytes}};
 }
 
-/// The opposite of to_json(). Errors: Json::exception; nothing for an end that is not known.
+/// The inverse of to_json(). Errors: Json::exception; nothing for an unknown end.
 std::optional<ChildResult> child_from(const Json& json) {
   ChildResult child;
   const std::string name = json.at("end");
@@ -97,7 +104,7 @@ std::optional<ChildResult> child_from(const Json& json) {
   return child;
 }
 
-/// Whether a failure would come again: the limit that ended it is not higher now.
+/// Whether a failed step would fail again: the limit that ended it has not been raised.
 bool would_fail_again(const Json& child, const ChildLimits& limits) {
   const std::string end = child.at("end");
   if (end == "timeout") return limits.seconds <= child.at("seconds_limit").get<double>();
@@ -108,10 +115,10 @@ bool would_fail_again(const Json& child, const ChildLimits& limits) {
   return true;
 }
 
-/// What a state file remembers, where it is of this key and still holds. A file that is foreign or
-/// broken counts as none: the step is run again and the file replaced.
-std::optional<StepResult> remembered(const fs::path& file, const Step& step, const Json& key,
-                                     const StepRules& rules) {
+/// The result in a state file, if it has this key and is still valid. A foreign or broken file is
+/// ignored: the step is run again and the file replaced.
+std::optional<StepResult> stored_result(const fs::path& file, const Step& step, const Json& key,
+                                        const StepRules& rules) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure)) return std::nullopt;
   try {
@@ -123,7 +130,7 @@ std::optional<StepResult> remembered(const fs::path& file, const Step& step, con
     for (const auto& [part, value] : rules.made_by.items()) {
       if (result.made_by.at(part) != value) return std::nullopt;
     }
-    if (result.done() && !all_there(step.outputs)) return std::nullopt;
+    if (result.done() && !all_exist(step.outputs)) return std::nullopt;
     if (!result.done() && (rules.retry || !would_fail_again(state.at("child"), rules.limits))) {
       return std::nullopt;
     }
@@ -133,8 +140,8 @@ std::optional<StepResult> remembered(const fs::path& file, const Step& step, con
   }
 }
 
-/// Removes what a killed child has left beside its outputs: files and folders that were to be
-/// renamed when they were whole. The folders are ours alone (see WorkFolder).
+/// Removes the temporary files and folders that a killed child left next to its outputs. No other
+/// program uses these folders (WorkFolder).
 void remove_unfinished(const Step& step) {
   for (const fs::path& output : step.outputs) {
     std::error_code failure;
@@ -150,10 +157,10 @@ void remove_unfinished(const Step& step) {
   }
 }
 
-/// Runs a child, which leaves nothing unfinished behind however it ends.
+/// Runs a child and removes its unfinished outputs, however it ends.
 ChildResult run_cleanly(const Step& step, const std::vector<std::string>& arguments,
                         const ChildLimits& limits, const fs::path& log, ProgressSink& progress) {
-  remove_unfinished(step);  // this program may have been killed before
+  remove_unfinished(step);  // of an earlier run that was killed
   try {
     ChildResult result = run_child({arguments, {}, log, limits}, progress);
     if (result.end != ChildEnd::done) remove_unfinished(step);
@@ -164,7 +171,81 @@ ChildResult run_cleanly(const Step& step, const std::vector<std::string>& argume
   }
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directory(folder, failure);
+  if (failure) {
+    throw system_error(ErrorKind::cannot_create, folder, "cannot create the folder",
+                       failure.value());
+  }
+}
+
+bool same_bytes(const fs::path& a, const fs::path& b) {
+  std::error_code failure;
+  if (!fs::is_regular_file(b, failure) || fs::file_size(a) != fs::file_size(b)) return false;
+  std::ifstream left(a, std::ios::binary), right(b, std::ios::binary);
+  constexpr std::streamsize kPartBytes = 1 << 20;
+  std::vector<char> left_part(kPartBytes), right_part(kPartBytes);
+  while (left && right) {
+    left.read(left_part.data(), kPartBytes);
+    right.read(right_part.data(), kPartBytes);
+    if (left.gcount() != right.gcount() ||
+        !std::equal(left_part.begin(), left_part.begin() + left.gcount(), right_part.begin())) {
+      return false;
+    }
+  }
+  return left.eof() && right.eof();
+}
+
+/// Rejects a folder with other content than a comparison of the same data.
+void check_content(const fs::path& folder, const std::string& title) {
+  if (fs::is_empty(folder)) return;
+  const fs::path file = folder / kContentFile;
+  const Json content =
+      fs::is_regular_file(file) ? Json::parse(read_file(file), nullptr, false) : Json();
+  if (!content.is_object() || content.value("command", Json()) != "compare") {
+    throw Error(ErrorKind::cannot_create,
+                folder.string() + ": the folder is not empty and contains no comparison");
+  }
+  if (content.value("title", Json()) != title) {
+    throw Error(ErrorKind::cannot_create, folder.string() + ": contains a comparison of " +
+                                              content.value("title", Json()).dump() + ", not of '" +
+                                              title + "'");
+  }
+}
+
 }  // namespace
+
+WorkFolder::WorkFolder(const fs::path& folder, const std::string& title) : folder_(folder) {
+  make_folder(folder_);
+  lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) throw system_error(ErrorKind::cannot_create, folder_, "cannot open", errno);
+  try {
+    if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      throw Error(ErrorKind::cannot_create, folder_.string() + ": another run works in it");
+    }
+    check_content(folder_, title);
+    write_file(folder_ / kContentFile, content_text("compare", {{"title", title}}));
+    // After the content file: otherwise a run that is killed here would find a foreign folder.
+    make_folder(work());
+    make_folder(pictures());
+  } catch (...) {
+    close(lock_);
+    throw;
+  }
+}
+
+WorkFolder::~WorkFolder() { close(lock_); }
+
+void write_if_changed(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  const fs::path fresh = file.parent_path() / ("new-" + file.filename().string());
+  write(fresh);
+  if (same_bytes(fresh, file)) {
+    fs::remove(fresh);
+  } else {
+    fs::rename(fresh, file);
+  }
+}
 
 fs::path program_of(const fs::path& named) {
   const std::string name = named.empty() ? kProgramName : named.string();
@@ -173,21 +254,21 @@ fs::path program_of(const fs::path& named) {
   throw Error(ErrorKind::no_input,
               name +
                   ": the program that runs the steps of a comparison is not on PATH; install it "
-                  "(cmake --install) or say where it is (program)");
+                  "(cmake --install) or set its path (program)");
 }
 
 Json build_of_program(const fs::path& program, const fs::path& folder, ProgressSink& progress) {
   const fs::path file = folder / "program-report.json";
   std::error_code ignored;
   fs::remove(file, ignored);
-  // A command that needs neither input nor device.
+  // A command without input and device.
   const ChildResult asked = run_child(
       {{program.string(), "sensors", "--report", file.string()}, {}, folder / "program.log"},
       progress);
   if (asked.exit_code == kCannotStart)
     throw Error(ErrorKind::no_input, program.string() + ": the program " + asked.message);
-  const bool told_all = asked.end == ChildEnd::done && fs::is_regular_file(file, ignored);
-  const Json report = told_all ? Json::parse(read_file(file), nullptr, false) : Json();
+  const bool has_report = asked.end == ChildEnd::done && fs::is_regular_file(file, ignored);
+  const Json report = has_report ? Json::parse(read_file(file), nullptr, false) : Json();
   Json build = report.is_object() ? report.value("provenance", Json()) : Json();
   const std::string expected = provenance_of(0).version;
   if (!build.is_object() || build.value("version", Json()) != expected)
@@ -213,9 +294,9 @@ StepResult StepRunner::run(const Step& step) const {
   const fs::path report_file = folder_ / (step.name + "-report.json");
   std::vector<std::string> arguments = step.arguments;
   arguments.insert(arguments.end(), rules_.common_arguments.begin(), rules_.common_arguments.end());
-  // Before the step: what changes while it runs has not been used.
+  // Computed before the step: an input that changes while it runs makes the result outdated.
   const Json key = key_of(step, arguments, rules_);
-  if (auto result = remembered(state_file, step, key, rules_)) return *std::move(result);
+  if (auto result = stored_result(state_file, step, key, rules_)) return *std::move(result);
 
   std::error_code ignored;
   fs::remove(state_file, ignored);

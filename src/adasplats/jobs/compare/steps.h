@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,28 +13,52 @@
 
 namespace adasplats {
 
-/// One command of adasplats, run as a child of its own.
+/// The output folder of a comparison. It grows step by step and is kept after an interruption:
+/// OUTPUT/work for the results of steps, OUTPUT/pictures, and a file adasplats.json that identifies
+/// it. Locked during the lifetime of the object.
+class WorkFolder {
+ public:
+  /// Errors: cannot_create (not empty and not a comparison, a comparison of data with another
+  /// title, or used by another run).
+  WorkFolder(const std::filesystem::path& folder, const std::string& title);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  std::filesystem::path work() const { return folder_ / "work"; }
+  std::filesystem::path pictures() const { return folder_ / "pictures"; }
+
+ private:
+  std::filesystem::path folder_;
+  int lock_ = -1;
+};
+
+/// Lets `write` make a new file and replaces `file` only if the bytes differ, so steps that use it
+/// need not be run again.
+void write_if_changed(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+/// One command of adasplats, run as a child process.
 struct Step {
-  std::string name;                            ///< of the files that keep its result
+  std::string name;                            ///< of the files that store its result
   std::vector<std::string> arguments;          ///< of the program, without --report
-  std::vector<std::filesystem::path> inputs;   ///< done again where one of them changes
-  std::vector<std::filesystem::path> outputs;  ///< done again where one is not there
-  std::string device = {};                     ///< done again where it is another one
+  std::vector<std::filesystem::path> inputs;   ///< the step is run again if one changes
+  std::vector<std::filesystem::path> outputs;  ///< ... or if one is missing
+  std::string device = {};                     ///< ... or if it is another one
 };
 
 struct StepResult {
   ChildResult child;
-  nlohmann::ordered_json report;   ///< what --report wrote; null where it failed
+  nlohmann::ordered_json report;   ///< the step's --report; null if it failed
   std::string command;             ///< as a user would type it
   nlohmann::ordered_json made_by;  ///< "version", "commit" and "dirty" of the program, "date"
   bool done() const { return child.end == ChildEnd::done; }
 };
 
-/// The program that runs the steps: the one that is named, else adasplats on PATH. Errors:
-/// no_input.
+/// The program that runs the steps: `named`, or adasplats on PATH. Errors: no_input.
 std::filesystem::path program_of(const std::filesystem::path& named);
 
-/// "version", "commit" and "dirty" of a program, which it gives in a report in `folder`. Errors:
+/// "version", "commit" and "dirty" of a program, which writes a report into `folder`. Errors:
 /// no_input (it cannot be started), usage (it is not adasplats of our version).
 nlohmann::ordered_json build_of_program(const std::filesystem::path& program,
                                         const std::filesystem::path& folder,
@@ -44,17 +69,17 @@ struct StepRules {
   std::filesystem::path program;
   nlohmann::ordered_json made_by;  ///< build_of_program()
   ChildLimits limits;
-  bool retry = false;                              ///< also those that have failed before
-  std::vector<std::string> common_arguments = {};  ///< --threads and --seed, where they are given
+  bool retry = false;                              ///< also run steps that have failed before
+  std::vector<std::string> common_arguments = {};  ///< --threads and --seed, if given
 };
 
-/// Runs steps and remembers in `folder` what has been done: NAME.json with a key of the command,
-/// the program and the inputs' sizes and times, NAME.log with the output. A step whose key is the
-/// same is not run again; one that failed is, where the limit that ended it is now higher or
+/// Runs steps and stores their results in `folder`: NAME.json with a key made from the command, the
+/// program and the sizes and times of the inputs, NAME.log with the output. A step with the same
+/// key is not run again, except one that failed, if the limit that ended it is higher now or
 /// `retry` is set.
 class StepRunner {
  public:
-  /// `progress` hears of every step that is run: "basic: generate".
+  /// `progress` is informed of every step that is run: "basic: generate".
   StepRunner(std::filesystem::path folder, StepRules rules, ProgressSink& progress);
 
   StepResult run(const Step& step) const;

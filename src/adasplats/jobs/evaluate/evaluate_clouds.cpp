@@ -12,8 +12,13 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/progress_meter.h"
-#include "adasplats/jobs/provenance/metrics_json.h"
+#include "adasplats/evaluate/error_points.h"
+#include "adasplats/io/arrays/png.h"
+#include "adasplats/jobs/evaluate/json_values.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/simulate/captions/color_bar.h"
+#include "adasplats/simulate/image/point_image.h"
 
 namespace adasplats {
 namespace {
@@ -23,7 +28,7 @@ std::string class_name(const LabelScheme* scheme, std::uint16_t id) {
   return found == nullptr ? "class " + std::to_string(id) : found->name;
 }
 
-/// The places of the points and the classes that the original has there.
+/// The simulated positions with the classes of the nearest original points.
 PointCloud with_nearest_classes(const PointCloud& simulated, const PointCloud& original,
                                 const Executor& executor) {
   PointCloud points;
@@ -31,6 +36,26 @@ PointCloud with_nearest_classes(const PointCloud& simulated, const PointCloud& o
   points.positions = simulated.positions;
   points.classes = nearest_classes(simulated, original, executor);
   return points;
+}
+
+void write_distance_picture(const CloudPair& clouds, const CloudComparisonJob& job,
+                            Session& session) {
+  constexpr double kFar_m = 0.20;
+  session.progress.begin_step("draw the distances", 0);
+  const PointCloud& simulated = clouds.simulated;
+  const PointCloud& original = clouds.original;
+  const ColorScale& scale = distance_scale();
+  std::vector<Rgb> colors;
+  colors.reserve(simulated.size());
+  for (const float distance_m : distances_to(simulated, original, session.executor))
+    colors.push_back(scale.at(static_cast<double>(distance_m) / kFar_m));
+  Image image = draw_points(simulated.positions, simulated.origin, colors,
+                            camera_of(job.view, shown_part(original.positions, original.origin)),
+                            {}, session.executor);
+  draw_color_bar(image, scale,
+                 {"distance to the points", {{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
+  write_png(job.picture, image.width, image.height, image.pixels);
+  session.progress.end_step();
 }
 
 }  // namespace
@@ -69,6 +94,20 @@ CloudComparison evaluate_clouds(const PointCloud& simulated, const PointCloud& o
   return comparison;
 }
 
+CloudComparison evaluate_clouds(const CloudComparisonJob& job, Session& session) {
+  check(job.view);
+  if (!job.picture.empty()) check_output_file(job.picture);
+  if (!job.errors.empty()) check_output_file(job.errors);
+  CloudPair clouds = load_clouds(job, session);
+  CloudComparison comparison = evaluate_clouds(clouds.simulated, clouds.original, job.by_class,
+                                               clouds.labels ? &*clouds.labels : nullptr, session);
+  if (!job.picture.empty()) write_distance_picture(clouds, job, session);
+  if (!job.errors.empty())
+    write_error_points(job.errors, distance_points(std::move(clouds.simulated), clouds.original,
+                                                   session.executor));
+  return comparison;
+}
+
 double c2c_of_classes(const CloudComparison& comparison, const std::vector<std::string>& names) {
   double sum_m = 0;
   double points = 0;
@@ -79,6 +118,16 @@ double c2c_of_classes(const CloudComparison& comparison, const std::vector<std::
     points += static_cast<double>(distance.simulated_points);
   }
   return points > 0 ? sum_m / points : std::numeric_limits<double>::quiet_NaN();
+}
+
+nlohmann::ordered_json to_json(const CloudDistance& distance) {
+  nlohmann::ordered_json json;
+  json["c2c_m"] = distance.c2c_m;
+  json["completeness_m"] = distance.completeness_m;
+  json["chamfer_m"] = distance.chamfer_m;
+  json["chamfer_m2"] = distance.chamfer_m2;
+  json["f_score"] = json_by_bound(distance.f_score);
+  return json;
 }
 
 nlohmann::ordered_json to_json(const CloudComparison& comparison) {

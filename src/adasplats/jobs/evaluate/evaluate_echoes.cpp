@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/evaluate/evaluate_echoes.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/evaluate/json_values.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {
 
-/// Measured scans of a sequence, and whether they say which beams found nothing.
+/// Measured scans of a sequence. In raw scans of an HDL-64E missing returns can be identified.
 class EchoSequence {
  public:
   EchoSequence(const EchoInputs& inputs, const Executor& executor)
@@ -24,28 +24,28 @@ class EchoSequence {
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
     require_poses_that_fit(sequence_, executor);
     sequence_.beams = recognize_beams(sequence_, executor);
-    if (knows_empty_beams()) {
+    if (has_empty_beams()) {
       set_raw_motions(sequence_.beams, sequence_.trajectory, motion_);
     } else if (!inputs.motion.empty()) {
       require_raw("`motion`");
     }
   }
 
-  /// As the model was (calibrate_held_out).
+  /// Applies the model's calibration (calibrate_held_out).
   void correct(const ModelScene& scene, bool own_motion, ProgressSink& progress) {
     calibrate_held_out(scene, sequence_, progress);
     if (own_motion) motion_ = sequence_.trajectory;
   }
 
-  /// Compensated scans are bent off the grid of beams.
-  bool knows_empty_beams() const {
+  /// Motion compensation moves points off the grid of beams.
+  bool has_empty_beams() const {
     return sequence_.beams.from_hdl64 && sequence_.beams.sweeps_m.empty();
   }
   void require_raw(const std::string& what) const {
-    if (knows_empty_beams()) return;
+    if (has_empty_beams()) return;
     throw Error(ErrorKind::usage,
-                what + " needs scans of an HDL-64E as they were measured; those of " +
-                    sequence_.folder.string() + " are " +
+                what + " needs raw scans of an HDL-64E; those of " + sequence_.folder.string() +
+                    " are " +
                     (sequence_.beams.from_hdl64 ? "motion-compensated" : "of another sensor"));
   }
 
@@ -70,14 +70,10 @@ class EchoSequence {
   Trajectory motion_;
 };
 
-nlohmann::ordered_json number(double value) {
-  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
-}
-
 nlohmann::ordered_json to_json(const DropAccuracy& drop) {
-  return {{"f1", number(drop.f1())},
-          {"precision", number(drop.precision())},
-          {"recall", number(drop.recall())},
+  return {{"f1", finite_or_null(drop.f1())},
+          {"precision", finite_or_null(drop.precision())},
+          {"recall", finite_or_null(drop.recall())},
           {"beams", drop.beams},
           {"empty", drop.empty}};
 }
@@ -97,7 +93,7 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
   EchoResult result;
   result.intensity = intensity_accuracy(EchoSequence::echo_scene(scene), measured.sequence(),
                                         measured.scans(), session.executor, session.progress);
-  if (!measured.knows_empty_beams()) return result;
+  if (!measured.has_empty_beams()) return result;
   const BeamEchoes beams = measured.beams(scene, inputs.sensor, session);
   result.misses = drop_accuracy(beams, nullptr);
   if (!drop_model) return result;
@@ -125,7 +121,7 @@ FitDropResult fit_drop(const EchoInputs& inputs, Session& session) {
 
 nlohmann::ordered_json to_json(const EchoResult& result) {
   nlohmann::ordered_json json;
-  json["intensity"] = {{"rank_correlation", number(result.intensity.rank_correlation)},
+  json["intensity"] = {{"rank_correlation", finite_or_null(result.intensity.rank_correlation)},
                        {"mae", result.intensity.mae},
                        {"rays", result.intensity.rays}};
   if (result.drop) json["drop"] = to_json(*result.drop);

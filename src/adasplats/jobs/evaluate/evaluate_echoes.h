@@ -13,34 +13,34 @@
 
 namespace adasplats {
 
-/// A model and measured scans whose beams are cast into it.
+/// A model, and measured scans whose beams are cast into it.
 struct EchoInputs {
   std::filesystem::path model;
   std::filesystem::path sequence;
   ScanRange scans;               ///< of the sequence
-  std::filesystem::path motion;  ///< poses that say how the sensor of raw scans moved; empty: the
-                                 ///< sequence's own
-  std::string sensor = "velodyne-hdl-64e-kitti";  ///< whose beams are looked for in raw scans
-  bool sensor_is_asked = false;                   ///< then the scans have to be raw
+  std::filesystem::path motion;  ///< poses of the sensor during raw scans; empty: the sequence's
+  std::string sensor = "velodyne-hdl-64e-kitti";  ///< its beams are searched for in raw scans
+  bool sensor_is_asked = false;                   ///< requires raw scans
 };
 
 struct EchoResult {
   IntensityAccuracy intensity;
-  /// Where the scans say which beams found nothing: as they were measured, of an HDL-64E.
+  /// Only for raw scans of an HDL-64E, in which missing returns can be identified.
   std::optional<DropAccuracy> misses;     ///< without a drop model
   std::optional<DropAccuracy> drop;       ///< with it; all beams
-  std::optional<DropAccuracy> unblocked;  ///< with it; without the beams that it says are blocked
+  std::optional<DropAccuracy> unblocked;  ///< with it; without the beams in blocked sectors
 };
 
-/// `drop`: file of a drop model, or empty. Errors: usage (a drop model, but scans that are
-/// motion-compensated or of another sensor).
+/// How well the model predicts intensities, and which beams return no echo. `drop`: file of a drop
+/// model, or empty. Errors: usage (a drop model, but the scans are motion-compensated or of another
+/// sensor).
 EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path& drop,
                            Session& session);
 
 struct FitDropResult {
   RayDropModel model;
   std::size_t scans = 0;
-  DropAccuracy misses;  ///< on the scans that it was fitted to, as the next
+  DropAccuracy misses;  ///< on the scans that it was fitted to, like `drop`
   DropAccuracy drop;
 };
 

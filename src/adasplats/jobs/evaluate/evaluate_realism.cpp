@@ -3,7 +3,6 @@
 #include "adasplats/jobs/evaluate/evaluate_realism.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -13,6 +12,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/scan_residuals.h"
+#include "adasplats/jobs/evaluate/json_values.h"
 #include "adasplats/jobs/evaluate/ring_scans.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/sensors/lidar_model.h"
@@ -22,12 +22,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kResidualPairs = 12;  // of each side: medians of thousands of points
+constexpr std::size_t kResidualPairs = 12;  // per side: each is a median of thousands of points
 constexpr std::size_t kScansAtOnce = 16;    // between two calls of the progress sink
 
 /// One side of the comparison.
 struct Side {
-  std::string name;  ///< as the command line has it
+  std::string name;  ///< of the argument
   KittiSequence sequence;
   std::vector<std::size_t> chosen;
 };
@@ -48,17 +48,17 @@ void require_one_sensor(const Side& simulated, const Side& real) {
     if (!side->sequence.beams.sensor.empty()) continue;
     throw Error(ErrorKind::data,
                 side->name + ", " + side->sequence.folder.string() +
-                    ": the points lie on the beams of no sensor of the library, so its rings "
-                    "cannot be told; simulate with the sensor of the real scans");
+                    ": the points match the beams of no sensor in the library, so its rings "
+                    "cannot be identified; simulate with the sensor of the real scans");
   }
   if (simulated.sequence.beams.sensor == real.sequence.beams.sensor) return;
   throw Error(ErrorKind::data, "SIMULATED is of sensor '" + simulated.sequence.beams.sensor +
                                    "', REAL of '" + real.sequence.beams.sensor +
-                                   "': scans of two sensors are no matter of realism");
+                                   "': scans of different sensors cannot be compared");
 }
 
-RealismScan seen(const Side& side, std::size_t index, std::span<const double> heights_m,
-                 double step_rad) {
+RealismScan realism_scan(const Side& side, std::size_t index, std::span<const double> heights_m,
+                         double step_rad) {
   const KittiScan scan = read_all_returns(side.sequence, index);
   RingScan arranged = arrange_in_rings(side.sequence, index, scan, heights_m);
   count_missing(arranged, step_rad);
@@ -68,14 +68,14 @@ RealismScan seen(const Side& side, std::size_t index, std::span<const double> he
   return {features_of_patches(arranged, step_rad), statistics_of_scan(arranged, step_rad, file)};
 }
 
-std::vector<RealismScan> seen_scans(const Side& side, std::span<const double> heights_m,
-                                    double step_rad, Session& session) {
+std::vector<RealismScan> realism_scans(const Side& side, std::span<const double> heights_m,
+                                       double step_rad, Session& session) {
   std::vector<RealismScan> scans(side.chosen.size());
   session.progress.begin_step(side.name + " scans", scans.size());
   for (std::size_t first = 0; first < scans.size(); first += kScansAtOnce) {
     const std::size_t count = std::min(kScansAtOnce, scans.size() - first);
     session.executor.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
-      scans[first + k] = seen(side, side.chosen[first + k], heights_m, step_rad);
+      scans[first + k] = realism_scan(side, side.chosen[first + k], heights_m, step_rad);
     });
     session.progress.advance(first + count);
   }
@@ -83,7 +83,7 @@ std::vector<RealismScan> seen_scans(const Side& side, std::span<const double> he
   return scans;
 }
 
-double mean_of_known(const std::vector<double>& values) {
+double mean_of_numbers(const std::vector<double>& values) {
   double sum = 0, count = 0;
   for (const double value : values) {
     if (value != value) continue;
@@ -111,19 +111,17 @@ StatisticPair residuals_of(const Side& simulated, const Side& real, Session& ses
       positive.push_back(residuals == &of_simulated ? 1 : 0);
     }
   }
-  return {mean_of_known(of_real), mean_of_known(of_simulated), auc(values, positive)};
+  return {mean_of_numbers(of_real), mean_of_numbers(of_simulated), auc(values, positive)};
 }
 
-Json known_number(double value) { return std::isnan(value) ? Json() : Json(value); }
-
-/// Keys auc, auc_low and auc_high, each by what the test saw.
+/// Keys auc, auc_low and auc_high, each by group of features.
 Json intervals_json(const std::vector<std::optional<AucInterval>>& tests) {
   Json json = {{"auc", Json::object()}, {"auc_low", Json::object()}, {"auc_high", Json::object()}};
   for (std::size_t t = 0; t < tests.size(); ++t) {
     const std::string key(kRealismFeatures[t].first);
-    json["auc"][key] = tests[t] ? known_number(tests[t]->mean) : Json();
-    json["auc_low"][key] = tests[t] ? known_number(tests[t]->low) : Json();
-    json["auc_high"][key] = tests[t] ? known_number(tests[t]->high) : Json();
+    json["auc"][key] = tests[t] ? finite_or_null(tests[t]->mean) : Json();
+    json["auc_low"][key] = tests[t] ? finite_or_null(tests[t]->low) : Json();
+    json["auc_high"][key] = tests[t] ? finite_or_null(tests[t]->high) : Json();
   }
   return json;
 }
@@ -136,9 +134,9 @@ Json test_json(const RealismTest& test) {
 }
 
 Json pair_json(const StatisticPair& pair) {
-  return {{"real", known_number(pair.real)},
-          {"simulated", known_number(pair.simulated)},
-          {"auc", known_number(pair.auc)}};
+  return {{"real", finite_or_null(pair.real)},
+          {"simulated", finite_or_null(pair.simulated)},
+          {"auc", finite_or_null(pair.auc)}};
 }
 
 }  // namespace
@@ -147,7 +145,7 @@ RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   const Side simulated = open_side("SIMULATED", job.simulated, job, session);
   const Side real = open_side("REAL", job.real, job, session);
   if (!job.trajectory.empty() && !needs_trajectory(job.simulated) && !needs_trajectory(job.real))
-    throw Error(ErrorKind::usage, "`trajectory` has no effect: both sides have poses of their own");
+    throw Error(ErrorKind::usage, "`trajectory` has no effect: both sides have their own poses");
   require_one_sensor(simulated, real);
   RealismReport report;
   report.sensor = real.sequence.beams.sensor;
@@ -156,19 +154,18 @@ RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   const std::vector<double> heights_m = laser_heights_m(load_lidar_model(report.sensor));
   report.azimuth_step_rad = firing_step_rad(real.sequence, real.chosen, heights_m, real.name);
   const auto scans_of = [&](const Side& side) {
-    return seen_scans(side, heights_m, report.azimuth_step_rad, session);
+    return realism_scans(side, heights_m, report.azimuth_step_rad, session);
   };
   const std::vector<RealismScan> of_simulated = scans_of(simulated);
   const std::vector<RealismScan> of_real = scans_of(real);
-  session.progress.begin_step("tell them apart", 0);
+  session.progress.begin_step("distinguish them", 0);
   static_cast<RealismResult&>(report) =
       compare_realism(of_simulated, of_real, session.seed, session.executor);
   session.progress.end_step();
   for (std::size_t t = 0; t < std::size(kRealismFeatures); ++t)
     if (!report.simulated_real.trees[t])
-      session.progress.warn("one of the sides has no values of '" +
-                            std::string(kRealismFeatures[t].first) +
-                            "', so that takes no part in the tests");
+      session.progress.warn("one side has no features of the group '" +
+                            std::string(kRealismFeatures[t].first) + "', so the tests ignore it");
   report.plane_residual_m = residuals_of(simulated, real, session);
   return report;
 }

@@ -13,25 +13,25 @@
 
 namespace adasplats {
 
-/// Two sets of scans of one sensor.
+/// Can simulated scans be distinguished from real ones? Two sets of scans of one sensor.
 struct RealismJob {
   std::filesystem::path simulated, real;
-  ScanRange scans;  ///< of each of them
-  /// Poses of a folder of files, one a scan, without a poses.csv in it (FrameDrive); else empty.
+  ScanRange scans;  ///< of each set
+  /// Poses for a folder of files, one per scan, without a poses.csv (FrameDrive); else empty.
   std::filesystem::path trajectory;
 };
 
 struct RealismReport : RealismResult {
-  std::string sensor;           ///< whose beams both sides' points lie on
-  double azimuth_step_rad = 0;  ///< between firings of a ring, of REAL
+  std::string sensor;           ///< recognised from the points of both sides
+  double azimuth_step_rad = 0;  ///< between firings of a ring, from REAL
   std::size_t simulated_scans = 0, real_scans = 0;
-  StatisticPair plane_residual_m;  ///< of scans against the next ones (scan_residuals_m)
+  StatisticPair plane_residual_m;  ///< of each scan to the next one (scan_residuals_m)
 };
 
 /// Reads both sides in the same way and compares them (compare_realism). Rings are those of the
-/// sensor that is recognised by the points alone. Errors: usage (a file; a folder of scans without
-/// poses), data (too few scans; a side whose sensor is not recognised; two sensors; scans that say
-/// nothing of the azimuths), those of the readers.
+/// sensor recognised from the points alone. Errors: usage (a file; a folder of scans without
+/// poses), data (too few scans; a sensor that is not recognised; two sensors; no azimuth step),
+/// those of the readers.
 RealismReport evaluate_realism(const RealismJob& job, Session& session);
 
 /// The keys of --report.

@@ -2,17 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
-#include "adasplats/evaluate/register_scans.h"
+#include "adasplats/evaluate/error_points.h"
+#include "adasplats/io/arrays/png.h"
 #include "adasplats/io/packets/capture_reader.h"
-#include "adasplats/jobs/provenance/metrics_json.h"
+#include "adasplats/jobs/evaluate/evaluate_clouds.h"
+#include "adasplats/jobs/evaluate/json_values.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/simulate/captions/color_bar.h"
+#include "adasplats/simulate/image/point_image.h"
 
 namespace adasplats {
 namespace {
@@ -35,24 +43,64 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   return chosen;
 }
 
-/// A folder of scans with a trajectory. Their classes are of no known scheme, so none take part.
+/// A folder of scans with a trajectory. The scheme of their classes is unknown, so classes are not
+/// read.
 KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
   if (!scans.motion.empty())
     throw Error(ErrorKind::usage,
-                "`motion` is for raw scans of a sequence; these have a trajectory");
+                "`motion` is for raw scans of a sequence; these scans have a trajectory");
   if (is_kitti_sequence(scans.sequence))
     throw Error(ErrorKind::usage, scans.sequence.string() +
-                                      ": has poses of its own; `trajectory` is for a folder of "
-                                      "scans, one a file");
+                                      ": has its own poses; `trajectory` is for a folder of "
+                                      "scans, one per file");
   FrameDrive given = drive_of(scans.sequence, scans);
   given.with_classes = false;
   auto drive = open_frame_drive(given, session.executor, session.progress);
   if (!drive)
     throw Error(ErrorKind::data, scans.sequence.string() +
-                                     ": where its beams began is not known: it is no folder of "
-                                     "scans with a pose each, nor of points with times of a sensor "
-                                     "that is recognised, so they cannot be cast again");
+                                     ": beams cannot be cast again, because their origins are "
+                                     "unknown; give a folder of scans with a pose each, or points "
+                                     "with times of a recognised sensor");
   return std::move(*drive);
+}
+
+/// Of scans as they are cast; `of_model`: how many of them the model was made from. Warns if any.
+Lidar4dEvaluation evaluate_lidar4d(const ModelScene& scene, const KittiSequence& sequence,
+                                   std::optional<std::size_t> of_model, Session& session) {
+  if (of_model.value_or(0) > 0)
+    session.progress.warn("the model was made from " + std::to_string(*of_model) + " of the " +
+                          std::to_string(sequence.scans.size()) +
+                          " scans that it is compared with, so these are not held-out figures");
+  return {evaluate_lidar4d(scene.tracer(), scene.attributes(), scene.origin(), sequence,
+                           session.executor, session.progress),
+          of_model};
+}
+
+void write_beam_picture(const ResimulateJob& job, const ScanErrors& scan, Session& session) {
+  constexpr double kWrong_m = 0.50;
+  constexpr Rgb kNoHit = {120, 120, 120};
+  session.progress.begin_step("draw a scan", 0);
+  const ColorScale& scale = signed_scale();
+  std::vector<Rgb> colors;
+  colors.reserve(scan.errors_m.size());
+  for (const float error_m : scan.errors_m) {
+    const double share = 0.5 + 0.5 * static_cast<double>(error_m) / kWrong_m;
+    colors.push_back(std::isnan(error_m) ? kNoHit : scale.at(share));
+  }
+  Camera camera = look_at({-16, 0, 11}, {9, 0, -1});  // sensor frame, x ahead
+  camera.width = job.picture_width;
+  camera.height = job.picture_width * 9 / 16;
+  PointImageOptions options;
+  options.background = {22, 22, 26};  // dark, because points without error are white
+  options.point_size_m = 0.08;
+  options.relief = false;  // it would draw an edge around every ring
+  Image image = draw_points(scan.measured, {}, colors, camera, options, session.executor);
+  draw_color_bar(image, scale,
+                 {"predicted less measured range, cm",
+                  {{0, "-50 early"}, {0.5, "0"}, {1, "late +50"}},
+                  {{kNoHit, "no hit"}}});
+  write_png(job.picture, image.width, image.height, image.pixels);
+  session.progress.end_step();
 }
 
 }  // namespace
@@ -66,7 +114,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   if (!is_capture(scans.sequence) && !scans.packets_of.empty())
     throw Error(ErrorKind::usage, "`packets_of` is for a capture of packets (.pcap, .pcapng)");
   if (!is_drive && !scans.boxes.empty())
-    throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
+    throw Error(ErrorKind::usage, "`boxes` need scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
                              !(scans.mount_rotation_deg == Vec3d{}) ||
                              scans.points_in != PointsIn::found ||
@@ -81,8 +129,8 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   if (!scans.beams_from_poses) all.beams = recognize_beams(all, session.executor);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())
-      throw Error(ErrorKind::usage, "`motion` is for scans as they were measured; those of " +
-                                        all.folder.string() + " are motion-compensated");
+      throw Error(ErrorKind::usage, "`motion` is for raw scans; those of " + all.folder.string() +
+                                        " are motion-compensated");
     set_raw_motions(all.beams, all.trajectory, load_trajectory(scans.motion));
   }
   return with_scans(std::move(all), scans.scans);
@@ -93,7 +141,7 @@ HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence
   const SplatModel* model = scene.splats();
   if (model == nullptr || model->calibration.empty()) return HeldOutPoses::as_given;
   if (apply(model->calibration, sequence)) return HeldOutPoses::interpolated;
-  progress.warn(not_of_calibrated_drive(sequence.folder) + ", so their poses are taken as given");
+  progress.warn(not_of_calibrated_drive(sequence.folder) + "; their poses are used as given");
   return HeldOutPoses::not_covered;
 }
 
@@ -101,6 +149,20 @@ std::string not_of_calibrated_drive(const std::filesystem::path& folder) {
   return folder.string() +
          ": its scans are not of the drive that the model was calibrated with (by their times and "
          "places)";
+}
+
+std::optional<std::size_t> scans_of_model(const ModelScene& scene, const KittiSequence& given) {
+  const SplatModel* model = scene.splats();
+  if (model == nullptr || model->calibration.poses.empty()) return {};
+  // Both come from one file, but models store times and positions as text.
+  constexpr double kSameTime_s = 1e-4, kSamePlace_m = 1e-3;
+  const auto is_of_model = [&](const TimedPose& pose) {
+    return std::ranges::any_of(model->calibration.poses, [&](const PoseCorrection& of_model) {
+      return std::fabs(of_model.time_s - pose.time_s) < kSameTime_s &&
+             length(of_model.position - pose.world_from_sensor.translation) < kSamePlace_m;
+    });
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(given.trajectory, is_of_model));
 }
 
 HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,
@@ -130,24 +192,111 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
   return result;
 }
 
-namespace {
-
-/// Null of what is not known.
-nlohmann::ordered_json known(double value) {
-  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+HeldOutResult evaluate_resimulation(const ResimulateJob& job, Session& session) {
+  require_input(job.model);
+  if (!job.picture.empty()) check_output_file(job.picture);
+  if (!job.errors.empty()) check_output_file(job.errors);
+  load_label_scheme(job.labels);  // report its errors before long work
+  KittiSequence sequence = open_held_out(job, session);
+  if (sequence.labels.empty() && job.options.drop_movable) {
+    throw Error(ErrorKind::usage,
+                "`drop_movable` has no effect: " + sequence.folder.string() + " has no labels");
+  }
+  const ModelScene scene(job.model, "", session);
+  HeldOutExtras extras = job.extras;
+  if (!job.picture.empty() || !job.errors.empty()) extras.keep = KeepBeams::yes;
+  HeldOutResult result =
+      evaluate_resimulation(scene, sequence, job.labels, job.options, extras, session);
+  if (!job.picture.empty())
+    write_beam_picture(job, result.errors[sequence.scans.size() / 2], session);
+  if (!job.errors.empty())
+    write_error_points(job.errors, beam_points(std::move(result.errors), sequence.trajectory,
+                                               scene.view().primitive_count()));
+  return result;
 }
+
+namespace {
 
 nlohmann::ordered_json returns_json(const BeamReturns& returns) {
   return {{"returned_beams", returns.returned},
-          {"holes", known(returns.holes)},
+          {"holes", finite_or_null(returns.holes)},
           {"empty_beams", returns.empty},
-          {"ghosts", known(returns.ghosts)},
-          {"precision", known(returns.precision)},
-          {"recall", known(returns.recall)},
-          {"f1", known(returns.f1)}};
+          {"ghosts", finite_or_null(returns.ghosts)},
+          {"precision", finite_or_null(returns.precision)},
+          {"recall", finite_or_null(returns.recall)},
+          {"f1", finite_or_null(returns.f1)}};
+}
+
+nlohmann::ordered_json error_json(const ImageError& error) {
+  return {{"rmse", error.rmse},
+          {"medae", error.medae},
+          {"ssim", finite_or_null(error.ssim)},
+          {"psnr_db", finite_or_null(error.psnr_db)}};
+}
+
+nlohmann::ordered_json layout_json(const PanoramaLayout& layout) {
+  return {{"rows", layout.rows},
+          {"columns", layout.columns},
+          {"top_deg", layout.top_rad / kDegree},
+          {"span_deg", layout.span_rad / kDegree},
+          {"max_range_m", layout.max_range_m}};
 }
 
 }  // namespace
+
+nlohmann::ordered_json to_json(const BeamAccuracy& accuracy) {
+  nlohmann::ordered_json json;
+  json["rays"] = accuracy.rays;
+  json["no_hit"] = accuracy.no_hit;
+  json["early_50cm"] = accuracy.early_50cm;
+  json["late_50cm"] = accuracy.late_50cm;
+  json["within"] = json_by_bound(accuracy.within);
+  json["range_error_m"] = {{"median", accuracy.median_m}, {"mae", accuracy.mae_m},
+                           {"rmse", accuracy.rmse_m},     {"p90", accuracy.p90_m},
+                           {"bias", accuracy.bias_m},     {"spread", accuracy.spread_m}};
+  return json;
+}
+
+nlohmann::ordered_json to_json(const ResimulateResult& result) {
+  nlohmann::ordered_json json = to_json(result.all);
+  json.update(to_json(result.clouds));
+  json["beams"] = result.beams;
+  const auto add = [&](const char* key, const auto& parts) {
+    json[key] = nlohmann::ordered_json::object();
+    for (const auto& [name, accuracy] : parts) json[key][name] = to_json(accuracy);
+  };
+  add("by_range", result.by_range);
+  add("by_incidence", result.by_incidence);
+  add("by_class", result.by_class);
+  add("by_elevation", result.by_elevation);
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Lidar4dEvaluation& result) {
+  nlohmann::ordered_json json = {{"protocol", "LiDAR4D (CVPR 2024)"},
+                                 {"comparable", kLidar4dComparable},
+                                 {"differs", kLidar4dDiffers},
+                                 {"scans", result.scans},
+                                 {"scans_of_model", nullptr},
+                                 {"range_image", layout_json(result.layout)},
+                                 {"depth_m", error_json(result.depth)},
+                                 {"intensity", nullptr},
+                                 {"intensity_scale", nullptr},
+                                 {"ray_drop",
+                                  {{"rmse", result.drop.rmse},
+                                   {"accuracy", result.drop.accuracy},
+                                   {"f_score", result.drop.f_score}}},
+                                 {"points",
+                                  {{"chamfer_m2", finite_or_null(result.chamfer_m2)},
+                                   {"f_score", finite_or_null(result.f_score_224mm)},
+                                   {"f_score_5cm", finite_or_null(result.f_score_5cm)}}}};
+  if (result.scans_of_model) json["scans_of_model"] = *result.scans_of_model;
+  if (result.intensity) {
+    json["intensity"] = error_json(*result.intensity);
+    json["intensity_scale"] = result.intensity_scale;
+  }
+  return json;
+}
 
 nlohmann::ordered_json to_json(const HeldOutResult& result) {
   nlohmann::ordered_json json = to_json(static_cast<const ResimulateResult&>(result));

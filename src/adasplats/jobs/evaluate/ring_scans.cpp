@@ -15,7 +15,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kStepScans = 8;  // that tell the azimuth step: they agree to 1 %
+constexpr std::size_t kStepScans = 8;  // for the azimuth step: they agree to 1 %
 
 }  // namespace
 
@@ -35,7 +35,8 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
     return open_frame_drive(drive, session.executor, session.progress).value();
   }
   if (!std::filesystem::is_directory(given))
-    throw Error(ErrorKind::usage, given.string() + ": is a file; scans are a sequence or a folder");
+    throw Error(ErrorKind::usage,
+                given.string() + ": is a file, expected a sequence or a folder of scans");
   const std::filesystem::path folder = resolve_cloud_input(given);
   if (is_kitti_sequence(folder)) {
     KittiSequence sequence = open_kitti_sequence(folder);
@@ -49,14 +50,14 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
   drive.with_classes = false;
   if (drive.trajectory.empty())
     throw Error(ErrorKind::usage, given.string() +
-                                      ": scans without poses; they need a poses.csv beside them "
-                                      "or a `trajectory`");
+                                      ": the scans have no poses; add a poses.csv to the folder or "
+                                      "give a `trajectory`");
   auto opened = open_frame_drive(drive, session.executor, session.progress);
   if (!opened)
     throw Error(ErrorKind::data,
                 given.string() +
-                    ": is no folder of scans with a pose each, so nothing tells which "
-                    "beam measured a point");
+                    ": is not a folder of scans with a pose each, so points cannot be "
+                    "assigned to beams");
   return std::move(*opened);
 }
 
@@ -80,11 +81,12 @@ double firing_step_rad(const KittiSequence& sequence, std::span<const std::size_
     if (step_rad > 0) steps_rad.push_back(step_rad);
   }
   const double step_rad = median_of_known(std::move(steps_rad));
-  // A turn of less than 64 steps has no patch; finer ones than 0.01 degrees no LiDAR has.
+  // A turn of fewer than 64 steps has no patch; no LiDAR has steps below 0.01 degrees.
   if (step_rad > 0.01 * kDegree && step_rad < 360 * kDegree / static_cast<double>(kPatchColumns))
     return step_rad;
   throw Error(ErrorKind::data, name + ", " + sequence.folder.string() +
-                                   ": nothing tells how far a ring's firings are apart");
+                                   ": the azimuth step between a ring's firings cannot be "
+                                   "estimated");
 }
 
 }  // namespace adasplats

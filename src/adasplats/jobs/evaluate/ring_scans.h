@@ -13,21 +13,20 @@
 
 namespace adasplats {
 
-/// Scans whose points tell which ring measured them: a sequence, or a folder of files, one a scan,
-/// with a poses.csv in it or a `trajectory`. The sensor is recognised where it can be
-/// (ScanBeams::sensor). Errors: usage (a file; scans without poses), data (no folder of scans),
-/// those of the readers.
+/// Scans whose points can be assigned to rings: a sequence, or a folder of files, one per scan,
+/// with a poses.csv or a `trajectory`. The sensor is recognised if possible (ScanBeams::sensor).
+/// Errors: usage (a file; scans without poses), data (not a folder of scans), those of the readers.
 KittiSequence open_ring_scans(const std::filesystem::path& given,
                               const std::filesystem::path& trajectory, Session& session);
 
-/// Whether scans have no poses of their own, so that a trajectory is for them.
+/// Whether scans have no poses of their own.
 bool needs_trajectory(const std::filesystem::path& given);
 
-/// Where each laser leaves above the sensor's origin, m, topmost first.
+/// Height of each laser above the sensor's origin, m, topmost first.
 std::vector<double> laser_heights_m(const LidarModel& sensor);
 
-/// How far firings of a ring are apart in the `chosen` scans. Error: data (nothing tells it; the
-/// message begins with `name`).
+/// Azimuth between firings of a ring in the `chosen` scans. Errors: data (it cannot be estimated;
+/// the message begins with `name`).
 double firing_step_rad(const KittiSequence& sequence, std::span<const std::size_t> chosen,
                        std::span<const double> heights_m, const std::string& name);
 

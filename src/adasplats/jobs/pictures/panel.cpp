@@ -8,7 +8,6 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/evaluate/splat_errors.h"
 #include "adasplats/jobs/pictures/panel_legend.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/report/text_format.h"

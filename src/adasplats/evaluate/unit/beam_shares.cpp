@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/unit/damp_shares.h"
+#include "adasplats/evaluate/unit/beam_shares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,19 +14,20 @@ namespace {
 
 constexpr std::size_t kMaxTriples = 400'000;
 
-/// Share of the middle one of three, drawn to their mean. `keeps`: what is left of its distance.
+/// Share of the middle one of three, moved towards their mean. `keeps`: remaining part of its
+/// distance.
 float damped_share(float before, float share, float behind, double keeps) {
   const auto mean = static_cast<double>((before + share + behind) / 3);
   return static_cast<float>(mean + keeps * (static_cast<double>(share) - mean));
 }
 
-/// Three neighbours on one surface, and others of their ring, half a turn away, whose shares they
-/// are given.
+/// Three neighbours on one surface, and three others of their ring, half a turn away, whose shares
+/// are applied to them.
 struct SharedTriple {
   std::size_t first, other;
 };
 
-bool is_told(std::span<const float> shares, std::size_t begin, std::size_t end) {
+bool are_known(std::span<const float> shares, std::size_t begin, std::size_t end) {
   return std::all_of(shares.begin() + static_cast<std::ptrdiff_t>(begin),
                      shares.begin() + static_cast<std::ptrdiff_t>(end),
                      [](float share) { return share == share; });
@@ -40,8 +41,8 @@ std::vector<SharedTriple> triples_of(std::span<const UnitBeam> beams,
     const std::size_t half = (end - begin) / 2;
     for (std::size_t i = begin; i + 2 < begin + half && end - begin > 10; ++i) {
       const std::size_t other = i + half;
-      if (on_one_surface(beams[i], beams[i + 1], beams[i + 2]) && is_told(shares, i, i + 3) &&
-          other > begin && other + 4 < end && is_told(shares, other - 1, other + 4))
+      if (on_one_surface(beams[i], beams[i + 1], beams[i + 2]) && are_known(shares, i, i + 3) &&
+          other > begin && other + 4 < end && are_known(shares, other - 1, other + 4))
         triples.push_back({i, other});
     }
   }
@@ -50,8 +51,6 @@ std::vector<SharedTriple> triples_of(std::span<const UnitBeam> beams,
   for (std::size_t k = 0; k < triples.size(); k += stride) chosen.push_back(triples[k]);
   return chosen;
 }
-
-float second_difference_of(float a, float b, float c) { return std::fabs(a - 2 * b + c); }
 
 }  // namespace
 
@@ -66,7 +65,7 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
   for (const SharedTriple& triple : triples) {
     const UnitBeam* const three = &beams[triple.first];
     measured.push_back(
-        second_difference_of(three[0].intensity, three[1].intensity, three[2].intensity));
+        second_difference(three[0].intensity, three[1].intensity, three[2].intensity));
   }
   const double noise = noise_of_second_differences(measured);
   const IntensityRules rules = intensity_rules(unit);
@@ -82,11 +81,11 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
             textured(rules, level_of(rules, beam.ring, beam.expected_intensity),
                      static_cast<double>(damped_share(share[-1], share[0], share[1], keeps))));
       }
-      made.push_back(second_difference_of(values[0], values[1], values[2]));
+      made.push_back(second_difference(values[0], values[1], values[2]));
     }
     return noise_of_second_differences(made);
   };
-  // Less than the converter's steps tell apart is no difference.
+  // Differences below a fraction of the converter's step are ignored.
   if (noise_with(1) <= noise + kOfAStep * unit.step) return 1;
   double low = 0, high = 1;
   for (int k = 0; k < kHalvings; ++k) {
@@ -95,7 +94,7 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
   }
   const std::vector<float> before = shares;
   for (std::size_t i = 1; i + 1 < shares.size(); ++i)
-    if (same_ring(beams[i - 1], beams[i + 1]) && is_told(before, i - 1, i + 2))
+    if (same_ring(beams[i - 1], beams[i + 1]) && are_known(before, i - 1, i + 2))
       shares[i] = damped_share(before[i - 1], before[i], before[i + 1], low);
   return low;
 }

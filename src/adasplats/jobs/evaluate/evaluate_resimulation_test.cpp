@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/jobs/evaluate/held_out_protocol.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ TimedPose pose_at(double time_s, double x) {
   return pose;
 }
 
-// Oracle: the scans that the calibration lists. Time alone and place alone are another scan's.
-TEST(HeldOutProtocol, ScansOfTheModelAreToldByTimeAndPlace) {
+// Oracle: the scans listed in the calibration. Time alone or position alone is no match.
+TEST(HeldOutProtocol, ScansOfTheModelMatchByTimeAndPosition) {
   OwnSession session(on_cpu(), 1);
   const ModelScene scene(calibrated_model(), std::nullopt, session);
   KittiSequence sequence;
@@ -47,7 +47,7 @@ TEST(HeldOutProtocol, ScansOfTheModelAreToldByTimeAndPlace) {
   EXPECT_FALSE(scans_of_model(unknown, sequence).has_value());
 }
 
-TEST(HeldOutProtocol, WhatIsNotKnownIsNullAndWhatDiffersIsSaid) {
+TEST(HeldOutProtocol, UnknownValuesAreNullAndDifferencesAreListed) {
   Lidar4dEvaluation result;
   result.depth.psnr_db = std::numeric_limits<double>::infinity();
   result.chamfer_m2 = std::nan("");
