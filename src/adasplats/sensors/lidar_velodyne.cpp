@@ -11,9 +11,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <pugixml.hpp>
 #include <string>
 
-#include "adasplats/io/e57/xml.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
 
@@ -234,49 +234,43 @@ std::vector<int> laser_ids(const Calibration& calibration) {
   return ids;
 }
 
-/// The child of an element that must be there.
-const XmlElement& needed_child(const XmlElement& parent, const char* name,
-                               const std::filesystem::path& path) {
-  if (const XmlElement* const child = parent.child(name)) return *child;
-  throw data_error(
-      {path, std::nullopt, std::nullopt},
-      "no <" + std::string(name) + "> in <" + parent.name + ">: not a Velodyne calibration");
+/// A child that the format requires.
+pugi::xml_node required_child(pugi::xml_node parent, const char* name,
+                              const std::filesystem::path& path) {
+  if (const pugi::xml_node child = parent.child(name)) return child;
+  throw data_error({path, std::nullopt, std::nullopt}, "no <" + std::string(name) + "> in <" +
+                                                           parent.name() +
+                                                           ">: not a Velodyne calibration");
 }
 
-/// Puts the number of a child, in other units, where it is there.
-void put_xml_number(const XmlElement& parent, const char* child_name, double unit, const char* key,
+/// Stores the number of a child, converted to our unit, if the child exists.
+void put_xml_number(pugi::xml_node parent, const char* child_name, double unit, const char* key,
                     const FilePlace& place, std::map<std::string, double, std::less<>>& values) {
-  if (const XmlElement* const child = parent.child(child_name))
-    values[key] = unit * finite_number(child->text, child_name, place);
+  if (const pugi::xml_node child = parent.child(child_name))
+    values[key] = unit * finite_number(child.text().get(), child_name, place);
 }
 
-/// The lasers of db.xml that are enabled.
-Calibration xml_calibration(std::string text, const std::filesystem::path& path) {
+/// The enabled lasers of db.xml.
+Calibration xml_calibration(const std::string& text, const std::filesystem::path& path) {
   constexpr double kCentimetre_m = 0.01, kDegree_rad = std::numbers::pi / 180;
   const FilePlace place{path, std::nullopt, std::nullopt};
-  // Of a document type nothing is needed; lines stay where they are.
-  const std::size_t type = text.find("<!DOCTYPE");
-  if (type != std::string::npos)
-    for (std::size_t k = type; k < text.size() && text[k] != '\n'; ++k) {
-      const bool is_end = text[k] == '>';
-      text[k] = ' ';
-      if (is_end) break;
-    }
-  const XmlElement root = parse_xml(path, text);
-  const XmlElement& database = needed_child(root, "DB", path);
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed =
+      document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata,
+                           pugi::encoding_utf8);
+  if (!parsed) throw data_error(place, std::string("no well-formed XML: ") + parsed.description());
+  const pugi::xml_node database = required_child(document.document_element(), "DB", path);
   std::vector<bool> enabled;
-  if (const XmlElement* const list = database.child("enabled_"))
-    for (const XmlElement& one : list->children)
-      if (one.name == "item") enabled.push_back(one.text != "0");
+  for (const pugi::xml_node one : database.child("enabled_").children("item"))
+    enabled.push_back(std::string_view(one.text().get()) != "0");
   Calibration calibration;
   put_xml_number(database, "distLSB_", kCentimetre_m, "distance_resolution", place,
                  calibration.header);
   std::size_t index = 0;
-  for (const XmlElement& item : needed_child(database, "points_", path).children) {
-    if (item.name != "item") continue;
+  for (const pugi::xml_node item : required_child(database, "points_", path).children("item")) {
     const std::size_t number = index++;
     if (number < enabled.size() && !enabled[number]) continue;
-    const XmlElement& values = needed_child(item, "px", path);
+    const pugi::xml_node values = required_child(item, "px", path);
     Laser laser{{}, place};
     put_xml_number(values, "id_", 1, "laser_id", place, laser.values);
     put_xml_number(values, "rotCorrection_", kDegree_rad, "rot_correction", place, laser.values);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
