@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Models of real drives, units of their sensors fitted in them, and scans that such a unit simulates
-at the poses of the real ones: what realism.py, scan_unfolding.py and segmentation_transfer.py share.
+"""For realism.py: models of real drives, calibrated sensors fitted in them, and scans that these
+sensors simulate at the poses of the real ones.
 
 REAL_DATA has kitti-0005, semantickitti-labelled and pandaset-002 as unpacked; what is missing is
 left out. A place of SemanticKITTI is never judged by a unit that was fitted to it.

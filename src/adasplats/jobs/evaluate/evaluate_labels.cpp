@@ -10,7 +10,6 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
