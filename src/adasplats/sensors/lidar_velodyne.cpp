@@ -238,9 +238,9 @@ std::vector<int> laser_ids(const Calibration& calibration) {
 pugi::xml_node required_child(pugi::xml_node parent, const char* name,
                               const std::filesystem::path& path) {
   if (const pugi::xml_node child = parent.child(name)) return child;
-  throw data_error({path, std::nullopt, std::nullopt}, "no <" + std::string(name) + "> in <" +
-                                                           parent.name() +
-                                                           ">: not a Velodyne calibration");
+  throw data_error(
+      {path, std::nullopt, std::nullopt},
+      "no <" + std::string(name) + "> in <" + parent.name() + ">: not a Velodyne calibration");
 }
 
 /// Stores the number of a child, converted to our unit, if the child exists.
@@ -255,9 +255,8 @@ Calibration xml_calibration(const std::string& text, const std::filesystem::path
   constexpr double kCentimetre_m = 0.01, kDegree_rad = std::numbers::pi / 180;
   const FilePlace place{path, std::nullopt, std::nullopt};
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed =
-      document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata,
-                           pugi::encoding_utf8);
+  const pugi::xml_parse_result parsed = document.load_buffer(
+      text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata, pugi::encoding_utf8);
   if (!parsed) throw data_error(place, std::string("no well-formed XML: ") + parsed.description());
   const pugi::xml_node database = required_child(document.document_element(), "DB", path);
   std::vector<bool> enabled;
