@@ -129,7 +129,7 @@ Vec3d random_unit(Random& random) {
 }
 
 /// Where a random scene lies and how large its primitives are.
-struct Backend {
+struct Layout {
   std::uint64_t seed;
   Vec3d center;
   double half_m;
@@ -145,11 +145,11 @@ struct Backend {
 };
 
 /// A fifth of the disks faces an axis exactly; a tenth is the same as the one before.
-std::vector<Disk> random_disks(const Backend& place, std::size_t count) {
+std::vector<Disk> random_disks(const Layout& layout, std::size_t count) {
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < count; ++i) {
-    Random random(place.seed, 0, i);
-    Disk disk = {vec_cast<float>(place.point(random)), static_cast<float>(place.size(random)),
+    Random random(layout.seed, 0, i);
+    Disk disk = {vec_cast<float>(layout.point(random)), static_cast<float>(layout.size(random)),
                  vec_cast<float>(random_unit(random))};
     if (random.uniform() < 0.2) {
       disk.normal = {};
@@ -161,12 +161,12 @@ std::vector<Disk> random_disks(const Backend& place, std::size_t count) {
 }
 
 /// Pairs of triangles with a common edge, some of them flat in an axis.
-TriangleMesh random_mesh(const Backend& place, std::size_t count) {
+TriangleMesh random_mesh(const Layout& layout, std::size_t count) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; 2 * i < count; ++i) {
-    Random random(place.seed, 1, i);
-    const Vec3d middle = place.point(random);
-    const double size_m = place.size(random);
+    Random random(layout.seed, 1, i);
+    const Vec3d middle = layout.point(random);
+    const double size_m = layout.size(random);
     const bool flat = random.uniform() < 0.3;
     for (int corner = 0; corner < 4; ++corner) {
       Vec3d offset = size_m * random_unit(random);
@@ -192,11 +192,11 @@ std::vector<Disk> targets_of(const SceneView& scene) {
 }
 
 /// A ray of the i-th kind that traversals get wrong, at a target.
-Ray awkward_ray(std::size_t kind, const Disk& target, const Backend& place, Random& random) {
+Ray awkward_ray(std::size_t kind, const Disk& target, const Layout& layout, Random& random) {
   const Vec3d c = vec_cast<double>(target.center), n = vec_cast<double>(target.normal);
   const Vec3d in_plane = normalized(cross(n, random_unit(random)));
   const double r = static_cast<double>(target.radius);
-  Vec3d origin = place.point(random, 1.5);
+  Vec3d origin = layout.point(random, 1.5);
   Vec3d d = random_unit(random);
   double range = 0;
   switch (kind % 8) {
@@ -204,15 +204,15 @@ Ray awkward_ray(std::size_t kind, const Disk& target, const Backend& place, Rand
     case 1:         // along an axis
       d = {};
       d[static_cast<int>(random.next_bits() % 3)] = random.uniform() < 0.5 ? -1 : 1;
-      origin = c - place.half_m * d;
+      origin = c - layout.half_m * d;
       break;
     case 2:  // in the plane of the target
       d = in_plane;
-      origin = c - place.half_m * d;
+      origin = c - layout.half_m * d;
       break;
     case 3:  // grazing it
       d = normalized(in_plane + std::pow(10.0, random.uniform(-6, -1)) * n);
-      origin = c - random.uniform(0.1, 1.5) * place.half_m * d;
+      origin = c - random.uniform(0.1, 1.5) * layout.half_m * d;
       break;
     case 4: d = normalized(c + r * in_plane - origin); break;  // at the rim
     case 5:                                                    // ends near the target
@@ -232,13 +232,13 @@ Ray awkward_ray(std::size_t kind, const Disk& target, const Backend& place, Rand
   return ray;
 }
 
-std::vector<Ray> awkward_rays(const Backend& place, const SceneView& scene, std::size_t count) {
+std::vector<Ray> awkward_rays(const Layout& layout, const SceneView& scene, std::size_t count) {
   const std::vector<Disk> targets = targets_of(scene);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < count; ++i) {
-    Random random(place.seed, 2, i);
+    Random random(layout.seed, 2, i);
     const Disk& target = targets[random.next_bits() % targets.size()];
-    rays.push_back(awkward_ray(i, target, place, random));
+    rays.push_back(awkward_ray(i, target, layout, random));
   }
   return rays;
 }
@@ -302,55 +302,55 @@ class ComparedScene : public DeviceScene {
   }
 };
 
-constexpr std::array kPlaces = {
-    Backend{1, {0, 0, 0}, 5, 0.05, 2},          // as a room
-    Backend{2, {300, -200, 80}, 40, 0.02, 30},  // off the origin
-    Backend{3, {0, 0, 0}, 200, 0.01, 100},      // sizes of four orders
-    Backend{4, {0, 0, 0}, 0.05, 1e-3, 0.02},    // tiny
+constexpr std::array kLayouts = {
+    Layout{1, {0, 0, 0}, 5, 0.05, 2},          // as a room
+    Layout{2, {300, -200, 80}, 40, 0.02, 30},  // off the origin
+    Layout{3, {0, 0, 0}, 200, 0.01, 100},      // sizes of four orders
+    Layout{4, {0, 0, 0}, 0.05, 1e-3, 0.02},    // tiny
 };
 
 TEST_P(ComparedScene, DisksAreHitAsByBruteForce) {
-  for (const Backend& place : kPlaces) {
-    SCOPED_TRACE("place " + std::to_string(place.seed));
-    const auto disks = random_disks(place, 400);
+  for (const Layout& layout : kLayouts) {
+    SCOPED_TRACE("layout " + std::to_string(layout.seed));
+    const auto disks = random_disks(layout, 400);
     const SceneView scene = {disks, nullptr};
-    expect_oracle(scene, awkward_rays(place, scene, 20'000));
+    expect_oracle(scene, awkward_rays(layout, scene, 20'000));
   }
 }
 
 TEST_P(ComparedScene, TrianglesAreHitAsByBruteForce) {
-  for (const Backend& place : kPlaces) {
-    SCOPED_TRACE("place " + std::to_string(place.seed));
-    const auto mesh = random_mesh(place, 400);
+  for (const Layout& layout : kLayouts) {
+    SCOPED_TRACE("layout " + std::to_string(layout.seed));
+    const auto mesh = random_mesh(layout, 400);
     const SceneView scene = {{}, &mesh};
-    expect_oracle(scene, awkward_rays(place, scene, 20'000));
+    expect_oracle(scene, awkward_rays(layout, scene, 20'000));
   }
 }
 
 TEST_P(ComparedScene, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
-  for (const Backend& place : kPlaces) {
-    SCOPED_TRACE("place " + std::to_string(place.seed));
-    const auto disks = random_disks(place, 201);
-    const auto mesh = random_mesh(place, 200);
+  for (const Layout& layout : kLayouts) {
+    SCOPED_TRACE("layout " + std::to_string(layout.seed));
+    const auto disks = random_disks(layout, 201);
+    const auto mesh = random_mesh(layout, 200);
     const SceneView scene = {disks, &mesh};
-    expect_oracle(scene, awkward_rays(place, scene, 20'000));
+    expect_oracle(scene, awkward_rays(layout, scene, 20'000));
   }
 }
 
 TEST_P(ComparedScene, AHundredThousandDisksAreHitAsByBruteForce) {
-  const Backend place = {5, {10, 20, 30}, 50, 0.1, 1};
-  const auto disks = random_disks(place, 100'000);
+  const Layout layout = {5, {10, 20, 30}, 50, 0.1, 1};
+  const auto disks = random_disks(layout, 100'000);
   const SceneView scene = {disks, nullptr};
-  expect_oracle(scene, awkward_rays(place, scene, 4'000));
+  expect_oracle(scene, awkward_rays(layout, scene, 4'000));
 }
 
 // Oracle: Embree, which is brute force bit for bit up to 1024 m. The margin of the boxes covers
 // rounding of any box test in single precision, OptiX's own, too.
 TEST_P(ComparedScene, AMillionRaysAreHitAsByEmbree) {
-  const Backend place = {6, {0, 0, 0}, 60, 0.05, 1};
-  const auto disks = random_disks(place, 300'000);
+  const Layout layout = {6, {0, 0, 0}, 60, 0.05, 1};
+  const auto disks = random_disks(layout, 300'000);
   const SceneView scene = {disks, nullptr};
-  const auto rays = awkward_rays(place, scene, 1'000'000);
+  const auto rays = awkward_rays(layout, scene, 1'000'000);
   const auto expected = make_caster(scene, Backend::embree)->cast(rays, 1);
   const auto found = cast(scene, rays);
   const std::size_t different = count_different(found, expected);
@@ -458,11 +458,11 @@ TEST_P(DeviceScene, PrimitivesThatAreNotFiniteAreNeverHit) {
 class GpuDeviceScene : public DeviceScene {
  protected:
   GpuCaster caster(std::size_t disk_count) {
-    disks_ = random_disks(kPlaces[0], disk_count);
+    disks_ = random_disks(kLayouts[0], disk_count);
     return {{disks_, nullptr}, GetParam()};
   }
   std::vector<Ray> rays(std::size_t count) const {
-    return awkward_rays(kPlaces[0], {disks_, nullptr}, count);
+    return awkward_rays(kLayouts[0], {disks_, nullptr}, count);
   }
 
  private:
