@@ -46,7 +46,7 @@ def test_extents(cloud, tmp_path):
     half = adasplats.read(path, extent=(x - 1, y - 1, x + 1.97, y + 9))
     assert len(half) == len(cloud) // 2
     assert len(adasplats.read(path, extent=np.array([x, y, x + 9, y + 9, z - 1, z + 1]))) == 6400
-    with pytest.raises(ValueError, match="no point of .*lies in the extent"):
+    with pytest.raises(ValueError, match="no point of .*is in the extent"):
         adasplats.read(path, extent=(0, 0, 1, 1))
     for wrong in [(1, 2, 3), (1, 2, 0, 4), (1, 2, 3, np.nan), "here", [[1, 2, 3, 4]]]:
         with pytest.raises(ValueError, match="extent: expected"):

@@ -110,7 +110,7 @@ TEST(CloudInputs, TreesAreTheirSequences) {
 TEST(CloudInputs, SequencesThatBeginAtOnePoseAreNoPlace) {
   const TemporaryFolder folder;
   for (const char* name : {"sequences/00", "sequences/01"}) write_sequence(folder, name);
-  expect_error(ErrorKind::usage, {"sequences/00", "sequences/01", "name one"},
+  expect_error(ErrorKind::usage, {"sequences/00", "sequences/01", "only one of them"},
                [&] { require_distinct_starts(cloud_inputs(folder.path())); });
 }
 
@@ -158,7 +158,7 @@ TEST(CloudInputs, MeshesModelsAndTrajectoriesAmongPoints) {
   folder.write("a/way.csv", kPoses);
   expect_error(
       ErrorKind::usage,
-      {"points (mapping.ply)", "meshes (mesh.ply)", "trajectories (way.csv)", "a/mapping.ply say"},
+      {"points (mapping.ply)", "meshes (mesh.ply)", "trajectories (way.csv)", "for example"},
       [&] { cloud_inputs(folder.path() / "a"); });
   folder.write("b/mesh.ply", kMesh);
   expect_error(ErrorKind::no_input, {"velodyne", "meshes (mesh.ply)"},

@@ -54,7 +54,7 @@ TEST(FrameTree, RingsAndTwoParentsAreErrors) {
   FrameTree tree;
   tree.add(edge("a", "b", true, {at(0, {})}));
   tree.add(edge("b", "a", true, {at(0, {})}));
-  expect_error(ErrorKind::data, {"ring", "'a', 'b'"}, [&] { tree.root_of("a"); });
+  expect_error(ErrorKind::data, {"cycle", "'a', 'b'"}, [&] { tree.root_of("a"); });
   expect_error(ErrorKind::data, {"two parents", "'a'", "'c'"},
                [&] { tree.add(edge("c", "b", false, {at(0, {})})); });
 }

@@ -115,7 +115,8 @@ TEST(LoadCloud, ChosenScansAreRenumbered) {
   options.scan_stride = static_cast<std::size_t>(-1);
   EXPECT_EQ(load({folder.path()}, options).first.size(), 2U);
   options.first_scan = 6;
-  expect_error(ErrorKind::usage, {"6 scans", "number 6"}, [&] { load({folder.path()}, options); });
+  expect_error(ErrorKind::usage, {"6 scans", "first scan is set to 6"},
+               [&] { load({folder.path()}, options); });
 }
 
 TEST(LoadCloud, ScansThatAreNotChosenMayBeBroken) {

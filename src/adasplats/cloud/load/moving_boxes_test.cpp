@@ -55,7 +55,7 @@ TEST(MovingBoxes, WhatIsWrongIsNamed) {
   expect_error(ErrorKind::data, {"has no column 'stationary'"}, [&] {
     MovingBoxes(folder.write("a.csv", std::string("time,id,x,y,z\n0,1,0,0,0\n")));
   });
-  expect_error(ErrorKind::data, {"b.csv:3", "'yaw' is no number"}, [&] {
+  expect_error(ErrorKind::data, {"b.csv:3", "'yaw' is not a finite number"}, [&] {
     MovingBoxes(folder.write("b.csv", std::string(kHeader) + "0,0,1,Car,0,0,0,0,4,1,1,0\n"
                                                              "0,0,1,Car,0,0,0,0,4,1,1,left\n"));
   });

@@ -214,7 +214,8 @@ TEST(NuscenesDrive, DamagedTreesNameTheFile) {
   expect_broken({"ego_pose.json", "element 0", "length"},
                 with_row("ego_pose", "rotation", {1, 1, 0, 0}));
   expect_broken({"ego_pose.json", "3 numbers"}, with_row("ego_pose", "translation", {1, 2}));
-  expect_broken({"ego_pose.json", "has no pose e3"}, with_row("ego_pose", "token", "x"));
+  expect_broken({"ego_pose.json", "has no pose with the token e3"},
+                with_row("ego_pose", "token", "x"));
   expect_broken({"sample_data.json", "element 0", "'timestamp'"},
                 with_row("sample_data", "timestamp", "noon"));
   expect_broken({"sample_data.json", "element 0", "whole number 'timestamp'"},

@@ -139,7 +139,7 @@ TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
   const auto bare = folder.write("bare.xyz", "1 0 0\n9 5 0\n");
   LoadOptions options;
   options.viewpoint = Vec3d{5e6, 0, 0};  // 5,000 km
-  expect_error(ErrorKind::usage, {"viewpoint 5000000.00,0.00,0.00", "bare.xyz", "5000 km"},
+  expect_error(ErrorKind::usage, {"`viewpoint` 5000000.00,0.00,0.00", "bare.xyz", "5000 km"},
                [&] { load({bare}, options); });
   options.viewpoint.reset();
   options.trajectory = folder.write("t.csv", kPoseNames + "0,400000,5500000,2,1,0,0,0\n");
@@ -192,7 +192,7 @@ TEST(PointOrigins, AStationMustSeeItsPoints) {
   options.viewpoint = Vec3d{3, 0, 0};
   EXPECT_EQ(load({file}, options).first.origin_kinds.at(0), stated);
   options.viewpoint = Vec3d{40, 0, 0};
-  expect_error(ErrorKind::usage, {"viewpoint 40.00,0.00,0.00", "wall.csv", "%", "trajectory"},
+  expect_error(ErrorKind::usage, {"`viewpoint` 40.00,0.00,0.00", "wall.csv", "%", "trajectory"},
                [&] { load({file}, options); });
   const auto wrong = folder.write("wrong.csv", csv_of(wall, "40,0,0"));
   expect_error(ErrorKind::data, {"wrong.csv", "40.00,0.00,0.00"}, [&] { load({wrong}); });

@@ -309,7 +309,7 @@ TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
   messages.push_back(
       {"/tf", kTransformsType, 0,
        bags_test::transforms_message(stamp_of(7), "map", "lidar", {0, 0, 0, 0, 0, 0, 0})});
-  expect_error(ErrorKind::data, {"/tf", "norm is 0"}, [&] { load_messages(folder, messages); });
+  expect_error(ErrorKind::data, {"/tf", "norm 0.000000"}, [&] { load_messages(folder, messages); });
 }
 
 }  // namespace

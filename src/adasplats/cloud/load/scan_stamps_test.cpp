@@ -87,7 +87,7 @@ TEST(ScanStamps, StatedTimesAreThoseOfScansInSeconds) {
   const TemporaryFolder folder;
   const auto sound = folder.write("times.txt", std::string("0\n0.1\n0.2\n"));
   EXPECT_EQ(read_scan_times(sound, 3).size(), 3U);
-  expect_error(ErrorKind::data, {"3 times, 4 scans"}, [&] { read_scan_times(sound, 4); });
+  expect_error(ErrorKind::data, {"3 times for 4 scans"}, [&] { read_scan_times(sound, 4); });
   const auto milli = folder.write("ms.txt", std::string("0\n100\n200\n"));
   expect_error(ErrorKind::data, {"seconds", "100"}, [&] { read_scan_times(milli, 3); });
   const auto back = folder.write("back.txt", std::string("0\n0.2\n0.1\n"));

@@ -178,7 +178,8 @@ TEST(SensorFrames, PointsInTheWorldAreToldFromThem) {
   const Court court({.dress = Dress::world});
   const auto [cloud, report] = court.load();
   EXPECT_NE(facts_of(report).points_in.find("world"), std::string::npos);
-  EXPECT_NE(facts_of(report).clock.find("one clock"), std::string::npos) << facts_of(report).clock;
+  EXPECT_NE(facts_of(report).clock.find("share a clock"), std::string::npos)
+      << facts_of(report).clock;
   expect_as_cast(court, cloud, kStraight_m);
 }
 

@@ -204,7 +204,7 @@ TEST_F(TimedPoints, WithFewPointsSeveralClocksAreAnErrorAndCanBeStated) {
 
 TEST_F(TimedPoints, TimesThatAreNotCoveredAreAnErrorWithFigures) {
   const auto points = ply(kGps_s);
-  expect_error(ErrorKind::data, {"does not cover", " of ", "2.540 s behind", "poses.csv"},
+  expect_error(ErrorKind::data, {"does not cover", " of ", "2.540 s after", "poses.csv"},
                [&] { load(points, with(poses(kGps_s, 0, 1.4759))); });
   expect_error(ErrorKind::data, {"by any known clock", "`time_offset`"},
                [&] { load(points, with(poses(5000, 0, 4))); });
@@ -224,10 +224,10 @@ TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
   // One second late: the drive covers it, the points do not fit.
   expect_error(ErrorKind::data, {"does not fit", "+1.0 s more", "`time_offset`"},
                [&] { load(points, with(poses(1, -4, 9))); });
-  expect_error(ErrorKind::data, {"does not fit", "median range", "another place"}, [&] {
+  expect_error(ErrorKind::data, {"does not fit", "median range", "another scene"}, [&] {
     load(points, with(poses(0, 0, 4, {400, 500, 0})));
   });
-  expect_error(ErrorKind::data, {"does not fit", "in y from the sensor", "another place"}, [&] {
+  expect_error(ErrorKind::data, {"does not fit", "in y from the sensor", "another scene"}, [&] {
     load(points, with(poses(0, 0, 4, {10, -100, 0})));
   });
   expect_error(ErrorKind::data, {"does not fit", "is hidden behind other points", "`mount`"}, [&] {

@@ -193,7 +193,7 @@ TEST(FilePieces, AreCutBetweenScansAndKnowThePathBeyond) {
   ASSERT_EQ(cut.size(), 49U);
   EXPECT_FALSE(cut[0].has_whole_scans);
   ASSERT_EQ(progress.warnings.size(), 1U);
-  EXPECT_NE(progress.warnings[0].find("a scan of 700 points"), std::string::npos);
+  EXPECT_NE(progress.warnings[0].find("one of its scans has 700 points"), std::string::npos);
 }
 
 TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
