@@ -220,7 +220,7 @@ def test_compare_refuses(street, tmp_path, monkeypatch):
     refuse(ValueError, "'basics' is not known, did you mean 'basic'", methods=["basics"])
     refuse(TypeError, "methods must be None or a list of strings", methods="basic")
     refuse(TypeError, "meshes must be None or a dict", meshes=["a.ply"])
-    refuse(ValueError, "'a b' is not one of letters", meshes={"a b": street.mesh})
+    refuse(ValueError, "'a b' must consist of letters", meshes={"a b": street.mesh})
     refuse(FileNotFoundError, "none.ply", meshes={"artist": tmp_path / "none.ply"})
     refuse(ValueError, "time_limit is 0, expected more than 0", time_limit=0)
     refuse(ValueError, "poisson_depth has no effect without the method poisson",
