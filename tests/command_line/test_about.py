@@ -204,7 +204,7 @@ class Manual(ProgramTest):
             for line in examples.splitlines():
                 self.assertIn(line.strip(), text)
         text = self.read(["model"])
-        self.assertRegex(text, r"--neighbors INT\n +K, neighbours of a point.  Default: 40\.")
+        self.assertRegex(text, r"--neighbors INT\n +K, number of neighbours of a point\.  Default: 40\.")
         self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile the folder of a city.  Required\.")
 
     def test_mandoc_takes_them(self):

@@ -141,7 +141,7 @@ class PartsOfFiles(ProgramTest):
         # In the millimetres of the file.
         said = self.run_bad(65, "info", las, "--extent", "0.1,0,1,0.30000000000000004").stderr
         self.assertIn("x 0.1 .. 1, y 0 .. 0.3;", said)
-        self.assertRegex(said, r"has x 4999\d\d\.?\d{0,3} \.\. ")
+        self.assertRegex(said, r"has the box x 4999\d\d\.?\d{0,3} \.\. ")
         self.assertNotRegex(said, r"\d\.\d{4}")
         for text in ("1,2,3", "1,2,0,4", "1,2,3,4,5", "a,2,3,4", "1,2,3,4,6,5", "1,2,inf,4"):
             self.run_bad(64, "info", las, "--extent", text, says=["--extent", "XMIN"])

@@ -201,7 +201,7 @@ class Dropped(ProgramTest):
         self.assertIn("2.5 m and are removed", result.stderr)
         self.assertEqual(json.loads(report.read_text())["points_own_body"], near)
         self.run_bad(64, *self.model_of("none.xyz", self.rows()), "--own-body", "2",
-                     says=["where it was"])
+                     says=["needs sensor positions"])
         self.run_bad(64, *command, "--own-body", "-1", says=["--own-body", "expected 0 or more"])
 
     def test_degrees(self):
