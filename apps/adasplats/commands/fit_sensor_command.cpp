@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/jobs/unit_files.h"
+#include "adasplats/jobs/evaluate/fit_sensor.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
@@ -25,22 +25,22 @@ class FitSensorCommand final : public Command {
       : Command(program, "fit-sensor", "Learn from real scans what one unit of a sensor measures",
                 kFitSensorExamples) {
     OptionSet& app = options();
-    require(add_path(app, "MODEL", job_.fit.model, "Splat model of the place"));
-    require(add_path(app, "SCANS", job_.fit.scans_of,
+    require(add_path(app, "MODEL", job_.model, "Splat model of the place"));
+    require(add_path(app, "SCANS", job_.scans_of,
                      "Measured scans in that place: a sequence, or a folder of files, one a scan"));
-    require(writes(add_path(app, "-o,--output", job_.output, "Sensor to write, TOML"), {".toml"}));
-    add_path(app, "--motion", job_.fit.motion,
+    require(writes(add_path(app, "-o,--output", output_, "Sensor to write, TOML"), {".toml"}));
+    add_path(app, "--motion", job_.motion,
              "Pose file or sequence that tells how the sensor moved during raw scans; the default "
              "is SCANS itself, whose poses may be far apart");
-    add_path(app, "--trajectory", job_.fit.trajectory,
+    add_path(app, "--trajectory", job_.trajectory,
              "Poses of a folder of files without a poses.csv in it");
-    add_scan_range(app, "--scans", job_.fit.scans, "Which scans, to keep others for a test");
+    add_scan_range(app, "--scans", job_.scans, "Which scans, to keep others for a test");
     add_device_options();
   }
 
   void run(Session& session) override {
     const Stopwatch watch;
-    const FitSensorResult result = run_fit_sensor(job_, session);
+    const FitSensorResult result = run_fit_sensor(job_, output_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(text_of(result));
@@ -78,12 +78,13 @@ class FitSensorCommand final : public Command {
       table.add_row({"turns that tell what is alike", grouped(result.fields->turns)});
     std::string text = table.text();
     for (const std::string& reason : result.not_told) text += "not told: " + reason + "\n";
-    text += "\n" + job_.output.string() + ": simulate --sensor " + job_.output.string();
+    text += "\n" + output_.string() + ": simulate --sensor " + output_.string();
     if (result.has_offsets) text += " --unit-offsets";
     return text + "; judge it by scans that it was not fitted to\n";
   }
 
-  UnitFilesJob job_;
+  FitSensorJob job_;
+  std::filesystem::path output_;
 };
 
 }  // namespace

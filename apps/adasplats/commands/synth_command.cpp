@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/jobs/synth_street.h"
+#include "adasplats/jobs/scans/synth.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"

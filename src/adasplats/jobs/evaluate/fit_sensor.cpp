@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/sensors/unit_sensor.h"
 
 namespace adasplats {
@@ -41,6 +43,14 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   traits.fitted_to = fitted_to;
   result.sensor_toml =
       unit_sensor_toml(result.sensor, {offsets.range_m, offsets.elevation_rad}, traits);
+  return result;
+}
+
+FitSensorResult run_fit_sensor(const FitSensorJob& job, const std::filesystem::path& output,
+                               Session& session) {
+  check_output_file(output);
+  FitSensorResult result = fit_sensor(job, session);
+  write_file(output, result.sensor_toml);
   return result;
 }
 

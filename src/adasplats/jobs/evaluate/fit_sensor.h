@@ -27,6 +27,10 @@ struct FitSensorResult : UnitFit {
 /// the model: another place), those of the readers.
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
 
+/// Fits a sensor and writes its file (TOML). Errors: also those of writing.
+FitSensorResult run_fit_sensor(const FitSensorJob& job, const std::filesystem::path& output,
+                               Session& session);
+
 /// The keys of --report.
 nlohmann::ordered_json to_json(const FitSensorResult& result);
 
