@@ -25,14 +25,14 @@ template <class Visit>
 void visit_settings(ImlsOptions& imls, Visit&& visit) {
   constexpr const char* kGroup = "IMLS";
   visit(Setting{.name = "voxel",
-                .help = "Side of a voxel, m",
+                .help = "Voxel size, m",
                 .key = "voxel_m",
                 .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         imls.voxel_m);
   visit(Setting{.name = "sigma",
-                .help = "Of the Gaussian weight, voxels",
+                .help = "Standard deviation of the Gaussian weight, voxels",
                 .key = "sigma_voxels",
                 .group = kGroup,
                 .min = 0,
@@ -40,7 +40,7 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
                 .exclusive_min = true},
         imls.sigma_voxels);
   visit(Setting{.name = "truncation",
-                .help = "Values only in voxels this near to a point, voxels",
+                .help = "Distance to the nearest point up to which voxels have values, voxels",
                 .key = "truncation_voxels",
                 .group = kGroup,
                 .min = 1,

@@ -50,27 +50,27 @@ template <class Visit>
 void visit_settings(PoissonOptions& poisson, Visit&& visit) {
   constexpr const char* kGroup = "Screened Poisson";
   visit(Setting{.name = "depth",
-                .help = "Depth of the octree, at most",
+                .help = "Maximum depth of the octree",
                 .group = kGroup,
                 .min = 1,
                 .max = 16},
         poisson.depth);
   visit(Setting{.name = "samples_per_node",
-                .help = "Least number of points in a node; without it 2, or 1.5 of Open3D, which "
-                        "has no other",
+                .help = "Minimum number of points in an octree node (default: 2; 1.5 with Open3D, "
+                        "which allows no other)",
                 .group = kGroup,
                 .min = 0,
                 .max = 1000,
                 .exclusive_min = true},
         poisson.samples_per_node);
   visit(Setting{.name = "trim",
-                .help = "Cut away what was measured at a lesser depth; the default is the depth "
-                        "less 3",
+                .help = "Remove surface reconstructed at a smaller octree depth than this "
+                        "(default: depth minus 3)",
                 .group = kGroup},
         poisson.trim);
   visit(Setting{.name = "poisson_program",
-                .help = "What reconstructs: PoissonRecon and SurfaceTrimmer on PATH, else Open3D "
-                        "(adasplats-poisson)",
+                .help = "Reconstruction program (auto: PoissonRecon and SurfaceTrimmer if on PATH, "
+                        "else Open3D through adasplats-poisson)",
                 .group = kGroup},
         poisson.provider);
 }

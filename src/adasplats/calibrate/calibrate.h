@@ -54,21 +54,23 @@ struct CalibrateOptions {
 /// What users choose of it.
 template <class Visit>
 void visit_settings(CalibrateOptions& calibrate, Visit&& visit) {
-  visit(Setting{.name = "poses", .help = "Estimate a correction of the pose of every scan"},
+  visit(Setting{.name = "poses",
+                .help = "Estimate a correction of the pose of every scan",
+                .basic = true},
         calibrate.poses);
   visit(Setting{.name = "ranges",
-                .help = "Estimate an offset of the ranges of every laser, where the sensor is "
-                        "recognised"},
+                .help = "Estimate a range offset for every laser of a recognised sensor",
+                .basic = true},
         calibrate.ranges);
   visit(Setting{.name = "elevations",
-                .help = "Estimate an offset of the elevation of every laser, where the sensor is "
-                        "recognised"},
+                .help = "Estimate an elevation offset for every laser of a recognised sensor",
+                .basic = true},
         calibrate.elevations);
-  visit(
-      Setting{.name = "mount_correction",
-              .help = "Estimate a correction of the sensor's mount, common to all scans: boresight "
-                      "and lever arm"},
-      calibrate.mount_correction);
+  visit(Setting{.name = "mount_correction",
+                .help = "Estimate a correction of the sensor mount (boresight and lever arm), "
+                        "common to all scans",
+                .basic = true},
+        calibrate.mount_correction);
 }
 
 /// How many points lie how far from planes.

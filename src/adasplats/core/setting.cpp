@@ -40,7 +40,7 @@ std::string with_settings_as(std::string_view message,
     const std::size_t close =
         message.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", open + 1);
     if (close == message.npos || message[close] != '`' || close == open + 1) {
-      ++open;  // no name of a setting: a part of a path, say
+      ++open;  // not a setting: part of a path, for example
       continue;
     }
     text.append(message.substr(begin, open - begin));
@@ -63,13 +63,13 @@ bool is_in_range(const Setting& setting, double value) {
 }
 
 std::string range_text(const Setting& setting) {
-  const bool has_least = setting.min > -kFinite;
-  const bool has_most = setting.max < kFinite;
-  const std::string least = shortest(setting.min);
-  const std::string most = shortest(setting.max);
-  if (!has_least) return has_most ? "at most " + most : "a finite number";
-  if (setting.exclusive_min) return "more than " + least + (has_most ? ", at most " + most : "");
-  return has_most ? least + " to " + most : least + " or more";
+  const bool has_min = setting.min > -kFinite;
+  const bool has_max = setting.max < kFinite;
+  const std::string min = shortest(setting.min);
+  const std::string max = shortest(setting.max);
+  if (!has_min) return has_max ? "at most " + max : "a finite number";
+  if (setting.exclusive_min) return "more than " + min + (has_max ? ", at most " + max : "");
+  return has_max ? min + " to " + max : min + " or more";
 }
 
 void check_setting(const Setting& setting, double value) {

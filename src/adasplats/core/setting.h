@@ -13,8 +13,8 @@
 
 namespace adasplats {
 
-/// One setting as users meet it: an option of the command line, a keyword of Python, a key of
-/// configurations, reports and messages. The settings of a subject stand in one table beside its
+/// One setting as users see it: an option of the command line, a keyword of Python, a key of
+/// configurations, reports and messages. The settings of a subject are one table next to its
 /// struct,
 ///
 ///     template <class Visit>
@@ -24,27 +24,29 @@ namespace adasplats {
 ///             beam.sub_rays);
 ///     }
 ///
-/// and everything that takes, reports or checks settings walks it: cli/options/setting_options,
+/// and everything that parses, reports or checks settings visits it: cli/options/setting_options,
 /// jobs/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
-/// one entry. Members are truth values, numbers, vectors, either of them optional, texts, paths,
-/// enumerations that have words (words_of(), found beside the enumeration) and GroupScale.
+/// one entry. Members are bools, numbers, vectors, optional ones of these, strings, paths,
+/// enumerations with words (words_of(), declared next to the enumeration) and GroupScale.
 struct Setting {
   const char* name;           ///< in snake_case; the option is that with dashes
   const char* help;           ///< one line, no full stop
   const char* value = "";     ///< word for the value in help: "M", "N"
   const char* key = name;     ///< in JSON, with the unit: "separation_m"
-  const char* opposite = "";  ///< of a truth value: options that turn it off; "": "no-NAME"
+  const char* opposite = "";  ///< of a bool: options that turn it off; "": "no-NAME"
   const char* group = "";     ///< heading in help
   double min = -std::numeric_limits<double>::max();
   double max = std::numeric_limits<double>::max();
-  bool exclusive_min = false;  ///< the least is out of range itself
+  bool exclusive_min = false;  ///< the minimum itself is out of range
+  bool basic = false;          ///< in the short help, too
+  const char* old_name = "";   ///< deprecated name and key, accepted for one release
 };
 
 /// "--sub-rays".
 std::string option_of(const Setting& setting);
 
-/// Messages of the library name settings in backquotes, "`max_distance` keeps them", for who shows
-/// a message to name them as its users do: word(name) is what stands there instead.
+/// Messages of the library name settings in backquotes, "`max_distance` keeps them". This replaces
+/// each by word(name): the name that the reader of the message uses.
 std::string with_settings_as(std::string_view message,
                              const std::function<std::string(std::string name)>& word);
 /// "--max-distance keeps them".

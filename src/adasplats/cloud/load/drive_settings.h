@@ -74,21 +74,21 @@ struct DriveSettings {
 /// Where the sensor sits and what its clock lacks.
 template <class Visit>
 void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit) {
-  visit(
-      Setting{.name = "mount",
-              .help = "Lever arm: where the sensor sits in the frame of the trajectory's poses, m "
-                      "(default: they are the sensor's own)",
-              .group = group},
-      drive.mount);
+  visit(Setting{.name = "mount",
+                .help = "Lever arm: sensor position in the frame of the trajectory's poses, m "
+                        "(default: the poses are the sensor's)",
+                .group = group},
+        drive.mount);
   visit(Setting{.name = "mount_rotation",
-                .help = "Boresight: its yaw, pitch and roll there, degrees. Points in world "
-                        "coordinates need none: it turns the poses of scans alone",
+                .help = "Boresight: yaw, pitch and roll of the sensor in the frame of the "
+                        "trajectory's poses, degrees. It rotates the poses of scans only, so "
+                        "points in world coordinates need none",
                 .key = "mount_rotation_deg",
                 .group = group},
         drive.mount_rotation_deg);
   visit(Setting{.name = "time_offset",
-                .help = "Added to the points' times they are those of the trajectory, s (default: "
-                        "found from clocks of GPS, UTC and PTP)",
+                .help = "Seconds to add to the times of points to get times of the trajectory "
+                        "(default: inferred from GPS, UTC and PTP clocks)",
                 .value = "S",
                 .key = "time_offset_s",
                 .group = group},
@@ -98,44 +98,45 @@ void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit
 /// How the scans are meant.
 template <class Visit>
 void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit) {
-  visit(Setting{.name = "points_in",
-                .help = "Which frame the points of a folder of scans with a trajectory are in",
-                .group = group},
-        drive.points_in);
-  visit(Setting{.name = "sweep_points",
-                .help = "Whether points of scans in the sensor's frame with times are as measured, "
-                        "or motion-compensated",
-                .group = group},
-        drive.sweep_points);
+  visit(
+      Setting{.name = "points_in",
+              .help = "Frame of the points in a folder of scans with a trajectory (auto: inferred)",
+              .group = group},
+      drive.points_in);
+  visit(
+      Setting{
+          .name = "sweep_points",
+          .help = "Whether scans with times are as measured or motion-compensated (auto: inferred)",
+          .group = group},
+      drive.sweep_points);
   visit(Setting{.name = "scan_times",
-                .help = "Times of the scans of a folder, s, one a line in the order of their "
+                .help = "Times of the scans of a folder, s, one per line in the order of the file "
                         "names, in the clock of the trajectory",
                 .value = "FILE",
                 .group = group},
         drive.scan_times);
   visit(Setting{.name = "topic",
-                .help = "Of a recording (MCAP, ROS bag): the topic of points to take (default: the "
-                        "only one)",
+                .help = "MCAP, ROS bag: topic of the points (default: the only one)",
                 .value = "NAME",
                 .group = group},
         drive.topic);
   visit(Setting{.name = "poses_topic",
-                .help = "Of a recording: the topic of its poses, tf, odometry or poses (default: "
-                        "tf, else the only one)",
+                .help = "MCAP, ROS bag: topic of the poses, of type tf, odometry or poses "
+                        "(default: tf, else the only one)",
                 .value = "NAME",
                 .group = group},
         drive.poses_topic);
   visit(Setting{.name = "scene",
-                .help = "Of a data root of nuScenes: the scene to take, by its name (default: the "
-                        "only one)",
+                .help = "nuScenes: name of the scene (default: the only one)",
                 .value = "NAME",
                 .group = group},
         drive.scene);
-  visit(Setting{.name = "packets_of",
-                .help = "Of a capture (PCAP): the sensor that sent its packets, of the library or "
-                        "its maker's file (default: metadata.json or calibration*.yaml beside it)",
+  visit(Setting{.name = "packet_sensor",
+                .help = "PCAP: sensor that sent the packets, by name or manufacturer's file "
+                        "(default: metadata.json or calibration*.yaml next to the capture)",
                 .value = "SENSOR",
-                .group = group},
+                .group = group,
+                .old_name = "packets_of"},
         drive.packets_of);
 }
 

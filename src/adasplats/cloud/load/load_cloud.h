@@ -71,7 +71,7 @@ struct LoadOptions : DriveSettings {
 template <class Visit>
 void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
   visit(Setting{.name = "max_distance",
-                .help = "Points farther than this from the median of all are dropped, m",
+                .help = "Drop points farther than this from the median of all points, m",
                 .key = "max_distance_m",
                 .group = group,
                 .min = 0,
@@ -79,25 +79,24 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .exclusive_min = true},
         load.max_distance_m);
   visit(Setting{.name = "max_dropped",
-                .help = "Share of the points that may be dropped as far or not finite before it is "
-                        "an error",
+                .help =
+                    "Maximum fraction of points dropped as not finite or too far; more is an error",
                 .value = "SHARE",
                 .group = group,
                 .min = 0,
                 .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
-                .help = "Points nearer than this to their sensor are the recording vehicle itself "
-                        "and left out, m; 0 keeps all (default: those that go along with the "
-                        "sensor)",
+                .help = "Remove points closer to their sensor than this as the recording vehicle, "
+                        "m; 0 keeps all (default: points that move with the sensor)",
                 .value = "M",
                 .key = "own_body_m",
                 .group = group,
                 .min = 0},
         load.own_body_m);
   visit(Setting{.name = "driven_path",
-                .help = "Points in the volume that the vehicle passed through, so far to each side "
-                        "of its path, are left out, m; 0 keeps all",
+                .help = "Remove points in the volume that the vehicle drove through, up to this "
+                        "distance to each side of its path, m; 0 keeps all",
                 .value = "M",
                 .key = "driven_path_m",
                 .group = group,
@@ -105,15 +104,16 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
-                .help = "Take sensor positions though points lie behind others as seen from there, "
-                        "as later returns do",
+                .help = "Trust the sensor positions of the file even if points are hidden behind "
+                        "others from there, as later returns are",
                 .group = group},
         load.trust_origins);
   visit(
-      Setting{.name = "strict", .help = "Points that are not finite are an error", .group = group},
+      Setting{
+          .name = "strict", .help = "Reject files with points that are not finite", .group = group},
       load.strict);
   visit(Setting{.name = "salvage",
-                .help = "Read the whole records of truncated LAS files",
+                .help = "Read the complete records of truncated LAS files",
                 .group = group},
         load.salvage);
 }
@@ -123,56 +123,52 @@ template <class Visit>
 void visit_settings(LoadOptions& load, Visit&& visit) {
   constexpr const char* kGroup = "Input";
   visit(Setting{.name = "label_field",
-                .help = "Column of the semantic class",
+                .help = "Column with the semantic class",
                 .value = "NAME",
                 .group = kGroup},
         load.label_field);
   visit(Setting{.name = "viewpoint",
-                .help = "The station that measured all points that have no sensor position, world "
-                        "coordinates",
+                .help = "Sensor position of all points without one, world coordinates (a single "
+                        "scanner station)",
                 .group = kGroup},
         load.viewpoint);
-  visit(
-      Setting{.name = "trajectory",
-              .help = "Poses of the recording. Of points with times: every beam's beginning, for a "
-                      "folder of scans with the sensor and its mount as they are recognised, else "
-                      "with `mount`. Without times the nearest pose turns the normals of points "
-                      "that have no sensor position; a guess, nothing is checked with it",
-              .group = kGroup},
-      load.trajectory);
-  visit_mount_settings(load, kGroup, visit);
-  visit(Setting{.name = "extent",
-                .help = "Points of files that lie in this box; of COPC no more is unpacked than "
-                        "that takes",
+  visit(Setting{.name = "trajectory",
+                .help = "Poses of the recording. Points with times get their beam origins from it, "
+                        "with the recognised sensor and mount or with --mount. Points without "
+                        "times only get normals oriented towards the nearest pose",
                 .group = kGroup},
-        load.selection.extent);
+        load.trajectory);
+  visit_mount_settings(load, kGroup, visit);
+  visit(
+      Setting{.name = "extent",
+              .help = "Load only points in this box; COPC files are decompressed only where needed",
+              .group = kGroup},
+      load.selection.extent);
   visit(Setting{.name = "level",
-                .help = "Of files with levels of detail (COPC) those from the coarsest, 0, to this",
+                .help = "COPC files: load levels of detail from the coarsest, 0, to this one",
                 .value = "N",
                 .group = kGroup,
                 .min = 0,
                 .max = 30},
         load.selection.level);
-  visit(
-      Setting{.name = "resolution",
-              .help = "Of files with levels of detail (COPC) as many as points so far apart take, "
-                      "m",
-              .value = "M",
-              .key = "resolution_m",
-              .group = kGroup,
-              .min = 0,
-              .exclusive_min = true},
-      load.selection.resolution_m);
+  visit(Setting{.name = "resolution",
+                .help = "COPC files: load the levels of detail needed for this point spacing, m",
+                .value = "M",
+                .key = "resolution_m",
+                .group = kGroup,
+                .min = 0,
+                .exclusive_min = true},
+        load.selection.resolution_m);
   visit(Setting{.name = "boxes",
-                .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
-                        "size_z,yaw): what those that move hold is left out of scans with times",
+                .help = "Boxes of objects over time (CSV: "
+                        "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw); points in moving "
+                        "boxes are removed from scans with times",
                 .value = "FILE",
                 .group = kGroup},
         load.boxes);
   visit_scan_settings(load, kGroup, visit);
   visit(Setting{.name = "beams_from_poses",
-                .help = "Beams of sequences start at their poses, even where the sensor is "
-                        "recognised",
+                .help = "Use the poses as beam origins, even if the sensor is recognised",
                 .group = kGroup},
         load.beams_from_poses);
   visit_drop_settings(load, kGroup, visit);

@@ -29,19 +29,19 @@ struct CompareLimits {
 template <class Visit>
 void visit_settings(CompareLimits& limits, Visit&& visit) {
   visit(Setting{.name = "time_limit",
-                .help = "Seconds",
+                .help = "Time limit of every step, s",
                 .value = "S",
                 .min = 0,
                 .max = std::numeric_limits<double>::infinity(),
                 .exclusive_min = true},
         limits.seconds);
   visit(Setting{.name = "memory_limit",
-                .help = "GiB; 0: 90 % of the machine's",
+                .help = "Memory limit of every step, GiB; 0: 90 % of the machine's",
                 .value = "GIB",
                 .min = 0,
                 .max = 1e9},
         limits.memory_gib);
-  visit(Setting{.name = "retry", .help = "Run steps again that failed"}, limits.retry);
+  visit(Setting{.name = "retry", .help = "Run failed steps again"}, limits.retry);
 }
 
 /// Every competitor on the same points with the same rays. What is empty is found in the data.
@@ -71,25 +71,24 @@ struct CompareJob {
 template <class Visit>
 void visit_settings(CompareJob& job, Visit&& visit) {
   visit(Setting{.name = "every",
-                .help = "Take every n-th pose; 0: at most 20 poses",
+                .help = "Use every n-th pose; 0: at most 20 poses",
                 .value = "N",
                 .min = 0},
         job.every);
   visit(Setting{.name = "picture_width",
-                .help = "Pixels; the height is 9/16 of it",
+                .help = "Picture width, pixels; the height is 9/16 of it",
                 .value = "N",
                 .min = 64,
                 .max = 8192},
         job.picture_width);
   visit(Setting{.name = "poisson_depth",
-                .help = "Depth of the octree",
+                .help = "Octree depth of Poisson reconstruction",
                 .value = "N",
                 .min = 1,
                 .max = 16},
         job.poisson_depth);
   visit(Setting{.name = "network",
-                .help = "File of the network of the method kpconv; else the one that comes with "
-                        "the program"},
+                .help = "Network file of the method kpconv (default: the included network)"},
         job.network);
 }
 
