@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMaxPoints = 200'000, kSweeps = 8, kMostOfSweep = 200'000;
+constexpr std::size_t kMaxPoints = 200'000, kSweeps = 8, kMaxOfSweep = 200'000;
 constexpr double kSweep_s = 0.1;
 
 /// Times in the middles of eight parts with as many points each.
