@@ -8,7 +8,6 @@
 
 namespace adasplats::app {
 
-// One file each.
 std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
 std::unique_ptr<Command> make_synth_world_command(CLI::App& synth);
 std::unique_ptr<Command> make_synth_city_command(CLI::App& synth);

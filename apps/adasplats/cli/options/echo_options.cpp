@@ -8,14 +8,14 @@ namespace adasplats::app {
 
 std::pair<Option*, Option*> add_echo_inputs(OptionSet& app, EchoInputs& inputs) {
   Option* model = add_path(app, "MODEL", inputs.model, "Splat model");
-  Option* sequence =
-      add_path(app, "SEQUENCE", inputs.sequence,
-               "SemanticKITTI sequence folder; beams without return are told by scans of an "
-               "HDL-64E that are not motion-compensated");
+  Option* sequence = add_path(
+      app, "SEQUENCE", inputs.sequence,
+      "SemanticKITTI sequence folder; beams without return are identified from scans of an "
+      "HDL-64E that are not motion-compensated");
   add_path(app, "--motion", inputs.motion,
-           "Pose file or sequence that tells how the sensor moved during raw scans; the default "
-           "is SEQUENCE itself, whose poses may be far apart");
-  app.add_option("--sensor", inputs.sensor, "Sensor whose beams are looked for in raw scans")
+           "Pose file or sequence with the motion of the sensor during raw scans (default: "
+           "SEQUENCE, whose poses may be far apart)");
+  app.add_option("--sensor", inputs.sensor, "Sensor of the raw scans")
       ->capture_default_str()
       ->type_name("NAME|FILE");
   return {model, sequence};

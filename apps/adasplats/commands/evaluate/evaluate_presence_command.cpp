@@ -6,8 +6,8 @@
 #include "adasplats/jobs/evaluate/evaluate_presence.h"
 #include "adasplats/jobs/provenance/metrics_json.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
