@@ -27,7 +27,7 @@
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/report/calibration_page.h"
-#include "adasplats/sensors/unit_sensor.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 namespace adasplats {
 namespace {

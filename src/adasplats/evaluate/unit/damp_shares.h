@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adasplats/evaluate/unit/unit_beams.h"
-#include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "adasplats/sensors/unit_sensor.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 namespace adasplats {
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
