@@ -14,7 +14,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/model/splat_model.h"
 
@@ -96,8 +96,8 @@ int run(int argc, char** argv) {
     PointCloud copy = cloud;
     total.begin("total");
     steps_timer.begin("start");
-    const auto steps =
-        on_gpu ? gpu::make_cuda_consistent_steps(0, executor) : make_cpu_consistent_steps(executor);
+    const auto steps = on_gpu ? make_cuda_model_engine(0)->consistent_steps()
+                              : make_cpu_consistent_steps(executor);
     steps_timer.begin("order");
     steps->load(std::move(copy), {});
     consistent_disks(*steps, !cloud.sensor_positions.empty(), {},

@@ -19,7 +19,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/session/device_choice.h"
 #include "adasplats/splats/build_model.h"
@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
   choice.method = value_of(argument(2, "semantic"), kSplatMethods);
   choice.paper.resample = argument(3, "resample") != "no-resample";
   options.recipe = choice.recipe();
-  const auto engine = make_cuda_model_engine(0, executor);
+  const auto engine = make_cuda_model_engine(0);
   std::vector<Run> runs;
   for (int i = 0; i < std::max(1, std::atoi(argument(4, "3").c_str())); ++i) {
     runs.push_back(timed_build(cloud, options, executor, engine.get()));

@@ -1,23 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #if defined(ADASPLATS_HAVE_CUDA)
-#include "adasplats/core/error.h"
 #include "adasplats/gpu/base/cuda_check.h"
-#include "adasplats/gpu/base/device.h"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
-#include "adasplats/gpu/gpu_model.h"
-#include "adasplats/gpu/paper/paper_cuda_steps.h"
+#include "adasplats/gpu/base/engines.h"
+#include "adasplats/gpu/base/model_steps.h"
 
 namespace adasplats {
 namespace {
 
 class CudaModelEngine final : public ModelEngine {
  public:
-  CudaModelEngine(int device, const Executor& executor) : device_(device), executor_(executor) {
-    const GpuSearch found = find_gpus();
-    if (found.devices.empty())
-      throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + found.reason);
-    const gpu::DeviceGuard guard(device);  // says so now where there is no such GPU
+  explicit CudaModelEngine(int device) : device_(device) {
+    const gpu::DeviceGuard guard = gpu::enter_gpu(device, "build models");  // or throws now
   }
 
   std::string_view name() const override { return "cuda"; }
@@ -25,7 +19,7 @@ class CudaModelEngine final : public ModelEngine {
     return gpu::make_cuda_paper_steps(device_);
   }
   std::unique_ptr<ConsistentSteps> consistent_steps() const override {
-    return gpu::make_cuda_consistent_steps(device_, executor_);
+    return gpu::make_cuda_consistent_steps(device_);
   }
   Reflectances measure_reflectances(const std::vector<Disk>& disks,
                                     const std::vector<float>& fallback,
@@ -35,13 +29,12 @@ class CudaModelEngine final : public ModelEngine {
 
  private:
   int device_;
-  const Executor& executor_;
 };
 
 }  // namespace
 
-std::unique_ptr<ModelEngine> make_cuda_model_engine(int device, const Executor& executor) {
-  return std::make_unique<CudaModelEngine>(device, executor);
+std::unique_ptr<ModelEngine> make_cuda_model_engine(int device) {
+  return std::make_unique<CudaModelEngine>(device);
 }
 
 }  // namespace adasplats

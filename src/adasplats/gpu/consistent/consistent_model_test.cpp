@@ -15,8 +15,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
-#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/base/engines.h"
+#include "adasplats/gpu/base/model_steps.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/origin_check.h"
@@ -142,7 +142,7 @@ class SideBySide {
  private:
   Executor executor_{2};
   Steps cpu_ = make_cpu_consistent_steps(executor_);
-  Steps gpu_ = gpu::make_cuda_consistent_steps(0, executor_);
+  Steps gpu_ = gpu::make_cuda_consistent_steps(0);
 };
 
 /// All steps, compared after each; gives the number of splats.
@@ -334,7 +334,7 @@ TEST_F(ConsistentOnGpu, PiecesOfAPlaceAreTheSame) {
   BuildOptions options;
   options.whole = &whole;
   ProgressSink quiet;
-  const auto engine = make_cuda_model_engine(0, executor);
+  const auto engine = make_cuda_model_engine(0);
   const auto spacings = [&](const ModelEngine& on) {
     const auto steps = on.consistent_steps();
     steps->load(piece, {}, &whole);
@@ -382,8 +382,7 @@ TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
 }
 
 ConsistentSplats model_of(const PointCloud& cloud) {
-  const Executor executor(1);
-  const Steps steps = gpu::make_cuda_consistent_steps(0, executor);
+  const Steps steps = gpu::make_cuda_consistent_steps(0);
   steps->load(cloud, {});
   EXPECT_TRUE(consistent_disks(*steps, true, {}, [](std::string_view, int) {}).checked);
   return steps->take_splats();
@@ -397,10 +396,9 @@ TEST_F(ConsistentOnGpu, TwoRunsGiveTheSameBytes) {
 }
 
 TEST_F(ConsistentOnGpu, ErrorsSayWhatHelpsAndLeaveTheStepsDestructible) {
-  const Executor executor(1);
   const auto error_of = [&](const ConsistentOptions& options) -> std::string {
     try {
-      const Steps steps = gpu::make_cuda_consistent_steps(0, executor);
+      const Steps steps = gpu::make_cuda_consistent_steps(0);
       steps->load(lattice(50, 0.05, 0), {});
       consistent_disks(*steps, true, options, [](std::string_view, int) {});
     } catch (const Error& error) {
@@ -415,7 +413,7 @@ TEST_F(ConsistentOnGpu, ErrorsSayWhatHelpsAndLeaveTheStepsDestructible) {
   options = {};
   options.planes.scales.back() = 600;
   EXPECT_NE(error_of(options).find("`device` cpu"), std::string::npos);
-  EXPECT_THROW(gpu::make_cuda_consistent_steps(1000, executor), Error);
+  EXPECT_THROW(gpu::make_cuda_consistent_steps(1000), Error);
 }
 
 }  // namespace

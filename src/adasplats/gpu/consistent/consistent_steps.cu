@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/gpu/base/model_steps.h"
 #include "adasplats/gpu/consistent/consistent_cells.h"
 #include "adasplats/gpu/consistent/consistent_cover.cuh"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/gpu/consistent/consistent_planes.h"
 #include "adasplats/gpu/consistent/consistent_rays.h"
 #include "adasplats/gpu/consistent/consistent_seeds.h"
@@ -76,7 +76,7 @@ class ConsistentOnGpu : public RaysOnGpu {
 
 }  // namespace
 
-std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor&) {
+std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device) {
   const DeviceGuard guard(device);
   return std::make_unique<ConsistentStepsOn<ConsistentOnGpu>>(device);
 }

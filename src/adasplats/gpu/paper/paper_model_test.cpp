@@ -17,9 +17,9 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/gpu/base/hilbert_order.h"
 #include "adasplats/gpu/base/sort_keys.h"
-#include "adasplats/gpu/gpu_model.h"
 #include "adasplats/gpu/neighbors/cloud_on_device.h"
 #include "adasplats/gpu/neighbors/neighborhoods_lists.h"
 #include "adasplats/gpu/paper/select_rounds.h"
@@ -356,7 +356,7 @@ std::pair<SplatModel, BuildReport> build(const PointCloud& cloud, const PaperOpt
                                          bool on_gpu) {
   ProgressSink quiet;
   const Executor executor(0);
-  const auto engine = on_gpu ? make_cuda_model_engine(0, executor) : nullptr;
+  const auto engine = on_gpu ? make_cuda_model_engine(0) : nullptr;
   return build_model(cloud, &semantickitti_labels(), {options, DynamicRemoval::moving}, executor,
                      quiet, engine.get());
 }

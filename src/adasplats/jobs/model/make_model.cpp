@@ -10,7 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/jobs/model/calibrate_on_device.h"
 #include "adasplats/jobs/model/calibration_json.h"
 #include "adasplats/jobs/model/label_use.h"
@@ -123,8 +123,7 @@ class ModelMaker {
     const bool tries_gpu = session_.device.on_gpu();
     Built built;
     const bool on_gpu = try_on_gpu(session_.device, session_.progress, [&] {
-      const auto engine =
-          make_cuda_model_engine(session_.device.gpus.front().index, session_.executor);
+      const auto engine = make_cuda_model_engine(session_.device.gpus.front().index);
       built = build(std::move(cloud), engine.get());
     });
     if (on_gpu) return built;
@@ -211,7 +210,7 @@ std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>&
 
 void with_model_engine(Session& session, const std::function<void(const ModelEngine&)>& work) {
   const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
-    work(*make_cuda_model_engine(session.device.gpus.front().index, session.executor));
+    work(*make_cuda_model_engine(session.device.gpus.front().index));
   });
   if (!on_gpu) work(*make_cpu_model_engine(session.executor));
 }
