@@ -205,7 +205,7 @@ class SegmentTest(ProgramTest):
         not_a_number = struct.pack("<4e", 1, math.nan, 3, 4)
         for changes, data, says in (
                 ({"version": 2}, good, "version 2, expected 1"),
-                ({}, good[:-1], "beyond its end"), ({}, not_a_number, "not finite"),
+                ({}, good[:-1], "beyond the end of the file"), ({}, not_a_number, "not finite"),
                 ({"features": ["one", "height"]}, good, "do not fit"),
                 ({"classes": ["road"]}, good, "do not fit"),
                 ({"classes": ["road", "kerb"]}, good, "no class 'kerb'; --class-map"),

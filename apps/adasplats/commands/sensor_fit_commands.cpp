@@ -30,12 +30,13 @@ class EchoCommand : public ResultCommand {
  protected:
   void add_echo_inputs() {
     OptionSet& app = options();
-    require(add_path(app, "MODEL", inputs_.model, "Splat model"));
-    require(add_path(app, "SEQUENCE", inputs_.sequence,
+    require(add_path(app, "MODEL", echo_inputs.model, "Splat model"));
+    require(add_path(app, "SEQUENCE", echo_inputs.sequence,
                      "SemanticKITTI sequence folder; missing returns are identified in raw scans "
                      "of an HDL-64E"));
-    add_path(app, "--motion", inputs_.motion, kMotionHelp);
-    app.add_option("--sensor", inputs_.sensor, "Sensor whose beams are searched for in raw scans")
+    add_path(app, "--motion", echo_inputs.motion, kMotionHelp);
+    app.add_option("--sensor", echo_inputs.sensor,
+                   "Sensor whose beams are searched for in raw scans")
         ->capture_default_str()
         ->type_name("NAME|FILE");
   }
@@ -48,7 +49,7 @@ class EchoCommand : public ResultCommand {
                    fixed(drop.precision(), 3), fixed(drop.recall(), 3)});
   }
 
-  EchoInputs inputs_;
+  EchoInputs echo_inputs;
 };
 
 class FitDropCommand final : public EchoCommand {
@@ -71,9 +72,9 @@ class FitDropCommand final : public EchoCommand {
  private:
   std::string make_result(Session& session) override {
     if (every_ == 0) throw Error(ErrorKind::usage, "--every is 0, expected 1 or more");
-    inputs_.scans.stride = every_;
+    echo_inputs.scans.stride = every_;
     check_output_file(output_);
-    const FitDropResult result = fit_drop(inputs_, session);
+    const FitDropResult result = fit_drop(echo_inputs, session);
     save_ray_drop(output_, result.model);
     session.report.update(to_json(result));
     TextTable table = drop_table();
@@ -100,14 +101,14 @@ class EvaluateEchoesCommand final : public EchoCommand {
     OptionSet& app = options();
     add_echo_inputs();
     add_path(app, "--drop", drop_, "Drop model that fit-drop made from other scans");
-    add_scan_range(app, "--scans", inputs_.scans, "Scans of the sequence to use");
+    add_scan_range(app, "--scans", echo_inputs.scans, "Scans of the sequence to use");
     add_device_options();
   }
 
  private:
   std::string make_result(Session& session) override {
-    inputs_.sensor_is_asked = is_given("--sensor");
-    const EchoResult result = evaluate_echoes(inputs_, drop_, session);
+    echo_inputs.sensor_is_asked = is_given("--sensor");
+    const EchoResult result = evaluate_echoes(echo_inputs, drop_, session);
     session.report.update(to_json(result));
     const IntensityAccuracy& intensity = result.intensity;
     std::string text = "intensity: rank correlation " + fixed(intensity.rank_correlation, 3) +
