@@ -206,8 +206,8 @@ class SegmentTest(ProgramTest):
         for changes, data, says in (
                 ({"version": 2}, good, "version 2, expected 1"),
                 ({}, good[:-1], "beyond the end of the file"), ({}, not_a_number, "not finite"),
-                ({"features": ["one", "height"]}, good, "do not fit"),
-                ({"classes": ["road"]}, good, "do not fit"),
+                ({"features": ["one", "height"]}, good, "do not match"),
+                ({"classes": ["road"]}, good, "do not match"),
                 ({"classes": ["road", "kerb"]}, good, "no class 'kerb'; --class-map"),
                 ({"layers": []}, good, "no layers"), ({"kernel": 7}, good, "damaged")):
             network.write_bytes(network_file({**header, **changes}, data))
