@@ -233,7 +233,7 @@ class Packets(ProgramTest):
     def test_refused(self):
         simulate = ["simulate", self.place, "--trajectory", self.poses, "-o", self.folder / "no",
                     "--format", "pcap", "--sensor"]
-        self.run_bad(64, *simulate, "hdl-64-paper", says=["no packets of it are known",
+        self.run_bad(64, *simulate, "hdl-64-paper", says=["its packet format is unknown",
                                                           "velodyne-vlp-16", "ouster-os1-64"])
         self.run_bad(64, *simulate, "velodyne-vlp-16", "--returns", "2", says=["--returns 1"])
         self.run_bad(64, *simulate, "velodyne-vlp-16", "--max-range", "200", says=["131.07"])

@@ -98,7 +98,7 @@ class PacketWriter final : public WriterWithPoses {
   PacketReturn return_of(const ScanView& scan, std::size_t i, double offset_m) const {
     const double range_m = static_cast<double>(scan.ranges_m[i]) - offset_m;
     const double counts = std::clamp(std::round(range_m / sensor_.facts.quantum_m), 1.0,
-                                     static_cast<double>(sensor_.facts.most));
+                                     static_cast<double>(sensor_.facts.max_counts));
     double share = scan.intensities.empty() ? 0.0 : static_cast<double>(scan.intensities[i]);
     share = std::isnan(share) ? 0.0 : std::clamp(share / options_.full_intensity, 0.0, 1.0);
     return {static_cast<std::uint32_t>(counts),
@@ -171,7 +171,7 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
         "do not hold the angles of beams, so their noise would be lost; --no-noise, or a sensor "
         "without");
   if (!options.is_raw) refuse("are as measured, with the motion in them; --points raw");
-  const double max_m = sensor.facts.most * sensor.facts.quantum_m;
+  const double max_m = sensor.facts.max_counts * sensor.facts.quantum_m;
   if (model.max_range_m > max_m)
     refuse("hold ranges up to " + std::to_string(max_m) + " m, and the sensor measures up to " +
            std::to_string(model.max_range_m) + " m; --max-range");

@@ -10,20 +10,20 @@
 
 namespace adasplats {
 
-/// Private to sensors/: where the bytes of packets lie. All numbers are little-endian.
+// Private to sensors/: byte offsets in packets. All numbers are little-endian.
 
 // Velodyne, all sensors: 12 blocks of 100 bytes (flag, azimuth in 0.01 degrees, 32 channels of a
 // range and an intensity), microseconds past the hour of the first firing, two factory bytes.
 inline constexpr std::size_t kVelodyneBlocks = 12, kBlockBytes = 100, kBlockChannels = 32;
 inline constexpr std::size_t kBlockHeadBytes = 4, kVelodyneChannelBytes = 3;
 inline constexpr std::size_t kVelodyneBytes = kVelodyneBlocks * kBlockBytes + 6;
-/// Of the first 32 lasers, the second...
+/// Flags of the blocks of the first 32 lasers, the second...
 inline constexpr std::uint16_t kBlockFlags[] = {0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
 inline constexpr std::uint16_t kAzimuthSteps = 36000;
 inline constexpr std::uint64_t kMicrosecondsPerHour = 3'600'000'000;
 
-/// How long after its first firing the time of a packet is: a VLS-128 aligns the top of the hour
-/// with the fourth of its groups of lasers (2.665 us each).
+/// Time stamp of a packet relative to its first firing: a VLS-128 aligns the full hour with the
+/// fourth of its groups of lasers (2.665 us each).
 constexpr std::int64_t stamp_after_first_ns(PacketFormat format) {
   return format == PacketFormat::vls_128 ? 3 * 2665 : 0;
 }
@@ -32,11 +32,11 @@ constexpr std::size_t channel_byte(std::size_t block, std::size_t channel) {
   return block * kBlockBytes + kBlockHeadBytes + channel * kVelodyneChannelBytes;
 }
 
-/// The place of a laser's firing in a packet with one return: of column `column` of it.
-struct VelodynePlace {
+/// Position of the firing of a laser in column `column` of a packet with one return.
+struct VelodyneSlot {
   std::size_t block = 0, channel = 0;
 
-  VelodynePlace(std::size_t lasers, std::size_t column, std::size_t laser) {
+  VelodyneSlot(std::size_t lasers, std::size_t column, std::size_t laser) {
     const std::size_t firing = column * lasers + laser;
     block = firing / kBlockChannels;
     channel = firing % kBlockChannels;
@@ -44,22 +44,22 @@ struct VelodynePlace {
   std::size_t byte() const { return channel_byte(block, channel); }
 };
 
-/// Where Velodyne's sensors put the two returns of a firing, of a packet with the mode byte kDual:
-/// in a pair of blocks with one azimuth, the last return and the strongest or, where that is the
-/// last one, the second strongest, which are the same where there is but one (VLP-16 User Manual
-/// 63-9243, chapter 9, "Sensor Data", and that of the VLP-32C; HDL-32E, VLS-128: as other drivers).
-/// A firing does not span packets, so a VLS-128 leaves the last 4 blocks empty. An HDL-64E, which
-/// has no mode byte, has the two blocks of the strongest and then the two of the last returns.
+/// Mode byte of Velodyne packets with two returns per firing: pairs of blocks with one azimuth hold
+/// the last return and the strongest or, if that is the last, the second strongest; both are equal
+/// if there is only one (VLP-16 User Manual 63-9243, chapter 9, "Sensor Data", and that of the
+/// VLP-32C; HDL-32E, VLS-128: as in other drivers). A firing does not span packets, so a VLS-128
+/// leaves the last 4 blocks empty. An HDL-64E has no mode byte; two blocks with the strongest
+/// returns precede two with the last returns.
 inline constexpr std::uint8_t kDualMode = 0x39;
-/// The blocks of both returns in the place of block `block` of a packet with one.
+/// The blocks of both returns that correspond to block `block` of a packet with one return.
 constexpr std::pair<std::size_t, std::size_t> dual_blocks(PacketFormat format, std::size_t block) {
   if (format != PacketFormat::hdl_64e) return {2 * block, 2 * block + 1};
   const std::size_t first = block / 2 * 4 + block % 2;
   return {first, first + 2};
 }
 
-/// Ouster: columns of a head (time in ns, measurement id, then by the profile frame id and encoder
-/// count or status), 12 or 16 bytes a channel and a foot.
+/// Ouster: columns with a head (time in ns, measurement id; frame id and encoder count or status,
+/// depending on the profile), 12 or 16 bytes per channel and a foot.
 struct OusterBytes {
   std::size_t head = 0, column_head = 16, column_foot = 4, foot = 0;
   std::size_t lasers = 0;
@@ -77,6 +77,6 @@ struct OusterBytes {
   std::size_t packet() const { return head + kColumns * column() + foot; }
 };
 inline constexpr std::uint32_t kOusterValid = 0xFFFFFFFF;
-inline constexpr std::uint32_t kEncoderTicks = 90112;  ///< a turn
+inline constexpr std::uint32_t kEncoderTicks = 90112;  ///< per revolution
 
 }  // namespace adasplats

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What drivers need to know of a sensor beside its packets.
+// The calibration files that drivers need in addition to the packets.
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ double offset_of_beam(const LidarModel& model, std::size_t ring) {
   return model.azimuth_offsets_rad.empty() ? 0.0 : model.azimuth_offsets_rad[ring];
 }
 
-/// Where a beam begins, split along the beam, upwards across it and to its left: any place is of
-/// that kind, with a distance that is added to the range (read_velodyne_yaml() is the inverse).
+/// The origin of a beam in components along the beam, upwards and to the left of it. The component
+/// along the beam is a correction of the range (read_velodyne_yaml() is the inverse).
 struct LaserOffsets {
   double along_m = 0, up_m = 0, left_m = 0;
 
@@ -66,18 +66,18 @@ std::string velodyne_yaml(const PacketSensor& sensor) {
   return text.str();
 }
 
-/// By how many columns the pixels of each row are to be moved to stand above each other.
+/// The number of columns to shift each row by to align the azimuths of the rows.
 std::vector<int> pixel_shifts(const LidarModel& model, const std::vector<double>& azimuths_deg) {
   std::vector<int> shifts;
   shifts.reserve(azimuths_deg.size());
   for (const double azimuth_deg : azimuths_deg)
     shifts.push_back(static_cast<int>(std::lround(azimuth_deg * model.columns / 360.0)));
-  const int least = std::ranges::min(shifts);
-  for (int& shift : shifts) shift -= least;
+  const int smallest = std::ranges::min(shifts);
+  for (int& shift : shifts) shift -= smallest;
   return shifts;
 }
 
-/// The model in the words of the SDK: OS-1-64.
+/// The SDK's name of the model: OS-1-64.
 std::string product_line(const PacketSensor& sensor) {
   const std::string& name = sensor.model.name;
   for (const char* kind : {"0", "1", "2"})
@@ -90,13 +90,17 @@ Error not_ouster(const LidarModel& model, const std::string& why) {
   return {ErrorKind::usage, "sensor '" + model.name + "': " + why};
 }
 
-/// Where all beams leave, which metadata say once.
+/// The common origin of all beams; metadata hold only one.
 Vec3d common_origin(const LidarModel& model) {
   const Vec3d origin = origin_of_beam(model, 0);
   for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring)
     if (origin_of_beam(model, ring) != origin)
-      throw not_ouster(model, "its beams leave at different places, which metadata cannot say");
-  if (origin.y != 0) throw not_ouster(model, "its beams leave beside its axis");
+      throw not_ouster(model,
+                       "its beams have different origins, which Ouster metadata cannot hold");
+  if (origin.y != 0)
+    throw not_ouster(model,
+                     "the origin of its beams is beside the axis (y is not 0), which Ouster "
+                     "metadata cannot hold");
   return origin;
 }
 
@@ -140,7 +144,7 @@ std::string ouster_json(const PacketSensor& sensor) {
   return json.dump(2) + "\n";
 }
 
-/// An S3 takes 57.6 us for all lasers, an S2 48.
+/// All lasers take 57.6 us in an S3, 48 us in an S2.
 std::string hdl64_generation(const LidarModel& model) {
   constexpr double kLongestOfS2_s = 50e-6;
   const auto& times_s = model.firing_times_s;
@@ -151,7 +155,7 @@ std::string hdl64_generation(const LidarModel& model) {
 
 CalibrationFile calibration_file(const PacketSensor& sensor) {
   if (is_ouster(sensor.format)) return {"metadata.json", ouster_json(sensor)};
-  // By such a name load_lidar_model() knows the firing times.
+  // load_lidar_model() derives the firing times from this name.
   const std::string name = sensor.format == PacketFormat::hdl_64e
                                ? "calibration-" + hdl64_generation(sensor.model) + ".yaml"
                                : "calibration.yaml";

@@ -15,67 +15,66 @@
 
 namespace adasplats {
 
-/// When and to where the head of a sensor looked when it fired all its lasers once.
+/// Time and azimuth of the head for one firing of all lasers.
 struct MeasuredColumn {
-  std::int64_t time_ns = 0;  ///< Velodyne: since the hour began; Ouster: of the sensor's clock
-  double head_rad = 0;       ///< counter-clockwise from +x, when the first laser fired
-  double turn_rad_s = 0;     ///< of the head, likewise
-  std::uint32_t step = 0;    ///< of steps_per_turn() since the revolution began
+  std::int64_t time_ns = 0;  ///< Velodyne: since the full hour; Ouster: by the sensor's clock
+  double head_rad = 0;       ///< counter-clockwise from +x, when the first laser fires
+  double turn_rad_s = 0;     ///< angular velocity of the head, counter-clockwise
+  std::uint32_t step = 0;    ///< of steps_per_turn() since the start of the revolution
   std::uint32_t frame = 0;   ///< Ouster: the number of the revolution
-  bool is_valid = true;      ///< Ouster: it was measured
+  bool is_valid = true;      ///< Ouster: the column was measured
 };
 
-/// Points in the frame of the sensor, in the order of firing.
+/// The returns of one laser in one column, the nearest first: none, one or two.
+struct LaserReturns {
+  std::array<PacketReturn, 2> all;
+  std::size_t count = 0;
+};
+
+/// Points in the sensor frame, in the order of firing.
 struct PacketPoints {
   std::vector<Vec3d> positions;
-  std::vector<double> late_s;  ///< since their column began
+  std::vector<double> late_s;  ///< since the start of their column
   std::vector<float> intensities;
-  std::vector<std::uint16_t> rings;  ///< from the topmost
-  /// Of the returns of a firing, the nearest is 1 of return_counts; LAS numbers them so.
+  std::vector<std::uint16_t> rings;  ///< topmost 0
+  /// As in LAS: the nearest return of a firing is 1 of return_counts.
   std::vector<std::uint8_t> return_numbers, return_counts;
 };
 
-/// Takes the packets of one sensor apart: formats as PacketFormat says, of one return a firing or
-/// of two (the last and the strongest, which are one point where they are the same).
+class PacketParser;
+
+/// Decodes the packets of one sensor, in any PacketFormat, with one return per firing or two (the
+/// last and the strongest; one point if they are equal).
 class PacketDecoder {
  public:
-  explicit PacketDecoder(PacketSensor sensor) : sensor_(std::move(sensor)) {}
+  explicit PacketDecoder(PacketSensor sensor);
 
   const PacketSensor& sensor() const { return sensor_; }
   std::uint32_t steps_per_turn() const;
-  double column_s() const { return 1.0 / (sensor_.model.rotation_hz * sensor_.model.columns); }
+  double column_s() const { return sensor_.column_s(); }
 
-  /// Whether a payload is of the size of a packet of the sensor.
+  /// Whether a payload has the size of the sensor's packets.
   bool has_size(std::string_view payload) const {
     return payload.size() == sensor_.payload_bytes();
   }
-  /// What speaks against a payload of that size being one: another sensor's.
+  /// Why a payload of that size cannot be a packet of the sensor ("have an azimuth of ..."). The
+  /// other functions require a payload without objection.
   std::optional<std::string> objection(std::string_view payload) const;
-  /// Whether a packet against which nothing speaks has two returns a firing.
+  /// Whether a packet has two returns per firing.
   bool is_dual(std::string_view payload) const;
-  /// The columns of a packet against which nothing speaks. Of a VLS-128 with two returns that is
-  /// one, and the head is taken to turn as fast as the model's while it fires.
+  /// The columns of a packet. A packet of a VLS-128 with two returns has only one; its head is
+  /// assumed to rotate at the model's rate.
   std::vector<MeasuredColumn> columns(std::string_view payload) const;
-  /// Whether anything came back in column `k` of it.
+  /// Whether column `k` has a return.
   bool has_returns(std::string_view payload, std::size_t k) const;
-  /// Adds the returns of column `k`, with intensities from 0 to 255 (Ouster's reflectivity may be
-  /// higher).
+  /// Adds the returns of column `k`, with intensities from 0 to 255 (Ouster's reflectivity can
+  /// exceed 255).
   void add_points(std::string_view payload, std::size_t k, const MeasuredColumn& column,
                   PacketPoints& points) const;
 
  private:
-  /// What came back to a laser in column `k`, the nearest first: nothing, one or two.
-  struct Returns {
-    std::array<PacketReturn, 2> all;
-    std::size_t count = 0;
-  };
-  Returns returns_at(std::string_view payload, std::size_t k, std::size_t laser) const;
-  std::optional<std::string> velodyne_objection(std::string_view payload) const;
-  std::optional<std::string> ouster_objection(std::string_view payload) const;
-  std::vector<MeasuredColumn> velodyne_columns(std::string_view payload) const;
-  std::vector<MeasuredColumn> ouster_columns(std::string_view payload) const;
-
   PacketSensor sensor_;
+  const PacketParser* parser_;  ///< of the manufacturer; a static object
 };
 
 }  // namespace adasplats

@@ -20,11 +20,11 @@ constexpr std::uint64_t kNanosecondsPerMicrosecond = 1000;
 constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 
 template <class T>
-void put_at(std::string& packet, std::size_t place, T value) {
-  std::memcpy(packet.data() + place, &value, sizeof value);
+void put_at(std::string& packet, std::size_t byte, T value) {
+  std::memcpy(packet.data() + byte, &value, sizeof value);
 }
 
-/// Clockwise from the sensor's x axis, in steps of 0.01 degrees; Velodyne's azimuth 0 is ahead.
+/// Clockwise from the sensor's x axis (forward), in steps of 0.01 degrees.
 std::uint16_t azimuth_steps(const LidarModel& model, std::uint32_t column) {
   const double turn = 2.0 * std::numbers::pi;
   const double ahead = -model.first_azimuth_rad / turn;
@@ -33,7 +33,7 @@ std::uint16_t azimuth_steps(const LidarModel& model, std::uint32_t column) {
   return static_cast<std::uint16_t>(steps % kAzimuthSteps);
 }
 
-/// Model and return mode (strongest), as manuals number them.
+/// Return mode (strongest) and model as in the manuals.
 std::pair<std::uint8_t, std::uint8_t> factory_bytes(PacketFormat format) {
   constexpr std::uint8_t kStrongest = 0x37;
   switch (format) {
@@ -43,11 +43,11 @@ std::pair<std::uint8_t, std::uint8_t> factory_bytes(PacketFormat format) {
     case PacketFormat::vls_128: return {kStrongest, 0xA1};
     default: break;
   }
-  throw std::logic_error("factory_bytes: no such packets");
+  throw std::logic_error("factory_bytes: a format without factory bytes");
 }
 
-/// An HDL-64E tells one thing a packet in turn: a letter and its value (manual, "status byte"):
-/// the time and date (UTC), GPS (0: none), temperature (degrees), firmware.
+/// An HDL-64E cycles through status values, one per packet: a letter and its value (manual, "status
+/// byte"): time and date (UTC), GPS (0: none), temperature (degrees), firmware.
 std::pair<std::uint8_t, std::uint8_t> status_bytes(std::uint64_t time_ns, std::uint64_t index) {
   const auto seconds = static_cast<std::time_t>(time_ns / kNanosecondsPerSecond);
   std::tm utc{};
@@ -67,15 +67,15 @@ std::string velodyne_packet(const PacketSensor& sensor, std::span<const PacketCo
   const std::size_t lasers = sensor.lasers();
   for (std::size_t k = 0; k < columns.size(); ++k)
     for (std::size_t laser = 0; laser < lasers; ++laser) {
-      const VelodynePlace place(lasers, k, laser);
-      if (place.channel == 0) {
-        const std::size_t head = place.block * kBlockBytes;
+      const VelodyneSlot slot(lasers, k, laser);
+      if (slot.channel == 0) {
+        const std::size_t head = slot.block * kBlockBytes;
         put_at(packet, head, kBlockFlags[laser / kBlockChannels]);
         put_at(packet, head + 2, azimuth_steps(sensor.model, columns[k].column));
       }
       const PacketReturn& found = columns[k].returns[laser];
-      put_at(packet, place.byte(), static_cast<std::uint16_t>(found.counts));
-      put_at(packet, place.byte() + 2,
+      put_at(packet, slot.byte(), static_cast<std::uint16_t>(found.counts));
+      put_at(packet, slot.byte() + 2,
              static_cast<std::uint8_t>(std::lround(found.intensity / 257.0)));
     }
   const std::uint64_t time_ns =
@@ -102,11 +102,11 @@ std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColu
     put_at(packet, head + 10, column.frame);
     put_at(packet, head + 12, column.column * (kEncoderTicks / sensor.model.columns));
     for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
-      const std::size_t place = head + bytes.column_head + laser * bytes.channel;
+      const std::size_t byte = head + bytes.column_head + laser * bytes.channel;
       const PacketReturn& found = column.returns[laser];
-      put_at(packet, place, found.counts);
-      put_at(packet, place + 4, static_cast<std::uint16_t>(std::lround(found.intensity / 257.0)));
-      put_at(packet, place + 6, found.intensity);
+      put_at(packet, byte, found.counts);
+      put_at(packet, byte + 4, static_cast<std::uint16_t>(std::lround(found.intensity / 257.0)));
+      put_at(packet, byte + 6, found.intensity);
     }
     put_at(packet, head + bytes.column() - bytes.column_foot, kOusterValid);
   }
@@ -118,7 +118,7 @@ std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColu
 std::string encode_packet(const PacketSensor& sensor, std::span<const PacketColumn> columns,
                           std::uint64_t packet_index) {
   if (columns.size() != sensor.facts.columns || sensor.format > PacketFormat::ouster_legacy)
-    throw std::logic_error("encode_packet: not the columns of one packet");
+    throw std::logic_error("encode_packet: wrong number of columns, or a format that is read only");
   return is_ouster(sensor.format) ? ouster_packet(sensor, columns)
                                   : velodyne_packet(sensor, columns, packet_index);
 }

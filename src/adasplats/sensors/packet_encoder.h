@@ -10,17 +10,17 @@
 
 namespace adasplats {
 
-/// All that a sensor measures at one azimuth step.
+/// The measurements at one azimuth step.
 struct PacketColumn {
-  std::uint64_t time_ns = 0;              ///< since 1970, when its first laser fires
+  std::uint64_t time_ns = 0;              ///< of the first laser, since 1970
   std::uint32_t column = 0;               ///< azimuth step, below LidarModel::columns
-  std::uint16_t frame = 0;                ///< revolution
+  std::uint16_t frame = 0;                ///< number of the revolution
   std::span<const PacketReturn> returns;  ///< by laser
 };
 
-/// The payload of one packet, as the sensor sends it for its strongest return. `columns` are
-/// PacketFacts::columns in their order; `packet_index` counts the packets (the status bytes of an
-/// HDL-64E take turns).
+/// The payload of one packet in the sensor's mode for the strongest return. `columns` holds
+/// PacketFacts::columns columns in order; `packet_index` counts the packets (the status bytes of an
+/// HDL-64E cycle).
 std::string encode_packet(const PacketSensor& sensor, std::span<const PacketColumn> columns,
                           std::uint64_t packet_index);
 

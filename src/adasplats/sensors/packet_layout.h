@@ -9,17 +9,17 @@
 
 namespace adasplats {
 
-/// Which of the makers' UDP packets a sensor sends. Sources: the user manuals of the sensors, their
-/// sections on packet structure; of Ouster the "Software User Manual", lidar data packet format.
+/// Format of a sensor's UDP packets. Sources: the sections on packet structure in the sensors' user
+/// manuals; for Ouster "Software User Manual", lidar data packet format.
 enum class PacketFormat : std::uint8_t {
-  vlp_16,         ///< VLP-16: two firing sequences of 16 lasers a block
-  hdl_32e,        ///< HDL-32E: one of 32 lasers
-  vlp_32c,        ///< VLP-32C: likewise, in steps of 4 mm
-  hdl_64e,        ///< HDL-64E S2 and S3: a block of the upper lasers, one of the lower
+  vlp_16,         ///< VLP-16: two firing sequences of 16 lasers per block
+  hdl_32e,        ///< HDL-32E: one firing sequence of 32 lasers per block
+  vlp_32c,        ///< VLP-32C: the same, in steps of 4 mm
+  hdl_64e,        ///< HDL-64E S2 and S3: one block for the upper lasers, one for the lower
   vls_128,        ///< VLS-128: four blocks of 32 lasers
-  ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns of 12 bytes a channel
-  ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read, not written
-  ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL; likewise, 16 bytes a channel
+  ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns, 12 bytes per channel
+  ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read only
+  ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL: 16 bytes per channel; read only
 };
 inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vlp-16", PacketFormat::vlp_16},
@@ -33,14 +33,14 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
 
 constexpr bool is_ouster(PacketFormat format) { return format >= PacketFormat::ouster_legacy; }
 
-/// How the beams of a sensor stand in its packets.
+/// Positions of a sensor's beams in its packets.
 struct PacketLayout {
   PacketFormat format = PacketFormat::vlp_16;
-  /// The maker's number of each beam, which is its place in a firing; one a beam, or empty: from
+  /// The manufacturer's number of each beam, its position in a firing; one a beam, or empty: 0 is
   /// the topmost.
   std::vector<std::uint32_t> laser_ids;
-  /// What is to be added to a range of a packet, so that it counts from where the beam leaves, m;
-  /// one a beam, or empty for zero. Velodyne: dist_correction of the unit's calibration.
+  /// Added to a packet's range, which then starts at the origin of the beam, m; one a beam, or
+  /// empty for zero. Velodyne: dist_correction of the calibration.
   std::vector<double> range_offsets_m;
 };
 

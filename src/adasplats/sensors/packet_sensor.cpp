@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kOusterLasers[] = {16, 32, 64, 128};
 
-/// "'velodyne-vlp-16', ...": of the library, that send packets.
+/// "velodyne-vlp-16, ...": the sensors of the library with a supported packet format.
 std::string sensors_with_packets() {
   std::string list;
   for (const std::string& name : lidar_model_names())
@@ -23,10 +23,9 @@ std::string sensors_with_packets() {
 }
 
 Error not_packets(const LidarModel& model, const std::string& why) {
-  return {ErrorKind::usage,
-          "sensor '" + model.name + "': " + why +
-              "; sensors with packets: " + sensors_with_packets() +
-              ", or a file that is like one of them (its keys packets and laser_ids)"};
+  return {ErrorKind::usage, "sensor '" + model.name + "': " + why +
+                                "; sensors with packets: " + sensors_with_packets() +
+                                ", or a sensor file with the keys packets and laser_ids"};
 }
 
 void check_beams(const LidarModel& model, PacketFormat format, std::size_t lasers) {
@@ -34,16 +33,16 @@ void check_beams(const LidarModel& model, PacketFormat format, std::size_t laser
   const std::string name(word_of(format, kPacketFormats));
   if (!model.free_pattern.empty() || model.rosette || beams == 0)
     throw not_packets(
-        model, "does not fire all its beams in every column, as packets " + name + " have them");
+        model, "does not fire all its beams in every column, which packets " + name + " require");
   const bool fits = lasers != 0
                         ? beams == lasers
                         : std::ranges::find(kOusterLasers, beams) != std::end(kOusterLasers);
   if (!fits)
-    throw not_packets(model, "has " + std::to_string(beams) + " beams, packets " + name + " " +
+    throw not_packets(model, "has " + std::to_string(beams) + " beams, packets " + name + " hold " +
                                  (lasers != 0 ? std::to_string(lasers) : "16, 32, 64 or 128"));
   if (!is_ouster(format) && model.packets->laser_ids.empty())
-    throw not_packets(model, "says no laser_ids, the places of its beams in packets " + name);
-  if (!model.clockwise) throw not_packets(model, "turns counter-clockwise");
+    throw not_packets(model, "has no laser_ids, the positions of its beams in packets " + name);
+  if (!model.clockwise) throw not_packets(model, "rotates counter-clockwise");
 }
 
 }  // namespace
@@ -71,7 +70,7 @@ std::size_t PacketSensor::payload_bytes() const {
 }
 
 PacketSensor packet_sensor(const LidarModel& model) {
-  if (!model.packets) throw not_packets(model, "no packets of it are known");
+  if (!model.packets) throw not_packets(model, "its packet format is unknown");
   PacketSensor sensor{
       model.packets->format, facts_of_packets(model.packets->format), model, {}, {}, {}};
   check_beams(model, sensor.format, sensor.facts.lasers);

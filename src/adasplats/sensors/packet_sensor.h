@@ -11,49 +11,49 @@
 
 namespace adasplats {
 
-/// What the packets of a format are, whichever unit sends them.
+/// Constants of a packet format.
 struct PacketFacts {
-  std::size_t lasers = 0;   ///< 0: any of 16, 32, 64 and 128
-  double quantum_m = 0;     ///< of one count of a range
-  std::uint32_t most = 0;   ///< counts
-  std::size_t columns = 0;  ///< azimuth steps a packet
-  std::uint16_t port = 0;   ///< that sensors send to unless told otherwise
+  std::size_t lasers = 0;  ///< 0: any of 16, 32, 64 and 128
+  double quantum_m = 0;    ///< one count of a range
+  std::uint32_t max_counts = 0;
+  std::size_t columns = 0;  ///< azimuth steps per packet
+  std::uint16_t port = 0;   ///< default UDP port
 };
 PacketFacts facts_of_packets(PacketFormat format);
 
-/// A sensor whose packets are known: lasers are beams by their maker's numbers, rings beams from
-/// the topmost.
+/// A sensor with a supported packet format. Lasers are beams in the manufacturer's order, rings are
+/// beams from the topmost down.
 struct PacketSensor {
   PacketFormat format = PacketFormat::vlp_16;
   PacketFacts facts;
   LidarModel model;
   std::vector<std::uint16_t> ring_of_laser, laser_of_ring;
-  /// One a ring: added to a packet's range it counts from where the beam leaves, m.
+  /// One a ring, m; added to a packet's range, which then starts at the origin of the beam.
   std::vector<double> range_offsets_m;
 
   std::size_t lasers() const { return ring_of_laser.size(); }
-  /// Bytes of a packet's payload.
   std::size_t payload_bytes() const;
+  double column_s() const { return 1.0 / (model.rotation_hz * model.columns); }
 };
 
-/// Errors: usage (a sensor of which no packets are known, with those of the library that have some;
-/// another number of beams than the format has; beams that do not turn clockwise).
+/// Errors: usage (a sensor without a supported packet format, with those of the library that have
+/// one; a wrong number of beams for the format; counter-clockwise rotation).
 PacketSensor packet_sensor(const LidarModel& model);
 
-/// What a sensor measured with one laser.
+/// One return of one laser.
 struct PacketReturn {
-  std::uint32_t counts = 0;     ///< range in PacketFacts::quantum_m; 0: nothing came back
-  std::uint16_t intensity = 0;  ///< share of the highest, from 0 to 65535
+  std::uint32_t counts = 0;     ///< range in PacketFacts::quantum_m; 0: no return
+  std::uint16_t intensity = 0;  ///< 65535: the maximum
 };
 
-/// The file that an unmodified driver needs to know this unit, and its name.
+/// The calibration file of this sensor for an unmodified driver, and its name.
 struct CalibrationFile {
   std::string name;
   std::string text;
 };
 
-/// Velodyne: calibration.yaml as the ROS driver velodyne_pointcloud reads it. Ouster: metadata.json
-/// as its SDK does.
+/// Velodyne: calibration.yaml for the ROS driver velodyne_pointcloud. Ouster: metadata.json for its
+/// SDK.
 CalibrationFile calibration_file(const PacketSensor& sensor);
 
 }  // namespace adasplats

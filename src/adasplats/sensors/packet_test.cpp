@@ -284,7 +284,7 @@ TEST(Packets, KeysOfAFile) {
   const std::string like = "like = \"velodyne-vlp-16\"\n";
   EXPECT_EQ(packet_sensor(load(like)).ring_of_laser[1], 7);
   // New beams are of no known place.
-  expect_error(ErrorKind::usage, {"no packets of it"}, [&] {
+  expect_error(ErrorKind::usage, {"its packet format is unknown"}, [&] {
     packet_sensor(load(like + "beams = 16\nelevation_top_deg = 1\nelevation_bottom_deg = -1\n"));
   });
   expect_error(ErrorKind::config, {"mine.toml:2", "vlp-17"},
