@@ -37,7 +37,7 @@ Camera look_at(Vec3d eye, Vec3d target) {
   if (!(distance > 0) || !std::isfinite(distance))
     throw Error(ErrorKind::usage, "the camera's eye and target are the same point, or not finite");
   const Vec3d forward = view / distance;
-  // Left of the view is z x forward; straight up or down has none: then +y is the image's up.
+  // Left is z x forward. It is undefined for views straight up or down: there +y is up.
   const Vec3d sideways = {-forward.y, forward.x, 0};
   const double flat = length(sideways);
   const Vec3d left = flat > 1e-9 ? sideways / flat : Vec3d{forward.z < 0 ? -1.0 : 1.0, 0, 0};
@@ -54,7 +54,7 @@ Camera birds_eye(Vec3d low, Vec3d high, int width, int height) {
     throw Error(ErrorKind::usage, "a bird's eye view needs a box with low <= high");
   const Vec3d center = 0.5 * (low + high);
   constexpr double kClearance_m = 1.0;
-  constexpr double kBorder = 1.02;  // a rim of 1 % on each side
+  constexpr double kBorder = 1.02;  // 1 % on each side
   constexpr double kSmallest_m = 1e-3;
   Camera camera;
   camera.width = width;

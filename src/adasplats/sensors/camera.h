@@ -7,12 +7,12 @@
 
 namespace adasplats {
 
-/// The rays of a camera in numbers ready for use, on any device.
+/// The rays of a camera, precomputed for CPU and GPU.
 struct CameraRays {
   RigidTransform local_from_camera;
   double center_u = 0, center_v = 0;  ///< middle of the image, pixels
   double focal_px = 1;                ///< pinhole
-  double pixel_m = 0;                 ///< > 0: parallel rays so far apart instead
+  double pixel_m = 0;                 ///< > 0: parallel rays at this distance instead
 
   /// Ray through the point (u, v) of the image, in pixels from the top left corner. Pixel (i, j)
   /// has its centre at (i + 0.5, j + 0.5).
@@ -33,7 +33,7 @@ struct CameraRays {
   }
 };
 
-/// Pinhole or orthographic camera. Camera frame: x forward, y left, z up, as sensors have it.
+/// Pinhole or orthographic camera. Camera frame: x forward, y left, z up, as for sensors.
 struct Camera {
   RigidTransform world_from_camera;
   int width = 2560;
@@ -46,10 +46,10 @@ struct Camera {
   Ray ray(double u, double v, Vec3d origin) const { return rays(origin).ray(u, v); }
 };
 
-/// A camera at `eye` that looks at `target`, z up. Errors: usage where both are the same point.
+/// A camera at `eye` that looks at `target`, z up. Errors: usage if both are the same point.
 Camera look_at(Vec3d eye, Vec3d target);
 
-/// Bird's eye view: straight down over the box [low, high], north (+y) up, the whole box inside.
+/// Bird's eye view: straight down on the box [low, high], north (+y) up, the box fully visible.
 Camera birds_eye(Vec3d low, Vec3d high, int width, int height);
 
 }  // namespace adasplats

@@ -19,10 +19,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_deg", "time_s",
                                                      "ring"};
 
-/// Longer than any scan of a standing scanner takes, and far from where a float has no more
-/// seconds.
+/// Longer than any scan of a stationary scanner, and small enough for a float to resolve seconds.
 constexpr double kLongestScan_s = 86'400;
-constexpr double kMaxScans_hz = 1e6;  // as in files of sensors
+constexpr double kMaxScans_hz = 1e6;  // as in TOML files
 
 std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
   const std::optional<std::uint16_t> ring = parse_number<std::uint16_t>(text);
@@ -31,18 +30,18 @@ std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
   return *ring;
 }
 
-/// Which column holds each of kFields; -1: none does.
+/// The column of each of kFields; -1: none.
 using Columns = std::array<int, kFields.size()>;
 
-/// The line with the names of the columns, in any order; nothing where it is a ray.
+/// Reads the names of the columns, in any order; nothing if the line is a ray.
 std::optional<Columns> read_header(std::string_view line, const FilePlace& place) {
   const std::vector<std::string_view> names = fields_of(line, ',');
   if (parse_number<double>(names.front())) return std::nullopt;
-  const auto starts_like_a_name = [](std::string_view name) {
+  const auto starts_with_letter = [](std::string_view name) {
     return !name.empty() &&
            ((name[0] >= 'a' && name[0] <= 'z') || (name[0] >= 'A' && name[0] <= 'Z'));
   };
-  if (!std::ranges::all_of(names, starts_like_a_name)) return std::nullopt;
+  if (!std::ranges::all_of(names, starts_with_letter)) return std::nullopt;
   Columns columns;
   columns.fill(-1);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -70,8 +69,8 @@ Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t in
   const auto has = [&](std::size_t field) {
     return columns[field] >= 0 && static_cast<std::size_t>(columns[field]) < fields.size();
   };
-  const auto wanted = static_cast<std::size_t>(*std::ranges::max_element(columns)) + 1;
-  if (!has(0) || !has(1) || fields.size() > wanted)
+  const auto max_fields = static_cast<std::size_t>(*std::ranges::max_element(columns)) + 1;
+  if (!has(0) || !has(1) || fields.size() > max_fields)
     throw data_error(place, std::to_string(fields.size()) +
                                 " values, expected azimuth_deg, elevation_deg[, time_s[, ring]]");
   const auto number = [&](std::size_t field) {
@@ -92,8 +91,8 @@ Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t in
           {}};
 }
 
-/// Scans a second: one lasts from time 0 until one more of its firing times would follow the last.
-/// 10 where there is one time.
+/// Scans per second: a scan ends one mean interval after its last firing time. 10 if all rays have
+/// the same time.
 double rotation_hz_of(const std::vector<Firing>& firings) {
   std::vector<float> times_s;
   times_s.reserve(firings.size());
@@ -132,11 +131,11 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
     firings.push_back(
         parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place()));
   }
-  if (firings.empty()) throw data_error({path, {}, {}}, "a pattern with no rays");
+  if (firings.empty()) throw data_error({path, {}, {}}, "no rays");
   file.model.rotation_hz = rotation_hz_of(firings);
   if (file.model.rotation_hz > kMaxScans_hz)
     throw data_error({path, {}, {}},
-                     "its times are those of " + exact_text(file.model.rotation_hz) +
+                     "the times yield " + exact_text(file.model.rotation_hz) +
                          " scans a second, expected at most a million: time_s is in seconds");
   return file;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What all formats of sensors share: which reader, the order of the beams, skipped columns.
+// Loading of sensors by name or from a file, and the parts that all formats share.
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/lidar_library.h"
 
 namespace adasplats {
 
@@ -35,7 +36,7 @@ void reorder(std::vector<T>& values, const std::vector<std::size_t>& order) {
   values = std::move(sorted);
 }
 
-/// Beams topmost first; equally high ones stay in the file's order.
+/// Sorts beams, topmost first; equal elevations keep the file's order.
 void sort_beams(LidarFile& file) {
   std::vector<std::size_t> order(file.model.elevations_rad.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -55,8 +56,8 @@ void sort_beams(LidarFile& file) {
   reorder(file.column_phases, order);
 }
 
-/// Puts the firings of beams that skip columns where those of all columns would stand.
-void skip_columns(LidarFile& file) {
+/// Turns beams that skip columns into a free pattern in the order of ring and column.
+void list_firings(LidarFile& file) {
   if (std::ranges::all_of(file.column_steps, [](std::uint32_t step) { return step == 1; })) return;
   LidarModel& model = file.model;
   for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring) {
@@ -66,23 +67,24 @@ void skip_columns(LidarFile& file) {
   }
 }
 
-/// Before anything is made of it: a slip of the pen must not fill the memory.
+/// Called before any allocation: a typing error must not exhaust the memory.
 void check_size(const LidarFile& file) {
   const LidarModel& model = file.model;
   const bool skips =
       std::ranges::any_of(file.column_steps, [](std::uint32_t step) { return step != 1; });
-  const std::uint64_t most = skips ? kMaxListedRays : kMaxRays;
+  const std::uint64_t max_rays = skips ? kMaxListedRays : kMaxRays;
   const std::uint64_t rays = model.rosette
                                  ? rosette_rays_per_scan(model)
                                  : std::uint64_t{model.elevations_rad.size()} * model.columns;
-  if (rays > most)
+  if (rays > max_rays)
     throw Error(ErrorKind::config, "sensor '" + model.name + "' has " + std::to_string(rays) +
-                                       " rays a scan, expected at most " + std::to_string(most));
+                                       " rays a scan, expected at most " +
+                                       std::to_string(max_rays));
 }
 
 enum class Format : std::uint8_t { toml, json, yaml, xml, csv };
 
-/// By the extension, else by what it holds.
+/// From the extension, else from the content.
 Format format_of(const fs::path& path, std::string_view text) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -98,7 +100,13 @@ Format format_of(const fs::path& path, std::string_view text) {
   return text.find('=') != std::string_view::npos ? Format::toml : Format::csv;
 }
 
-bool names_a_format(const fs::path& path) {
+LidarModel library_model(std::string_view name) {
+  auto file = read_library_lidar(name);
+  if (!file) throw std::logic_error("the library has no sensor " + std::string(name));
+  return finished_model(std::move(*file));
+}
+
+bool has_known_extension(const fs::path& path) {
   const std::string extension = path.extension().string();
   return extension == ".toml" || extension == ".json" || extension == ".yaml" ||
          extension == ".yml" || extension == ".xml" || extension == ".csv";
@@ -141,11 +149,11 @@ std::optional<std::string> column_fault(const LidarModel& model) {
 LidarModel finished_model(LidarFile file) {
   check_size(file);
   sort_beams(file);
-  skip_columns(file);
+  list_firings(file);
   return std::move(file.model);
 }
 
-LidarFile unknown_turning_lidar() {
+LidarFile default_rotating_lidar() {
   LidarFile file;
   file.model.columns = 1800;
   file.model.clockwise = true;
@@ -154,18 +162,19 @@ LidarFile unknown_turning_lidar() {
 
 std::string unknown_lidar_model(const std::string& name, const std::string& or_else) {
   const std::vector<std::string> names = lidar_model_names();
-  const std::string found = "unknown sensor '" + name + "'";
-  if (const std::string meant = did_you_mean(name, names); !meant.empty()) return found + meant;
-  std::string known;
-  for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
-  return found + ": expected " + known + or_else;
+  const std::string message = "unknown sensor '" + name + "'";
+  if (const std::string nearest = did_you_mean(name, names); !nearest.empty())
+    return message + nearest;
+  std::string list;
+  for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;
+  return message + ": expected " + list + or_else;
 }
 
 LidarFile read_lidar(const std::string& name_or_path, int nesting) {
-  if (auto known = read_library_lidar(name_or_path)) return std::move(*known);
+  if (auto library = read_library_lidar(name_or_path)) return std::move(*library);
   const fs::path path(name_or_path);
-  std::error_code ignored;  // a name that is too long is no file's, either
-  if (!names_a_format(path) && !fs::is_regular_file(path, ignored))
+  std::error_code ignored;  // of names that are too long for a file
+  if (!has_known_extension(path) && !fs::is_regular_file(path, ignored))
     throw Error(
         ErrorKind::usage,
         unknown_lidar_model(name_or_path,
@@ -180,6 +189,27 @@ LidarFile read_lidar(const std::string& name_or_path, int nesting) {
     case Format::csv: break;
   }
   return read_lidar_csv(text, path);
+}
+
+std::optional<LidarFile> read_library_lidar(std::string_view name) {
+  const auto library = lidar_library();
+  const auto found = std::ranges::find(library, name, &LibraryLidar::name);
+  if (found == library.end()) return std::nullopt;
+  return read_lidar_toml(found->toml, std::string(name) + ".toml", 0);
+}
+
+std::vector<std::string> lidar_model_names() {
+  std::vector<std::string> names;
+  for (const LibraryLidar& lidar : lidar_library()) names.emplace_back(lidar.name);
+  return names;
+}
+
+LidarModel hdl_64_paper() { return library_model("hdl-64-paper"); }
+
+LidarModel hdl_32_paper() { return library_model("hdl-32-paper"); }
+
+LidarModel load_lidar_model(const std::string& name_or_path) {
+  return finished_model(read_lidar(name_or_path, 0));
 }
 
 }  // namespace adasplats

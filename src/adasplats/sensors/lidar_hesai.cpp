@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The correction files of Hesai sensors: a CSV of angles (Channel, Elevation, Azimuth) and, beside
-// it under the same name with "firetime" for "angle", one of firing times: (Channel, fire
-// time(us)), or one column for each state of the azimuth, "-" where a channel does not fire.
+// The correction files of Hesai sensors: a CSV of angles (Channel, Elevation, Azimuth) and, in the
+// same folder, a CSV of firing times with "firetime" instead of "angle" in its name: (Channel, fire
+// time(us)), or one column per azimuth state, "-" if a channel does not fire.
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ int channel_number(std::string_view text, const FilePlace& place) {
   return *number;
 }
 
-/// Where the columns of angles stand.
+/// Indices of the columns of angles.
 struct AngleColumns {
   std::size_t elevation = 0;
   std::size_t azimuth = 0;
@@ -48,8 +48,8 @@ AngleColumns angle_columns(std::string_view header, const FilePlace& place) {
     if (name.starts_with("azimuth")) columns.azimuth = i;
     if (name.starts_with("fire"))
       throw data_error(place,
-                       "a table of firing times: expected that of the angles, which finds "
-                       "the times beside it (\"angle\" in its name for \"firetime\")");
+                       "a table of firing times: expected the table of angles (\"angle\" instead "
+                       "of \"firetime\" in its name); the times are found next to it");
   }
   if (columns.elevation == 0 || columns.azimuth == 0)
     throw data_error(place, "expected the columns Channel, Elevation, Azimuth");
@@ -68,7 +68,7 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
   FilledLines lines(text, path);
   const std::string_view header = lines.next().value_or("");
   if (lower_case(header).starts_with("operational"))
-    throw data_error(lines.place(), "a table of firing times: expected that of the angles");
+    throw data_error(lines.place(), "a table of firing times: expected the table of angles");
   const AngleColumns columns = angle_columns(header, lines.place());
   std::vector<Channel> channels;
   while (const auto line = lines.next()) {
@@ -78,16 +78,16 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
                                           " values, expected Channel, Elevation, Azimuth");
     const int number = channel_number(fields[0], lines.place());
     if (std::ranges::find(channels, number, &Channel::number) != channels.end())
-      throw data_error(lines.place(), "channel " + std::to_string(number) + " a second time");
+      throw data_error(lines.place(), "channel " + std::to_string(number) + " occurs twice");
     channels.push_back({number,
                         angle_deg(fields[columns.elevation], "elevation", 90, lines.place()),
                         angle_deg(fields[columns.azimuth], "azimuth", 360, lines.place())});
   }
-  if (channels.empty()) throw data_error({path, {}, {}}, "a table with no channels");
+  if (channels.empty()) throw data_error({path, {}, {}}, "the table has no channels");
   return channels;
 }
 
-/// When a channel fires behind the beginning of its column, and in which columns.
+/// When a channel fires after the start of its column, and in which columns.
 struct FiringTime {
   int channel = 0;
   double time_us = 0;
@@ -95,7 +95,7 @@ struct FiringTime {
   std::uint32_t phase = 0;
 };
 
-/// The state of the azimuth counts columns; those of the first operational state are one cycle.
+/// Azimuth states count columns; those of the first operational state form one cycle.
 FiringTime firing_of_states(const std::vector<std::string_view>& fields, std::size_t states,
                             const FilePlace& place) {
   FiringTime firing;
@@ -107,17 +107,17 @@ FiringTime firing_of_states(const std::vector<std::string_view>& fields, std::si
     if (fires.empty()) firing.time_us = time_us;
     fires.push_back(static_cast<std::uint32_t>(state));
   }
-  if (fires.empty()) throw data_error(place, "a channel that never fires");
-  if (states % fires.size() != 0) throw data_error(place, "a channel that fires at uneven steps");
+  if (fires.empty()) throw data_error(place, "the channel never fires");
+  if (states % fires.size() != 0) throw data_error(place, "the channel fires at uneven steps");
   firing.step = static_cast<std::uint32_t>(states / fires.size());
   firing.phase = fires.front();
   for (std::size_t i = 0; i < fires.size(); ++i)
     if (fires[i] != firing.phase + i * firing.step)
-      throw data_error(place, "a channel that fires at uneven steps");
+      throw data_error(place, "the channel fires at uneven steps");
   return firing;
 }
 
-/// How many columns of the table belong to the first operational state.
+/// The number of table columns of the first operational state.
 std::size_t states_of(const std::vector<std::string_view>& operational, const FilePlace& place) {
   std::size_t states = 0;
   while (states + 1 < operational.size() && operational[states + 1] == operational[1]) ++states;
@@ -131,7 +131,7 @@ std::vector<FiringTime> read_firing_times(std::string_view text, const fs::path&
   std::size_t states = 1;
   if (lower_case(header[0]).starts_with("operational")) {
     states = states_of(header, lines.place());
-    lines.next();  // names of the states of the azimuth
+    lines.next();  // names of the azimuth states
   } else if (header.size() != 2 || !lower_case(header[1]).starts_with("fire")) {
     throw data_error(lines.place(), "expected the columns Channel, fire time(us)");
   }
@@ -145,7 +145,7 @@ std::vector<FiringTime> read_firing_times(std::string_view text, const fs::path&
   return times;
 }
 
-/// "X_angle.csv" has its firing times in "X_firetime.csv"; nothing where there is no such file.
+/// "X_firetime.csv" for "X_angle.csv"; nothing if no such file exists.
 std::optional<fs::path> firing_time_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t at = lower_case(name).rfind("angle");
@@ -153,7 +153,7 @@ std::optional<fs::path> firing_time_file(const fs::path& path) {
   for (const char* word : {"firetime", "Firetime", "FireTime"}) {
     std::string sibling = name;
     sibling.replace(at, 5, word);
-    std::error_code ignored;  // a name that is too long is no file's, either
+    std::error_code ignored;  // of names that are too long for a file
     if (fs::is_regular_file(path.parent_path() / sibling, ignored))
       return path.parent_path() / sibling;
   }
@@ -168,7 +168,7 @@ void add_firing_times(const fs::path& path, const std::vector<Channel>& channels
   if (!(-1e-6 * first_us * model.rotation_hz < 1))
     throw data_error({path, {}, {}},
                      "a channel fires " + exact_text(-first_us) +
-                         " us before its column begins, which is longer than a turn takes");
+                         " us before its column starts, which is more than a revolution");
   for (const Channel& channel : channels) {
     const auto firing = std::ranges::find(times, channel.number, &FiringTime::channel);
     if (firing == times.end())
@@ -179,17 +179,17 @@ void add_firing_times(const fs::path& path, const std::vector<Channel>& channels
   }
   if (const auto fault = column_fault(model))
     throw data_error({path, {}, {}}, std::to_string(model.columns) + " columns " + *fault);
-  // Times before that of the block are shifted to 0, and so is where the head was then.
+  // Times before the start of the block are shifted to 0, and the head's azimuth with them.
   model.first_azimuth_rad = -1e-6 * first_us * model.rotation_hz * 2 * std::numbers::pi;
 }
 
-/// The sensor of the library with as many channels, which they list from top to bottom, too.
+/// The library's sensor with as many channels; Hesai also lists them from top to bottom.
 LidarFile base_of(std::size_t channels) {
   switch (channels) {
     case 32: return *read_library_lidar("hesai-pandarxt-32");
     case 64: return *read_library_lidar("hesai-pandar64");
     case 128: return *read_library_lidar("hesai-ot128");
-    default: return unknown_turning_lidar();
+    default: return default_rotating_lidar();
   }
 }
 
@@ -205,7 +205,7 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
   model.name = path.stem().string();
   model.source = path.filename().string() + (times ? ", " + times->filename().string() : "") +
                  (base.has_beams() ? ", like " + base.model.name : "");
-  // Added to the azimuth of a block, which counts clockwise from the sensor's front.
+  // The table's azimuths are added to the block's, clockwise from the sensor's front.
   for (const Channel& channel : channels) {
     model.elevations_rad.push_back(radians(channel.elevation_deg));
     model.azimuth_offsets_rad.push_back(-radians(channel.azimuth_deg));

@@ -78,7 +78,7 @@ TEST_F(HesaiCsv, WrongFilesAreRefusedWithTheLine) {
   expect_data_error("Channel,fire time(us)\n1,2\n", "a table of firing times");
   expect_data_error("Operational State,0\n", "a table of firing times");
   expect_data_error(header + "1,2\n", "my_Angle.csv:2: 2 values");
-  expect_data_error(header + "1,2,3\n1,2,3\n", "my_Angle.csv:3: channel 1 a second time");
+  expect_data_error(header + "1,2,3\n1,2,3\n", "my_Angle.csv:3: channel 1 occurs twice");
   expect_data_error(header + "0,2,3\n", "channel is '0'");
   expect_data_error(header + "1,nan,3\n", "elevation is 'nan'");
   expect_data_error(header + "1,91,3\n", "elevation is '91'");

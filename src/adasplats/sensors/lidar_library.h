@@ -7,13 +7,13 @@
 
 namespace adasplats {
 
-/// A sensor of the library: a file of the folder sensors/, built in.
+/// A sensor of the library: a file of the folder sensors/, embedded in the program.
 struct LibraryLidar {
-  std::string_view name;  ///< the file's, without .toml
-  std::string_view toml;  ///< what the file holds, comments with the sources included
+  std::string_view name;  ///< of the file, without .toml
+  std::string_view toml;  ///< its content, including comments with the sources
 };
 
-/// All of them, by name. Made by cmake/Sensors.cmake.
+/// All sensors, sorted by name. cmake/Sensors.cmake generates the definition.
 std::span<const LibraryLidar> lidar_library();
 
 }  // namespace adasplats

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The metadata of Ouster sensors as the sensor and the Ouster SDK write them: JSON, either all keys
-// on one level (until firmware 2.x) or in groups (beam_intrinsics, lidar_data_format...). Geometry:
-// Ouster Sensor Documentation, "Coordinate Frames and XYZ Calculation".
+// The metadata that Ouster sensors and the Ouster SDK write: JSON, with all keys on one level (up
+// to firmware 2.x) or in groups (beam_intrinsics, lidar_data_format...). Geometry: Ouster Sensor
+// Documentation, "Coordinate Frames and XYZ Calculation".
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 
 constexpr double kMillimetre_m = 1e-3;
 
-/// The keys of the file, wherever they stand.
+/// The keys of the file, on the top level or in a group.
 class Metadata {
  public:
   Metadata(std::string_view text, const std::filesystem::path& path) : path_(path) {
@@ -32,7 +32,7 @@ class Metadata {
     } catch (const Json::parse_error& error) {
       throw error_at_byte(text, error.byte);
     } catch (const Json::exception& error) {
-      throw fault(std::string("is not JSON: ") + error.what());  // a number out of range
+      throw fault(std::string("is not valid JSON: ") + error.what());  // a number out of range
     }
     if (!json_.is_object()) throw fault("is not a JSON object");
   }
@@ -41,7 +41,7 @@ class Metadata {
     return {ErrorKind::data, path_.string() + ": " + message};
   }
 
-  /// nullptr: none is there.
+  /// nullptr if the key is missing.
   const Json* find(const char* key) const {
     if (const auto found = json_.find(key); found != json_.end()) return &*found;
     for (const auto& [group, values] : json_.items())
@@ -50,7 +50,7 @@ class Metadata {
     return nullptr;
   }
 
-  /// Finite numbers; empty where the key is not there.
+  /// Finite numbers; empty if the key is missing.
   std::vector<double> numbers(const char* key) const {
     const Json* list = find(key);
     if (list == nullptr) return {};
@@ -73,7 +73,7 @@ class Metadata {
   Error error_at_byte(std::string_view text, std::size_t byte) const {
     const std::string_view before = text.substr(0, byte == 0 ? 0 : byte - 1);
     const auto lines = static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n'));
-    return data_error({path_, std::nullopt, lines + 1}, "not JSON here");
+    return data_error({path_, std::nullopt, lines + 1}, "not valid JSON");
   }
 
   std::filesystem::path path_;
@@ -83,8 +83,7 @@ class Metadata {
 std::vector<double> beam_angles_rad(const Metadata& metadata, const char* key, double limit_deg) {
   std::vector<double> angles = metadata.numbers(key);
   if (angles.empty())
-    throw metadata.fault(std::string("no ") + key +
-                         ": expected the metadata that an Ouster sensor tells");
+    throw metadata.fault(std::string("no ") + key + ": expected the metadata of an Ouster sensor");
   if (angles.size() > kMaxBeams)
     throw metadata.fault(std::string(key) + " has more than 65536 beams");
   for (double& angle : angles) {
@@ -96,7 +95,7 @@ std::vector<double> beam_angles_rad(const Metadata& metadata, const char* key, d
   return angles;
 }
 
-/// "1024x10": columns and revolutions a second.
+/// "1024x10": columns and revolutions per second.
 void read_mode(const Metadata& metadata, LidarModel& model) {
   const std::string mode = metadata.text("lidar_mode");
   const std::size_t cross = mode.find('x');
@@ -108,12 +107,13 @@ void read_mode(const Metadata& metadata, LidarModel& model) {
   }
   if (!columns || *columns < 1 || *columns > kMaxColumns || !rotation_hz ||
       !(*rotation_hz > 0 && *rotation_hz <= 1e6))
-    throw metadata.fault("lidar_mode is " + shown(mode) + ", expected columns x Hz as '1024x10'");
+    throw metadata.fault("lidar_mode is " + shown(mode) +
+                         ", expected columns x Hz, for example '1024x10'");
   model.columns = *columns;
   model.rotation_hz = *rotation_hz;
 }
 
-/// A list of 16 numbers by rows; the identity where the key is not there.
+/// A 4 x 4 matrix by rows; the identity if the key is missing.
 std::vector<double> matrix_of(const Metadata& metadata, const char* key) {
   std::vector<double> matrix = metadata.numbers(key);
   if (matrix.empty()) matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -123,7 +123,7 @@ std::vector<double> matrix_of(const Metadata& metadata, const char* key) {
   return matrix;
 }
 
-/// From the sensor's axis to where beams leave, along the encoder's azimuth; x, y, z in m.
+/// The beams' origin relative to the sensor's axis, x along the encoder's azimuth; m.
 Vec3d beam_origin(const Metadata& metadata) {
   const std::vector<double> matrix = matrix_of(metadata, "beam_to_lidar_transform");
   if (metadata.find("beam_to_lidar_transform") != nullptr)
@@ -135,26 +135,26 @@ Vec3d beam_origin(const Metadata& metadata) {
   return {kMillimetre_m * along_mm->get<double>(), 0, 0};
 }
 
-/// Turns the lidar frame, whose x points at the connector, to that of the sensor.
+/// Rotates the lidar frame, with x towards the connector, into the sensor frame.
 void read_frames(const Metadata& metadata, LidarModel& model) {
   std::vector<double> matrix = metadata.numbers("lidar_to_sensor_transform");
-  // Older files leave it out: half a turn, and the height of the first generation.
+  // The default of older files: half a revolution, and the height of the first generation.
   if (matrix.empty()) matrix = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36.18, 0, 0, 0, 1};
   if (matrix.size() != 16 || std::fabs(matrix[10] - 1) > 1e-6 ||
       std::fabs(std::hypot(matrix[0], matrix[4]) - 1) > 1e-6)
-    throw metadata.fault("lidar_to_sensor_transform is not a turn around z");
+    throw metadata.fault("lidar_to_sensor_transform is not a rotation about z");
   if (std::hypot(matrix[3], matrix[7]) > 1e-6)
     throw metadata.fault("lidar_to_sensor_transform moves the axis off the sensor's origin");
   model.first_azimuth_rad = std::atan2(matrix[4], matrix[0]);
   const Vec3d origin = beam_origin(metadata) + Vec3d{0, 0, kMillimetre_m * matrix[11]};
   if (!(length(origin) <= kFar_m))
-    throw metadata.fault("its beams begin " + exact_text(length(origin)) +
+    throw metadata.fault("its beams start " + exact_text(length(origin)) +
                          " m away from the sensor");
   model.beam_origins_m.assign(model.elevations_rad.size(), origin);
 }
 
-/// Which packets the metadata speak of; none where it is a profile that is not known. Ranges count
-/// from the axis. Metadata from before there were profiles say none.
+/// The packets of the metadata's profile; none if the profile is not supported. Older metadata have
+/// no profile and mean LEGACY. Ranges in packets start at the axis.
 std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarModel& model) {
   const std::string profile = metadata.text("udp_profile_lidar");
   PacketLayout layout;
@@ -172,13 +172,13 @@ std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarMode
   return layout;
 }
 
-/// The sensor of the library with the same optics: ranges, noise, divergence.
+/// The library's sensor with the same optics: ranges, noise, divergence.
 LidarFile base_of(const std::string& product_line, std::size_t beams) {
   if (product_line.starts_with("OS-0")) return *read_library_lidar("ouster-os0-128");
   if (product_line.starts_with("OS-2")) return *read_library_lidar("ouster-os2-128");
   if (product_line.starts_with("OS-1"))
     return *read_library_lidar(beams == 128 ? "ouster-os1-128" : "ouster-os1-64");
-  return unknown_turning_lidar();
+  return default_rotating_lidar();
 }
 
 }  // namespace

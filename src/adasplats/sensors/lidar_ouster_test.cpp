@@ -97,7 +97,7 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
     text.replace(text.find(from), from.size(), to);
     return text;
   };
-  expect_data_error("", "not JSON");
+  expect_data_error("", "not valid JSON");
   expect_data_error("{\n\n\"a\": }", "mine.json:3: not JSON");
   expect_data_error("[1, 2]", "not a JSON object");
   expect_data_error("{}", "no beam_altitude_angles");
@@ -105,26 +105,26 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
   expect_data_error(with("[10, -10.5]", "[]"), "no beam_altitude_angles");
   expect_data_error(with("[10, -10.5]", "[10, \"x\"]"), "not a list of numbers");
   expect_data_error(with("[10, -10.5]", "[10, 91]"), "an angle of 91");
-  expect_data_error(with("[10, -10.5]", "[10, NaN]"), "not JSON");
-  expect_data_error(with("[10, -10.5]", "[10, 1e999]"), "not JSON");
+  expect_data_error(with("[10, -10.5]", "[10, NaN]"), "not valid JSON");
+  expect_data_error(with("[10, -10.5]", "[10, 1e999]"), "not valid JSON");
   expect_data_error(with("512x20", "512"), "lidar_mode is '512'");
   expect_data_error(with("512x20", "0x20"), "lidar_mode");
   expect_data_error(with("512x20", "512xnan"), "lidar_mode");
   expect_data_error(with("512x20", "99999999999x10"), "lidar_mode");
   expect_data_error(with("\"lidar_mode\"", "\"lidar_mod\""), "lidar_mode is ''");
   expect_data_error(with("_mm\": 15", "_mm\": \"15\""), "is not a number");
-  expect_data_error(with("_mm\": 15", "_mm\": 1e300"), "its beams begin");
-  expect_data_error(with("0,0,1,36", "0,0,1,1e60"), "its beams begin");
-  expect_data_error(with("0,0,1,36", "0,1,0,36"), "not a turn around z");
-  expect_data_error(with("0,0,1,36, ", ""), "not a turn around z");
+  expect_data_error(with("_mm\": 15", "_mm\": 1e300"), "its beams start");
+  expect_data_error(with("0,0,1,36", "0,0,1,1e60"), "its beams start");
+  expect_data_error(with("0,0,1,36", "0,1,0,36"), "not a rotation about z");
+  expect_data_error(with("0,0,1,36, ", ""), "not a rotation about z");
   expect_data_error(with("-1,0,0,0, 0", "-1,0,0,5, 0"), "moves the axis");
 }
 
 TEST_F(OusterJson, HostileFilesAreErrorsNotCrashes) {
-  expect_data_error(std::string(1'000'000, '['), "not JSON");
+  expect_data_error(std::string(1'000'000, '['), "not valid JSON");
   expect_data_error("{\"a\":" + std::string(200'000, '[') + std::string(200'000, ']') + "}",
                     "no beam_altitude_angles");
-  expect_data_error(std::string("{\"a\0\xff\xfe", 6), "not JSON");
+  expect_data_error(std::string("{\"a\0\xff\xfe", 6), "not valid JSON");
 }
 
 }  // namespace

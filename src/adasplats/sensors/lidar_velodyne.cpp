@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The calibration files of Velodyne sensors as the ROS driver velodyne_pointcloud has them, YAML
-// with a list "lasers", each laser in braces or key by key on lines of its own; and as the maker
-// delivers them (db.xml, which VeloView reads, too), in degrees and centimetres. They give angles
-// and offsets; times, ranges and the rest are those of the sensor in the library that has as many
-// lasers.
+// Calibration files of Velodyne sensors: YAML of the ROS driver velodyne_pointcloud with a list
+// "lasers", each laser in braces or with one key per line; and db.xml of the manufacturer, which
+// VeloView also reads, in degrees and centimetres. They hold angles and offsets; the library's
+// sensor with as many lasers supplies times, ranges and the rest.
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +39,12 @@ struct Laser {
     const auto found = values.find(key);
     return found == values.end() ? otherwise : found->second;
   }
-  double needed(std::string_view key) const {
+  double required(std::string_view key) const {
     const auto found = values.find(key);
     if (found == values.end()) throw data_error(place, "a laser without " + std::string(key));
     return found->second;
   }
-  /// A length that a sensor can have; 0 where the file says none.
+  /// A plausible length; 0 if the key is missing.
   double length_m(std::string_view key) const {
     const double length = value(key, 0);
     if (!(std::fabs(length) <= kFar_m))
@@ -55,7 +54,7 @@ struct Laser {
   }
   /// An angle in [-limit, limit] rad.
   double angle_rad(std::string_view key, double limit) const {
-    const double angle = key == "vert_correction" ? needed(key) : value(key, 0);
+    const double angle = key == "vert_correction" ? required(key) : value(key, 0);
     if (!(std::fabs(angle) <= limit))
       throw data_error(place, std::string(key) + " is " + std::to_string(angle) +
                                   ", expected radians from -" + std::to_string(limit) + " to " +
@@ -69,7 +68,7 @@ struct Calibration {
   std::map<std::string, double, std::less<>> header;
 };
 
-/// Takes the YAML of this one format apart, line by line.
+/// Parses the YAML of this format, line by line.
 class CalibrationReader {
  public:
   CalibrationReader(std::string_view text, const std::filesystem::path& path)
@@ -77,10 +76,10 @@ class CalibrationReader {
 
   Calibration read() {
     while (const auto line = lines_.next()) {
-      // A comment behind a value; there are no texts that could hold a '#'.
+      // Strips comments; no value is a text that could contain '#'.
       read_line(trimmed(line->substr(0, line->find(" #"))));
     }
-    if (in_braces_) throw data_error(calibration_.lasers.back().place, "a '{' without its '}'");
+    if (in_braces_) throw data_error(calibration_.lasers.back().place, "a '{' without a '}'");
     if (!list_seen_)
       throw data_error(lines_.place(), "no list 'lasers': not a Velodyne calibration");
     return std::move(calibration_);
@@ -93,7 +92,8 @@ class CalibrationReader {
       list_seen_ = true;
       in_laser_ = false;
     } else if (line.starts_with('-') && list_seen_) {
-      if (in_braces_) throw data_error(lines_.place(), "a laser begins before the '}' of the last");
+      if (in_braces_)
+        throw data_error(lines_.place(), "a laser starts before the '}' of the previous one");
       if (calibration_.lasers.size() >= kMaxBeams)
         throw data_error(lines_.place(), "more than 65536 lasers");
       calibration_.lasers.push_back({{}, lines_.place()});
@@ -145,7 +145,7 @@ class CalibrationReader {
   }
 
   static bool is_laser_key(std::string_view line) {
-    // num_lasers and distance_resolution stand behind the list in some files.
+    // In some files num_lasers and distance_resolution follow the list.
     const std::string_view key = trimmed(line.substr(0, line.find(':')));
     return key != "num_lasers" && key != "distance_resolution";
   }
@@ -157,16 +157,16 @@ class CalibrationReader {
   bool in_braces_ = false;
 };
 
-/// Which group of lasers that fire together, or one after the other, a laser belongs to.
+/// The group of a laser; the lasers of a group fire together or one after the other.
 int group_of(int laser, int group_size) { return laser / group_size; }
 
-/// A sensor of the library and when a laser of it fires, by its id.
+/// A sensor of the library and the firing time of each of its lasers, by id.
 struct Family {
   const char* name;
   double (*firing_time_us)(int laser);
 };
 
-/// Times: see the files of the library (sensors/velodyne-*.toml).
+/// The files sensors/velodyne-*.toml give the sources of the times.
 std::optional<Family> family_of(const Calibration& calibration, const std::string& file_name) {
   const bool staggered = std::ranges::any_of(
       calibration.lasers, [](const Laser& laser) { return laser.value("rot_correction", 0) != 0; });
@@ -194,9 +194,9 @@ std::optional<Family> family_of(const Calibration& calibration, const std::strin
   }
 }
 
-/// Of a laser, in the frame of the head: its offsets lie across its own beam. velodyne_pointcloud
-/// computes x = right, y = forward of xy = r cos e - v sin e, z = r sin e + v cos e, and shifts
-/// that by h to the left of the beam.
+/// Origin of a laser in the head's frame: its offsets are perpendicular to its beam.
+/// velodyne_pointcloud computes x = right, y = forward of xy = r cos e - v sin e, z = r sin e + v
+/// cos e, and shifts the result by h to the left of the beam.
 Vec3d origin_of(const Laser& laser, double elevation_rad, double offset_rad) {
   const double up_m = laser.length_m("vert_offset_correction");
   const double left_m = laser.length_m("horiz_offset_correction");
@@ -209,14 +209,14 @@ Vec3d origin_of(const Laser& laser, double elevation_rad, double offset_rad) {
 
 void add_laser(const Laser& laser, LidarModel& model) {
   const double elevation_rad = laser.angle_rad("vert_correction", std::numbers::pi / 2);
-  // A laser looks at rotation - rot_correction, clockwise.
+  // The clockwise azimuth of a laser is rotation - rot_correction.
   const double offset_rad = laser.angle_rad("rot_correction", 2 * std::numbers::pi);
   model.elevations_rad.push_back(elevation_rad);
   model.azimuth_offsets_rad.push_back(offset_rad);
   model.beam_origins_m.push_back(origin_of(laser, elevation_rad, offset_rad));
 }
 
-/// The ids of the lasers; 0, 1, 2... where the file says none.
+/// The ids of the lasers; by default 0, 1, 2...
 std::vector<int> laser_ids(const Calibration& calibration) {
   const auto count = calibration.lasers.size();
   std::vector<int> ids;
@@ -226,15 +226,15 @@ std::vector<int> laser_ids(const Calibration& calibration) {
     const double id = laser.value("laser_id", static_cast<double>(i));
     if (!(id >= 0 && id < static_cast<double>(count)) || id != std::floor(id) ||
         seen[static_cast<std::size_t>(id)])
-      throw data_error(laser.place, "laser_id is not a whole number from 0 to " +
-                                        std::to_string(count - 1) + " of one laser");
+      throw data_error(laser.place, "laser_id is not a unique whole number from 0 to " +
+                                        std::to_string(count - 1));
     seen[static_cast<std::size_t>(id)] = true;
     ids.push_back(static_cast<int>(id));
   }
   return ids;
 }
 
-/// A child that the format requires.
+/// The child of that name, or an error.
 pugi::xml_node required_child(pugi::xml_node parent, const char* name,
                               const std::filesystem::path& path) {
   if (const pugi::xml_node child = parent.child(name)) return child;
@@ -243,7 +243,7 @@ pugi::xml_node required_child(pugi::xml_node parent, const char* name,
       "no <" + std::string(name) + "> in <" + parent.name() + ">: not a Velodyne calibration");
 }
 
-/// Stores the number of a child, converted to our unit, if the child exists.
+/// Stores the number of a child, if it exists, scaled by `unit`.
 void put_xml_number(pugi::xml_node parent, const char* child_name, double unit, const char* key,
                     const FilePlace& place, std::map<std::string, double, std::less<>>& values) {
   if (const pugi::xml_node child = parent.child(child_name))
@@ -288,14 +288,14 @@ Calibration xml_calibration(const std::string& text, const std::filesystem::path
 
 LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesystem::path& path) {
   const FilePlace place{path, std::nullopt, std::nullopt};
-  if (calibration.lasers.empty()) throw data_error(place, "a calibration with no lasers");
-  const auto told = calibration.header.find("num_lasers");
-  if (told != calibration.header.end() &&
-      told->second != static_cast<double>(calibration.lasers.size()))
+  if (calibration.lasers.empty()) throw data_error(place, "the calibration has no lasers");
+  const auto count = calibration.header.find("num_lasers");
+  if (count != calibration.header.end() &&
+      count->second != static_cast<double>(calibration.lasers.size()))
     throw data_error(place, "num_lasers is not the number of lasers, " +
                                 std::to_string(calibration.lasers.size()));
   const auto family = family_of(calibration, path.filename().string());
-  LidarFile file = family ? *read_library_lidar(family->name) : unknown_turning_lidar();
+  LidarFile file = family ? *read_library_lidar(family->name) : default_rotating_lidar();
   const std::optional<PacketLayout> packets = file.model.packets;
   file.clear_pattern();
   LidarModel& model = file.model;

@@ -111,7 +111,7 @@ TEST_F(VelodyneYaml, WrongFilesAreRefusedWithTheLine) {
   expect_data_error("lasers:\n- {vert_corection: 0}\n", "did you mean 'vert_correction'");
   expect_data_error("lasers:\n- {vert_correction: nan}\n", "mine.yaml:2: vert_correction is 'nan'");
   expect_data_error("lasers:\n- {vert_correction: 15.0}\n", "expected radians");
-  expect_data_error("lasers:\n- {vert_correction: 0.1\n", "without its '}'");
+  expect_data_error("lasers:\n- {vert_correction: 0.1\n", "without a '}'");
   expect_data_error("lasers:\n- {vert_correction: 0.1\n- {vert_correction: 0.1}\n", "mine.yaml:3");
   expect_data_error("lasers:\n- {vert_correction: 0, vert_correction: 0}\n", "two values");
   expect_data_error("lasers:\n- {vert_correction}\n", "expected 'key: value'");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Patterns of two turning wedge prisms (Risley prisms), as in Livox sensors.
+// Patterns of two rotating wedge prisms (Risley prisms), as in Livox sensors.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace adasplats {
 
 namespace {
 
-/// The direction that is `angle` off the axis, +x: its length is the angle, its direction (y, z)
-/// says to which side.
+/// The direction at an angle to the axis, +x: the vector (y, z) gives the size of the angle and its
+/// side.
 Vec3f off_axis(double angle_y_rad, double angle_z_rad) {
   const double angle_rad = std::hypot(angle_y_rad, angle_z_rad);
   const double side = angle_rad > 0 ? std::sin(angle_rad) / angle_rad : 1.0;
@@ -30,7 +30,7 @@ std::size_t rosette_rays_per_scan(const LidarModel& model) {
   return static_cast<std::size_t>(std::llround(model.rosette->points_per_s / model.rotation_hz));
 }
 
-/// Thin prisms: each turns the ray by its deflection towards where it points, and the two add as
+/// Thin prisms: each deflects the ray towards its own azimuth, and the two deflections add as
 /// vectors (Liu, Wang, Zhang 2021, "Low-cost Retina-like Robotic Lidars Based on Incommensurable
 /// Scanning"). All lasers fire in turn.
 std::vector<Firing> rosette_firings(const LidarModel& model, std::uint64_t scan_index) {

@@ -13,7 +13,7 @@
 
 namespace adasplats {
 
-/// Private to sensors/: small texts taken apart, with errors that name the line.
+// Private to sensors/: parsing of text lines, with errors that name the line.
 
 inline std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -22,7 +22,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Takes what stands before `separator` off the front of `rest`.
+/// Removes the text up to `separator` from the front of `rest` and returns it.
 inline std::string_view take(std::string_view& rest, char separator) {
   const std::size_t end = rest.find(separator);
   const std::string_view part = rest.substr(0, end);
@@ -30,7 +30,7 @@ inline std::string_view take(std::string_view& rest, char separator) {
   return part;
 }
 
-/// The fields of a line, without blanks around them; "a," has two.
+/// The fields of a line, trimmed; "a," has two.
 inline std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   bool more = true;
@@ -48,16 +48,16 @@ inline double finite_number(std::string_view text, std::string_view field, const
   return *value;
 }
 
-/// Lines of a text that hold something but comments (#), with their numbers.
+/// The lines of a text that are neither blank nor comments (#), with their numbers.
 class FilledLines {
  public:
   FilledLines(std::string_view text, const std::filesystem::path& path)
       : rest_(text), place_{path, std::nullopt, 0} {
-    // Spreadsheets put a byte order mark in front.
+    // Spreadsheets write a byte order mark.
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
   }
 
-  /// Without blanks around it; nothing at the end.
+  /// The next line, trimmed; nothing at the end.
   std::optional<std::string_view> next() {
     while (!rest_.empty()) {
       place_.line = *place_.line + 1;
