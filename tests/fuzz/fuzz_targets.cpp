@@ -85,13 +85,14 @@ constexpr FuzzTarget kTargets[] = {
      "v1.0-mini/lidarseg.json v1.0-mini/category.json",
      "cloud/load/nuscenes_drive.cpp cloud/load/json_rows.cpp", &open_nuscenes},
     // Settings
-    {"sensor-toml", "a.toml", "sensors/lidar_toml.cpp sensors/lidar_file.cpp", &read_lidar_file},
+    {"sensor-toml", "a.toml",
+     "sensors/lidar_toml.cpp sensors/lidar_file.cpp sensors/toml_table.cpp", &read_lidar_file},
     {"sensor-json", "a.json", "sensors/lidar_ouster.cpp", &read_lidar_file},
     {"sensor-yaml", "a.yaml", "sensors/lidar_velodyne.cpp", &read_lidar_file},
     {"sensor-xml", "a.xml", "sensors/lidar_velodyne.cpp", &read_lidar_file},
     {"sensor-csv", "a_angle.csv a_firetime.csv", "sensors/lidar_csv.cpp sensors/lidar_hesai.cpp",
      &read_lidar_file},
-    {"ray-drop", "a.toml", "sensors/ray_drop_file.cpp", &read_ray_drop},
+    {"ray-drop", "a.toml", "sensors/ray_drop_model.cpp", &read_ray_drop},
     {"labels", "a.toml", "cloud/labels/label_scheme_file.cpp", &read_labels},
     {"class-map", "a.txt", "jobs/segment/output_classes.cpp", &read_classes_of_network},
     // The server

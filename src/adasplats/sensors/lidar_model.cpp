@@ -28,6 +28,16 @@ void check(const LidarModel& model) {
 
 }  // namespace
 
+double full_e2_angle_rad(double stated_rad, DivergenceKind kind) {
+  switch (kind) {
+    case DivergenceKind::fwhm: return 2.0 * stated_rad / std::sqrt(2.0 * std::numbers::ln2);
+    case DivergenceKind::half_e2: return 2.0 * stated_rad;
+    case DivergenceKind::full_e2:
+    case DivergenceKind::unknown: break;
+  }
+  return stated_rad;
+}
+
 std::vector<double> even_fan_rad(int beams, double top_deg, double bottom_deg) {
   std::vector<double> elevations_rad;
   for (int i = 0; i < beams; ++i) {

@@ -5,19 +5,40 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/sensors/divergence.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 #include "adasplats/sensors/packet_layout.h"
 #include "adasplats/sensors/ray_drop_model.h"
-#include "adasplats/sensors/unit_fields.h"
-#include "adasplats/sensors/unit_intensity.h"
 #include "adasplats/sensors/vehicle_body.h"
 
 namespace adasplats {
 
-/// The sensor where a user names none: the HDL-64 as the paper describes it.
+/// What a divergence in a data sheet measures: manufacturers use the word differently.
+enum class DivergenceKind : std::uint8_t {
+  unknown,  ///< a full angle at an unstated level; treated as full_e2
+  fwhm,     ///< full angle at half the intensity of the axis
+  full_e2,  ///< full angle at 1/e^2 of the intensity of the axis
+  half_e2,  ///< half of full_e2: measured from the axis
+};
+
+/// The word for each kind, in sensor files and in Python.
+inline constexpr std::pair<std::string_view, DivergenceKind> kDivergenceKinds[] = {
+    {"fwhm", DivergenceKind::fwhm},
+    {"1/e2", DivergenceKind::full_e2},
+    {"1/e2-half", DivergenceKind::half_e2},
+    {"unknown", DivergenceKind::unknown}};
+
+/// Converts a stated divergence to LidarModel::divergence_rad, the full angle at 1/e^2 of the axis'
+/// intensity. A Gaussian beam has the intensity exp(-2 r^2 / w^2) at radius r and half of it at
+/// r = w sqrt(ln(2) / 2), so w = FWHM / sqrt(2 ln 2) = 0.849 FWHM and the full angle 2 w is 1.699
+/// FWHM.
+double full_e2_angle_rad(double stated_rad, DivergenceKind kind);
+
+/// The default sensor: the HDL-64 as the paper describes it.
 inline constexpr const char* kDefaultSensor = "hdl-64-paper";
 
 /// One emitted ray of one revolution, in the sensor frame.
@@ -26,10 +47,10 @@ struct Firing {
   std::uint16_t ring;    ///< beam number, 0 = topmost
   std::uint32_t column;  ///< azimuth step
   float time_s;          ///< since the start of the revolution
-  Vec3f origin;          ///< where the beam leaves, m; zero for a sensor that is one point
+  Vec3f origin;          ///< where the beam starts, m; zero if all beams share one origin
 };
 
-/// Two wedge prisms that turn: a pattern that does not repeat from scan to scan.
+/// Two rotating wedge prisms: a pattern that does not repeat from scan to scan.
 struct RosettePattern {
   double prism_hz[2] = {0, 0};          ///< turns a second, signed
   double deflection_rad[2] = {0, 0};    ///< of each prism
@@ -37,33 +58,32 @@ struct RosettePattern {
   std::vector<double> laser_tilts_rad;  ///< elevations of the lasers before the prisms; empty: {0}
 };
 
-/// A rotating LiDAR: which rays one revolution holds. Never sees a scene.
+/// A rotating LiDAR: the rays of one revolution, independent of any scene.
 /// Azimuth counter-clockwise from +x, elevation up from the xy-plane.
 struct LidarModel {
   std::string name;
   std::vector<double> elevations_rad;       ///< one a beam, topmost first
   std::vector<double> azimuth_offsets_rad;  ///< one a beam, or empty for zero
-  /// Where each beam leaves in the frame of the turning head (x towards the head's azimuth, z up),
+  /// Origin of each beam in the frame of the rotating head (x towards the head's azimuth, z up);
   /// one a beam, or empty for zero.
   std::vector<Vec3d> beam_origins_m;
-  /// When each beam fires after its column began, s; one a beam, or empty for zero. The head turns
-  /// on meanwhile.
+  /// Firing time of each beam after the start of its column, s; one a beam, or empty for zero. The
+  /// head rotates meanwhile.
   std::vector<double> firing_times_s;
-  /// What each ring of this very unit measures beside the range: to be added to what it reports.
-  /// One a ring, or empty for zero. Simulated only where that is asked for (SimulateOptions).
+  // Properties of a calibrated sensor. Offsets are simulated only on request (SimulateOptions).
+  /// Range offset of each ring, to be added to reported ranges; one a ring, or empty for zero.
   std::vector<double> range_offsets_m;
-  /// Standard deviation of the noise of each ring of this unit; instead of range_noise_m where not
-  /// empty.
+  /// Standard deviation of the range noise of each ring; replaces range_noise_m if not empty.
   std::vector<double> ring_noise_m;
-  /// What this unit makes of intensities; without: they are reported as the scene has them.
+  /// Response of this sensor; without it intensities are reported as the scene has them.
   std::optional<UnitIntensity> intensity;
-  /// How what this unit measures is alike in neighbouring beams; without: each beam by itself.
+  /// Correlation between neighbouring beams; without it beams are independent.
   std::optional<UnitFields> fields;
-  /// Which beams this unit loses; without: none.
+  /// Ray drop; without it no beam is lost.
   std::optional<RayDropModel> drop;
-  /// Its returns from what carries it; without: none.
+  /// Returns from the sensor's own vehicle; without it none.
   std::optional<VehicleBody> body;
-  /// How its packets are laid out; without: none are known.
+  /// Layout of its UDP packets, if it is supported.
   std::optional<PacketLayout> packets;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
@@ -71,25 +91,25 @@ struct LidarModel {
   double min_range_m = 0.0;
   double max_range_m = 120.0;
   double range_noise_m = 0.0;       ///< standard deviation of white noise on the range
-  double angular_noise_rad = 0.0;   ///< the same on the azimuth and elevation that are reported
+  double angular_noise_rad = 0.0;   ///< the same on the reported azimuth and elevation
   double range_resolution_m = 0.0;  ///< ranges are multiples of it; 0: any
-  /// Full angles of the beam between 1/e^2 of the axis' intensity, horizontal and vertical, rad; 0:
-  /// not known. Whatever the source states was converted by full_e2_angle_rad().
+  /// Full angles of the beam at 1/e^2 of the axis' intensity, horizontal and vertical, rad; 0:
+  /// unknown. Readers convert the value of the source with full_e2_angle_rad().
   double divergence_rad[2] = {0, 0};
-  DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< what the source states
-  int max_returns = 1;                    ///< echoes that the sensor reports of a firing
-  bool clockwise = false;                 ///< seen from above
-  std::vector<Firing> free_pattern;       ///< used instead of beams x columns where not empty
-  std::optional<RosettePattern> rosette;  ///< used instead of both where it is there
-  std::string source;                     ///< where the numbers are from: manual and page, or file
+  DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< of the value in the source
+  int max_returns = 1;                                       ///< reported echoes per firing
+  bool clockwise = false;                                    ///< seen from above
+  std::vector<Firing> free_pattern;       ///< replaces beams x columns if not empty
+  std::optional<RosettePattern> rosette;  ///< replaces both
+  std::string source;                     ///< of the numbers: manual and page, or file
 
   std::size_t rays_per_scan() const;
   std::size_t rings() const;
 };
 
-/// The rays of one revolution ring by ring (neighbours in azimuth side by side: a laser row), or
-/// the free pattern as it stands. Paper section "Firing Sequence Rays Generation". `scan_index`
-/// counts the scans of a sensor whose pattern does not repeat (repeats()); others ignore it.
+/// The rays of one revolution ring by ring in the order of azimuth, or the free pattern unchanged.
+/// Paper section "Firing Sequence Rays Generation". `scan_index` matters only to sensors with a
+/// pattern that does not repeat (repeats()).
 std::vector<Firing> firings_of(const LidarModel& model, std::uint64_t scan_index = 0);
 
 /// Whether every scan has the same firings.
@@ -102,22 +122,23 @@ LidarModel hdl_64_paper();
 /// both included, 1800 columns, 100 m.
 LidarModel hdl_32_paper();
 
-/// A name of the library (lidar_model_names()) or a file, known by its extension, else by what
-/// it holds; docs/sensors.md has the keys:
+/// Loads a sensor of the library (lidar_model_names()) or a file. The extension, else the content,
+/// decides the format; docs/sensors.md lists the keys:
 /// - TOML: beams or a rosette, or `like` another sensor;
-/// - JSON: metadata of an Ouster sensor as it writes them;
-/// - YAML: a Velodyne calibration of the ROS driver; CSV: Hesai's angles, with the firing times
-///   beside them; both have the rest from the sensor of the library with as many beams;
+/// - JSON: the metadata that an Ouster sensor writes;
+/// - YAML or XML: a Velodyne calibration; CSV: Hesai's angles, with firing times from the file next
+///   to them; the library's sensor with as many beams supplies the rest;
 /// - CSV of rays: azimuth_deg, elevation_deg[, time_s[, ring]].
-/// Beams are sorted, topmost first; those that skip columns come as a free pattern.
-/// Errors: usage (unknown name, with the nearest known), no_input, config (TOML: unknown key, with
-/// line), data (anything wrong in the other formats).
+/// Beams are sorted, topmost first; beams that skip columns become a free pattern.
+/// Errors: usage (unknown name, with the nearest one), no_input, config (TOML: unknown key, with
+/// line), data (errors in other formats).
 LidarModel load_lidar_model(const std::string& name_or_path);
 
-/// Names that load_lidar_model knows.
+/// Names of the sensors in the library.
 std::vector<std::string> lidar_model_names();
 
-/// "unknown sensor 'vlp-16', did you mean 'velodyne-vlp-16'?", or all names and then `or_else`.
+/// "unknown sensor 'vlp-16', did you mean 'velodyne-vlp-16'?"; without a near name, all names and
+/// then `or_else`.
 std::string unknown_lidar_model(const std::string& name, const std::string& or_else = "");
 
 }  // namespace adasplats

@@ -12,6 +12,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/words.h"
 
 namespace adasplats {
 namespace {
@@ -384,8 +385,8 @@ TEST_F(LidarFiles, WrongNewKeysAreRefusedWithTheirLine) {
   refuse("column_steps = [0, 1]", "bad.toml:3: column_steps");
   refuse("column_phases = [0, 1]", "needs column_steps");
   refuse("column_steps = [2, 2]\ncolumn_phases = [0, 2]", "not below its step");
-  refuse("[rosette]\npoints_per_s = 1", "cannot stand together with a rosette");
-  refuse("rosette = 1", "cannot stand together with a rosette");
+  refuse("[rosette]\npoints_per_s = 1", "cannot be combined with a rosette");
+  refuse("rosette = 1", "cannot be combined with a rosette");
 }
 
 TEST_F(LidarFiles, TooManyRaysAreRefused) {
@@ -439,7 +440,7 @@ TEST_F(LidarFiles, WrongTomlIsRefusedWithItsLine) {
   expect_contains(toml_failure(beams), "columns is missing");
   expect_contains(toml_failure("columns = 4\n"), "elevations_deg is missing");
   expect_contains(toml_failure("columns = 4\nbeams = 3\n"), "elevation_top_deg is missing");
-  expect_contains(toml_failure(beams + "beams = 3\ncolumns = 4\n"), "cannot stand together");
+  expect_contains(toml_failure(beams + "beams = 3\ncolumns = 4\n"), "cannot be combined");
   expect_contains(toml_failure("elevations_deg = []\ncolumns = 4\n"), "bad.toml:1: elevations_deg");
   expect_contains(toml_failure("elevations_deg = [0, nan]\ncolumns = 4\n"), "from -90 to 90");
   expect_contains(toml_failure("elevations_deg = [0,\n 91]\ncolumns = 4\n"), "bad.toml:2:");
@@ -581,6 +582,38 @@ TEST_F(LidarFiles, WrongCsvIsRefusedWithItsLine) {
   expect_contains(csv_failure("1,2,0,-1\n"), "ring is '-1'");
   expect_contains(csv_failure("1,2,0,65536\n"), "ring is '65536'");
   expect_contains(csv_failure("1;2\n"), "1 values");
+}
+
+/// Relative intensity of a Gaussian beam at an angle to its axis.
+double gaussian_intensity(double off_rad, double full_e2_rad) {
+  const double radius = 0.5 * full_e2_rad;
+  return std::exp(-2.0 * off_rad * off_rad / (radius * radius));
+}
+
+// Oracle: the definitions, on the profile of a Gaussian beam.
+TEST(Divergence, ConvertsEveryKindToTheLevelOfAGaussianBeam) {
+  const double stated = 3e-3;
+  const double level = std::exp(-2.0);
+  const auto at = [&](DivergenceKind kind, double off) {
+    return gaussian_intensity(off, full_e2_angle_rad(stated, kind));
+  };
+  EXPECT_NEAR(at(DivergenceKind::fwhm, 0.5 * stated), 0.5, 1e-12);
+  EXPECT_NEAR(at(DivergenceKind::full_e2, 0.5 * stated), level, 1e-12);
+  EXPECT_NEAR(at(DivergenceKind::half_e2, stated), level, 1e-12);
+  EXPECT_NEAR(at(DivergenceKind::unknown, 0.5 * stated), level, 1e-12);
+}
+
+// Oracle: the published factor; half the energy of a Gaussian beam lies within its half maximum.
+TEST(Divergence, HalfTheEnergyLiesWithinTheHalfMaximum) {
+  const double radius = 0.5 * full_e2_angle_rad(1.0, DivergenceKind::fwhm);
+  EXPECT_NEAR(radius, 0.849, 5e-4);
+  EXPECT_NEAR(1.0 - std::exp(-2.0 * 0.25 / (radius * radius)), 0.5, 1e-12);
+}
+
+TEST(Divergence, EveryKindHasAUniqueWord) {
+  for (const auto& [word, kind] : kDivergenceKinds)
+    EXPECT_EQ(word_of(kind, kDivergenceKinds), word);
+  EXPECT_EQ(full_e2_angle_rad(0, DivergenceKind::fwhm), 0.0);
 }
 
 }  // namespace

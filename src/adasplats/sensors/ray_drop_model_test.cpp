@@ -82,7 +82,7 @@ TEST_F(RayDropFile, ErrorsNameTheLine) {
   EXPECT_NE(error_of(weights + "blocked = [1]").find(":2: "), std::string::npos);
   EXPECT_NE(error_of(weights + "edge_runs = [0, 0, 0, 0, 0, 0, 0]").find(":2: edge_runs has 7"),
             std::string::npos);
-  EXPECT_NE(error_of(weights + "edge_runs = [0.5, 0.5, 0.1]").find("more than 1 together"),
+  EXPECT_NE(error_of(weights + "edge_runs = [0.5, 0.5, 0.1]").find("a sum above 1"),
             std::string::npos);
   EXPECT_NE(error_of(weights + "[[blocked]]\nelevation_deg = 1").find(":2: "), std::string::npos);
   EXPECT_NE(error_of(weights + "[[blocked]]\nelevation_deg = 1\nazimuths_deg = [[1]]").find(":4: "),

@@ -9,17 +9,23 @@
 
 namespace adasplats {
 
-/// What users set instead of a sensor's own values.
+/// Settings that replace a sensor's own values.
 struct SensorOverrides {
   std::optional<double> range_noise_m;
   std::optional<double> min_range_m;
   std::optional<double> max_range_m;
   std::optional<double> rotation_hz;
 
-  void apply(LidarModel& sensor) const;
+  void apply(LidarModel& sensor) const {
+    sensor.range_noise_m = range_noise_m.value_or(sensor.range_noise_m);
+    if (range_noise_m) sensor.ring_noise_m.clear();
+    sensor.min_range_m = min_range_m.value_or(sensor.min_range_m);
+    sensor.max_range_m = max_range_m.value_or(sensor.max_range_m);
+    sensor.rotation_hz = rotation_hz.value_or(sensor.rotation_hz);
+  }
 };
 
-/// No LiDAR sees farther within an atmosphere; what is beyond is a mistake, as of a unit.
+/// No LiDAR measures farther in an atmosphere; a larger value is a mistake, such as a wrong unit.
 inline constexpr double kFarthestSensed_m = 1e6;
 
 template <class Visit>
@@ -32,14 +38,14 @@ void visit_settings(SensorOverrides& sensor, Visit&& visit) {
                 .max = 1000},
         sensor.range_noise_m);
   visit(Setting{.name = "min_range",
-                .help = "Instead of the sensor's, m",
+                .help = "Minimum range, m; the default is the sensor's",
                 .value = "M",
                 .key = "min_range_m",
                 .min = 0,
                 .max = kFarthestSensed_m},
         sensor.min_range_m);
   visit(Setting{.name = "max_range",
-                .help = "Instead of the sensor's, m",
+                .help = "Maximum range, m; the default is the sensor's",
                 .value = "M",
                 .key = "max_range_m",
                 .min = 0,
@@ -47,7 +53,7 @@ void visit_settings(SensorOverrides& sensor, Visit&& visit) {
                 .exclusive_min = true},
         sensor.max_range_m);
   visit(Setting{.name = "rotation_rate",
-                .help = "Revolutions a second instead of the sensor's",
+                .help = "Revolutions per second; the default is the sensor's",
                 .value = "HZ",
                 .key = "rotation_hz",
                 .min = 1e-3,

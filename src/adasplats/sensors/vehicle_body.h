@@ -11,29 +11,28 @@
 
 namespace adasplats {
 
-/// Half degrees of a turn, counted counter-clockwise from the rear (-x).
+/// Columns of half a degree, counter-clockwise from the rear (-x).
 inline constexpr std::uint32_t kBodyColumns = 720;
-/// Of a direction in the sensor's frame.
+/// The column of a direction in the sensor's frame.
 std::uint32_t body_column(Vec3f direction);
-/// Where one begins, counter-clockwise from +x, -180 to 179.5.
+/// Where a column begins, counter-clockwise from +x, -180 to 179.5.
 double body_azimuth_deg(std::uint32_t column);
 
-/// What the beams of a ring measure in half a degree of azimuth where they meet the sensor's own
-/// carrier: a roof, a mirror, a rack. It stands still in the sensor's frame, so no model of a place
-/// has it.
+/// Returns of one ring in one column from the sensor's own vehicle: a roof, a mirror, a rack. The
+/// vehicle does not move in the sensor's frame, so no model of a scene contains it.
 struct BodyCell {
   std::uint16_t ring = 0;    ///< topmost 0
   std::uint16_t column = 0;  ///< body_column()
-  float share = 0;           ///< of the beams that return from it, 0..1; others pass it
+  float share = 0;           ///< of the beams that it reflects, 0..1; the others pass
   float range_m = 0;
-  float intensity = 0;  ///< in the unit of the sensor's; 0 where it reports none
+  float intensity = 0;  ///< in the sensor's intensity unit; 0 if it reports none
 };
 
-/// All of one unit on its carrier, by ring, then column.
+/// All cells of a calibrated sensor on its vehicle, by ring, then column.
 struct VehicleBody {
   std::vector<BodyCell> cells;
 
-  /// Number of the cell that a beam meets; cells.size(): none.
+  /// Index of the cell that a beam hits; cells.size(): none.
   std::size_t find(std::uint16_t ring, Vec3f direction) const;
 };
 

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "adasplats/evaluate/unit/unit_beams.h"
-#include "adasplats/sensors/unit_fields.h"
-#include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 #include "adasplats/sensors/vehicle_body.h"
 #include "adasplats/simulate/scan/ray_drop.h"
 

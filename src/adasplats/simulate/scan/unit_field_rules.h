@@ -7,7 +7,7 @@
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/sensors/unit_fields.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/sensors/unit_sensor.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ std::vector<double> waves(std::size_t count, double height) {
 }
 
 // Oracle: the library's sensor.
-TEST(UnitSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
+TEST(CalibratedSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
   const TemporaryFolder folder;
   for (const std::string& name : lidar_model_names()) {
     const LidarModel known = load_lidar_model(name);
@@ -55,7 +55,7 @@ TEST(UnitSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
 }
 
 // Oracle: analytic. Beams are sorted, topmost first, and offsets go with them.
-TEST(UnitSensor, OffsetsOfRangesAreOneABeamAndSortedWithThem) {
+TEST(CalibratedSensor, OffsetsOfRangesAreOneABeamAndSortedWithThem) {
   const TemporaryFolder folder;
   const auto low_first =
       folder.write("low.toml", std::string("columns = 4\nelevations_deg = [-1, 2]\n"
@@ -85,7 +85,7 @@ UnitIntensity intensity_of_two_levels(std::size_t rings) {
 }
 
 // Oracle: what was written.
-TEST(UnitSensor, TraitsAreReadBack) {
+TEST(CalibratedSensor, TraitsAreReadBack) {
   const TemporaryFolder folder;
   const std::string name = "velodyne-vlp-16";
   const UnitIntensity intensity = intensity_of_two_levels(16);
@@ -157,7 +157,7 @@ TEST(UnitSensor, TraitsAreReadBack) {
   EXPECT_FALSE(load_lidar_model(other.string()).drop || load_lidar_model(other.string()).body);
 }
 
-TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
+TEST(CalibratedSensor, ErrorsOfFieldsSayWhatIsWrong) {
   const TemporaryFolder folder;
   const auto error_is = [&](const std::string& lines, const std::string& says) {
     const auto file =
@@ -172,7 +172,7 @@ TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
   error_is("turns = 1\ncolumns = 1\nbyte = 'AAAAAAAA'\n", "did you mean 'bytes'");
 }
 
-TEST(UnitSensor, ErrorsOfDropAndBodySayWhatIsWrong) {
+TEST(CalibratedSensor, ErrorsOfDropAndBodySayWhatIsWrong) {
   const TemporaryFolder folder;
   const auto error_is = [&](const std::string& lines, const std::string& says) {
     const auto file = folder.write("bad.toml", "columns = 4\nelevations_deg = [-1, 2]\n" + lines);
@@ -187,10 +187,10 @@ TEST(UnitSensor, ErrorsOfDropAndBodySayWhatIsWrong) {
   error_is("[body]\ncells = [[0, 0, 101, 1000, 0]]\n", "cells has a row 1");
   error_is("[body]\ncells = [[0, 0, 50, 0, 0]]\n", "cells has a row 1");
   error_is("[body]\ncells = [[1, 0, 5, 9, 0], [0, 0, 5, 9, 0], [1, 0, 6, 9, 0]]\n",
-           "two rows of one ring and azimuth");
+           "two rows for one ring and azimuth");
 }
 
-TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
+TEST(CalibratedSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
   const TemporaryFolder folder;
   const std::string row = "[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]";
   const std::string good =
@@ -205,7 +205,7 @@ TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
   EXPECT_TRUE(load_lidar_model(file.string()).intensity.has_value());
   error_is("highest = 1\n", "levels is missing");
   error_is(good + "zero_shares = [0]\n", "did you mean 'zero_share'");
-  error_is(good + "ring_expected = [[0, 1], [0, 1]]\n", "stand together");
+  error_is(good + "ring_expected = [[0, 1], [0, 1]]\n", "require each other");
   error_is(good + "ring_expected = [[0, 1], [1, 0]]\nring_level = [[0, 1], [0, 1]]\n",
            "is not ascending");
   error_is(good + "ring_expected = [[0, 1], [0]]\nring_level = [[0, 1], [0, 1]]\n",
@@ -217,7 +217,7 @@ TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
            "zero_share is not a number from 0 to 1");
 }
 
-TEST(UnitSensor, OffsetsOfOtherSensorsAreNoUnit) {
+TEST(CalibratedSensor, OffsetsOfOtherSensorsAreNoUnit) {
   expect_error(ErrorKind::usage, {"vlp-16", "did you mean"},
                [] { unit_sensor_toml("vlp-16", {}); });
   const std::vector<double> many(17);

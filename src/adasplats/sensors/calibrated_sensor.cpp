@@ -1,10 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/sensors/unit_sensor.h"
-
-// As in lidar_toml.cpp.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
+#include "adasplats/sensors/calibrated_sensor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +18,7 @@
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/lidar_library.h"
+#include "adasplats/sensors/toml_table.h"
 
 namespace adasplats {
 namespace {
@@ -29,7 +26,7 @@ namespace {
 constexpr std::size_t kLineWidth = 100;
 constexpr const char* kFoundBy = "; elevations_deg and range_offsets_m of this unit by calibration";
 
-/// One key and what it holds, in the order of a file.
+/// One key of a file and its value as text.
 struct SensorEntry {
   std::string key, value;
 };
@@ -43,7 +40,7 @@ std::string toml_text(const toml::node& scalar) {
   return text.str();
 }
 
-/// Lists of lists and lists of scalars, without line breaks.
+/// A scalar or a (nested) list on one line.
 std::string text_of_node(const toml::node& node) {
   const toml::array* list = node.as_array();
   if (list == nullptr) return toml_text(node);
@@ -61,7 +58,7 @@ std::string text_of_numbers(const std::vector<double>& numbers) {
   return text_of_node(list);
 }
 
-/// `key = value` with lists that are too long for a line broken behind commas.
+/// `key = value`; lists that are too long for a line are wrapped after commas.
 std::string lines_of(const std::string& key, const std::string& value) {
   const std::string line = key + " = " + value;
   if (line.size() <= kLineWidth || value.front() != '[') return line + "\n";
@@ -84,7 +81,7 @@ std::string lines_of(const std::string& key, const std::string& value) {
   return text + part + "\n]\n";
 }
 
-/// Number of each beam of a file among the rings, topmost 0: as load_lidar_model sorts them.
+/// The ring (topmost 0) of each beam of a file, sorted as load_lidar_model sorts them.
 std::vector<std::size_t> rings_of_beams(const std::vector<double>& elevations_rad) {
   std::vector<std::size_t> beams(elevations_rad.size()), rings(elevations_rad.size());
   std::iota(beams.begin(), beams.end(), std::size_t{0});
@@ -98,7 +95,7 @@ double offset_at(std::span<const double> offsets, std::size_t ring) {
   return ring < offsets.size() ? offsets[ring] : 0.0;
 }
 
-/// Numbers of six digits.
+/// Numbers with six significant digits.
 template <class Number>
 std::string rounded_list(std::span<const Number> numbers) {
   std::string text;
@@ -118,7 +115,7 @@ std::string rows_text(const char* key, std::span<const float> values, std::size_
   return text + "]\n";
 }
 
-/// The table [intensity], which has to stand behind all keys.
+/// The table [intensity], which must follow all keys.
 std::string intensity_text(const UnitIntensity& unit) {
   std::string text = "\n[intensity]\n";
   text += "step = " + exact_text(unit.step) + "\nhighest = " + exact_text(unit.highest) + "\n";
@@ -135,7 +132,7 @@ std::string intensity_text(const UnitIntensity& unit) {
   return text + rows_text("reported", unit.reported, kTextureNodes);
 }
 
-/// The table [fields]: as [intensity], behind all keys.
+/// The table [fields], which must follow all keys.
 std::string fields_text(const UnitFields& fields) {
   const std::string_view bytes(reinterpret_cast<const char*>(fields.bytes.data()),
                                fields.bytes.size());
@@ -147,16 +144,16 @@ std::string fields_text(const UnitFields& fields) {
          "\nbytes = \"" + to_base64(bytes) + "\"\n";
 }
 
-/// The keys of a file of the library in its order, but for those that say the elevations.
+/// The keys of a library file in its order, except those of elevations and range offsets.
 std::vector<SensorEntry> entries_of(std::string_view library_toml) {
   const toml::table table = toml::parse(library_toml);
-  if (table.contains("like")) throw std::logic_error("a sensor of the library is like another");
+  if (table.contains("like")) throw std::logic_error("a sensor of the library uses the key like");
   std::vector<std::pair<std::uint32_t, SensorEntry>> found;
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
-    const bool says_elevations = name == "elevations_deg" || name == "beams" ||
-                                 name.starts_with("elevation_") || name == "range_offsets_m";
-    if (says_elevations) continue;
+    const bool is_replaced = name == "elevations_deg" || name == "beams" ||
+                             name.starts_with("elevation_") || name == "range_offsets_m";
+    if (is_replaced) continue;
     found.push_back({node.source().begin.line, {name, text_of_node(node)}});
   }
   std::ranges::stable_sort(found, {}, &std::pair<std::uint32_t, SensorEntry>::first);
@@ -171,12 +168,12 @@ std::vector<SensorEntry> entries_of(std::string_view library_toml) {
 std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets,
                              const UnitTraits& traits) {
   const auto library = lidar_library();
-  const auto known = std::ranges::find(library, library_name, &LibraryLidar::name);
-  if (known == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));
+  const auto found = std::ranges::find(library, library_name, &LibraryLidar::name);
+  if (found == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));
   const LidarFile file = *read_library_lidar(library_name);
   const std::size_t beams = file.model.elevations_rad.size();
   if (beams == 0 || offsets.range_m.size() > beams || offsets.elevation_rad.size() > beams)
-    throw std::logic_error("offsets of other beams than those of " + library_name);
+    throw std::logic_error("more offsets than beams of " + library_name);
   const std::vector<std::size_t> rings = rings_of_beams(file.model.elevations_rad);
   std::vector<double> elevations_deg, ranges_m;
   for (std::size_t beam = 0; beam < beams; ++beam) {
@@ -189,7 +186,7 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
       "# One unit of " + library_name +
       ":\n# elevations_deg are corrected; range_offsets_m is to be added to what each laser "
       "reports\n# (simulated where --unit-offsets asks for it).\n";
-  for (SensorEntry& entry : entries_of(known->toml)) {
+  for (SensorEntry& entry : entries_of(found->toml)) {
     if (entry.key == "name") entry.value = toml_text(toml::value(library_name + "-unit"));
     if (entry.key == "source")
       entry.value = toml_text(toml::value(
