@@ -21,9 +21,9 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kLeftOut = 8;         // every so many-th point
-constexpr double kFlatnessOfJudging = 0.1;  // m
-constexpr double kMaxDistance_m = 0.25;     // that counts where mounts are compared
+constexpr std::size_t kLeftOut = 8;  // every eighth point is held out
+constexpr double kValidationFlatness_m = 0.1;
+constexpr double kMaxDistance_m = 0.25;  // of a point in the comparison of mounts
 
 double between(double first, double last, int round, int rounds) {
   const double share = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 1;
@@ -53,13 +53,13 @@ class Calibrator {
       : cloud_(cloud), options_(options), steps_(steps), executor_(executor) {
     for (const TimedPose& pose : cloud.scan_poses) {
       const RigidTransform& world_from_sensor = pose.world_from_sensor;
-      places_.push_back(world_from_sensor.translation - cloud.origin);
+      positions_.push_back(world_from_sensor.translation - cloud.origin);
       axes_.push_back(world_from_sensor.rotation * Vec3d{0, 0, 1});
     }
     for (const std::uint16_t laser : cloud.lasers)
       if (laser != kNoLaser) lasers_ = std::max(lasers_, std::size_t{laser} + 1);
-    mounted_from_given_.resize(places_.size());
-    corrected_from_mounted_.resize(places_.size());
+    mounted_from_given_.resize(positions_.size());
+    corrected_from_mounted_.resize(positions_.size());
     corrections_.offsets.range_m.resize(lasers_);
     corrections_.offsets.elevation_rad.resize(lasers_);
     compose();
@@ -69,11 +69,11 @@ class Calibrator {
 
   std::pair<Calibration, CalibrationReport> run() {
     CalibrationReport report;
-    judge(report.given_m, report.given);
+    validate(report.given_m, report.given);
     if (options_.mount_correction) report.mount = estimate_mount();
     const bool is_mounted = report.mount && report.mount->objection.empty();
     double before_m = report.given_m;
-    if (is_mounted) judge(before_m, report.calibrated);
+    if (is_mounted) validate(before_m, report.calibrated);
     if (!options_.poses && !options_.ranges && !options_.elevations)
       report.objection = is_mounted || !report.mount ? "nothing else was asked for"
                                                      : "the mount: " + report.mount->objection;
@@ -81,7 +81,7 @@ class Calibrator {
       make_round(round, report);
     if (report.objection.empty()) {
       align_to_mounted();
-      judge(report.calibrated_m, report.calibrated);
+      validate(report.calibrated_m, report.calibrated);
       if (!(report.calibrated_m < options_.min_gain * before_m))
         report.objection = "points that took no part lie no better on the planes of the others";
     }
@@ -120,16 +120,16 @@ class Calibrator {
     corrections_.offsets.range_m.resize(lasers_);
     corrections_.offsets.elevation_rad.resize(lasers_);
     compose();
-    judge(report.calibrated_m, report.calibrated);
+    validate(report.calibrated_m, report.calibrated);
     corrections_.offsets = {};
     report.mount->alone_because = std::move(report.objection);
     report.objection.clear();
   }
 
-  /// Every so many-th point with a known beam, so that the scans have as many as are wanted in the
-  /// mean, and few of these.
+  /// Chooses every n-th point that belongs to a beam, with n from points_a_scan, and a subset for
+  /// coarse rounds.
   void choose_points() {
-    const std::size_t wanted = options_.points_a_scan * std::max<std::size_t>(1, places_.size());
+    const std::size_t wanted = options_.points_a_scan * std::max<std::size_t>(1, positions_.size());
     const std::size_t stride = std::max<std::size_t>(1, cloud_.size() / wanted);
     const std::size_t candidates = (cloud_.size() + stride - 1) / stride;
     const auto for_beams = [&](const auto& take) {
@@ -156,18 +156,18 @@ class Calibrator {
     }
   }
 
-  /// What follows of the mount and what corrects it.
+  /// Combines the mount with the corrections of scans.
   void compose() {
-    corrections_.corrected_from_given.resize(places_.size());
-    corrections_.pivots.resize(places_.size());
-    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+    corrections_.corrected_from_given.resize(positions_.size());
+    corrections_.pivots.resize(positions_.size());
+    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
       corrections_.corrected_from_given[scan] = correction * mounted_from_given_[scan];
-      corrections_.pivots[scan] = correction * places_[scan];
+      corrections_.pivots[scan] = correction * positions_[scan];
     }
   }
 
-  /// Every `stride`-th of the chosen points that are not left out, in the frames of their scans.
+  /// Every `stride`-th chosen point that is not held out, in the frame of its scan.
   MountPoints mount_points(std::size_t stride) const {
     std::vector<RigidTransform> sensor_from_local;
     for (const TimedPose& pose : cloud_.scan_poses) {
@@ -185,15 +185,15 @@ class Calibrator {
     return points;
   }
 
-  /// Searches with few points; what poses of single scans do not make up for is looked at closely.
+  /// Searches with few points; refines errors that corrections of single poses cannot compensate.
   MountReport estimate_mount() {
     const MountOptions& mount = options_.mount;
-    const std::size_t wanted = mount.points_a_scan * std::max<std::size_t>(1, places_.size());
-    // Odd: points of a laser may lie a power of two apart.
+    const std::size_t wanted = mount.points_a_scan * std::max<std::size_t>(1, positions_.size());
+    // Odd: the points of a laser can be a power of two apart.
     const std::size_t stride = std::max<std::size_t>(1, all_.indices.size() / wanted) | 1;
     MountReport report;
-    if (places_.size() < mount.min_scans) {
-      report.objection = "too few scans (" + std::to_string(places_.size()) + ")";
+    if (positions_.size() < mount.min_scans) {
+      report.objection = "too few scans (" + std::to_string(positions_.size()) + ")";
       return report;
     }
     report.found = search_mount(mount_points(stride), cloud_.scan_poses, mount, executor_);
@@ -202,7 +202,7 @@ class Calibrator {
     report.found = refine_mount(mount_points(1), cloud_.scan_poses, report.found, mount, executor_);
     report.objection = objection_to(report.found);
     if (!report.objection.empty()) return report;
-    judge_mount(report);
+    compare_mounts(report);
     if (report.mounted_m < mount.min_gain * report.given_m) return report;
     report.objection =
         "points that took no part lie not clearly better on the planes of the others";
@@ -210,16 +210,16 @@ class Calibrator {
     return report;
   }
 
-  /// Of the planes that are flat with the given mount, and of those that are with the found one:
-  /// the floor is flat with any, so it is the same points that are compared. Sets the mount.
-  void judge_mount(MountReport& report) {
+  /// Compares both mounts on the planes that are flat with the given one and on those that are flat
+  /// with the found one. Sets the mount.
+  void compare_mounts(MountReport& report) {
     DistanceSum given, mounted;
-    find_planes(PointSet::all, kFlatnessOfJudging);
+    find_planes(PointSet::all, kValidationFlatness_m);
     add_left_out(given);
     set_mount(report.found.mount);
     steps_.correct(PointSet::all, corrections_);
     add_left_out(mounted);
-    find_planes(PointSet::all, kFlatnessOfJudging);
+    find_planes(PointSet::all, kValidationFlatness_m);
     add_left_out(mounted);
     set_mount({});
     steps_.correct(PointSet::all, corrections_);
@@ -232,7 +232,7 @@ class Calibrator {
     report.mounted_m = mean_m(mounted);
   }
 
-  /// Of points that were left out from planes through the others of the same cells.
+  /// Adds the distances of held-out points from planes through the others of the same cells.
   void add_left_out(DistanceSum& sum) {
     for (const DistanceSum& of_plane :
          steps_.left_out_distances(kMaxDistance_m, options_.max_weight)) {
@@ -255,17 +255,17 @@ class Calibrator {
   void set_mount(const MountCorrection& mount) {
     mount_ = mount;
     const RigidTransform given_from_mounted = mount.given_from_mounted();
-    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       RigidTransform given = cloud_.scan_poses[scan].world_from_sensor;
       given.translation = given.translation - cloud_.origin;
       const RigidTransform mounted = given * given_from_mounted;
-      places_[scan] = mounted.translation;
+      positions_[scan] = mounted.translation;
       mounted_from_given_[scan] = mount.empty() ? RigidTransform{} : mounted * given.inverse();
     }
     compose();
   }
 
-  /// Of the points where they are with what is estimated now.
+  /// Planes of the points with the current corrections.
   std::vector<ScanPlane> find_planes(PointSet points, double flatness_m) {
     ScanPlaneOptions planes = options_.planes;
     planes.flatness_m = flatness_m;
@@ -277,11 +277,11 @@ class Calibrator {
     const auto weight = [&](double sigma) {
       return std::pow(options_.residual_sigma_m / sigma, 2);
     };
-    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d turned = rotation_vector(correction.rotation);
-      const Vec3d place = places_[scan];
-      const Vec3d shifted = correction * place - place;
+      const Vec3d position = positions_[scan];
+      const Vec3d shifted = correction * position - position;
       for (int axis = 0; axis < 3; ++axis) {
         const auto unknown = static_cast<std::size_t>(axis);
         system.add_pose_prior(scan, unknown, weight(options_.rotation_sigma_rad), -turned[axis]);
@@ -307,9 +307,9 @@ class Calibrator {
   }
 
   void apply(const PlaneStep& step) {
-    for (std::size_t scan = 0; options_.poses && scan < places_.size(); ++scan) {
+    for (std::size_t scan = 0; options_.poses && scan < positions_.size(); ++scan) {
       RigidTransform& correction = corrected_from_mounted_[scan];
-      const Vec3d pivot = correction * places_[scan];
+      const Vec3d pivot = correction * positions_[scan];
       const double* const x = step.poses.data() + 6 * scan;
       correction = moved_about(pivot, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * correction;
     }
@@ -318,7 +318,7 @@ class Calibrator {
     compose();
   }
 
-  /// Share of the planes' weight that holds the poses along the direction that it holds least.
+  /// Share of the planes' weight along the direction in which they constrain the poses least.
   double weakest_share(const std::vector<ScanPlane>& planes, Vec3d& direction) const {
     SymmetricMat3d normals;
     double total = 0;
@@ -351,7 +351,7 @@ class Calibrator {
     return {};
   }
 
-  /// What all lasers have in common is no calibration of one against the other.
+  /// Removes the mean, because a common offset does not calibrate lasers against each other.
   static void add_centred(std::vector<double>& offsets, const std::vector<double>& steps,
                           std::size_t which) {
     double mean = 0;
@@ -362,23 +362,23 @@ class Calibrator {
     for (double& offset : offsets) offset -= mean;
   }
 
-  /// Turns and shifts the whole so that the poses lie on the given ones, as mounted.
+  /// Aligns all poses to the given ones, with the mount corrected, by one rigid motion.
   void align_to_mounted() {
     std::vector<PoseCorrection> poses;
-    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
-      poses.push_back({cloud_.scan_poses[scan].time_s, places_[scan],
+      poses.push_back({cloud_.scan_poses[scan].time_s, positions_[scan],
                        rotation_vector(correction.rotation),
-                       correction * places_[scan] - places_[scan]});
+                       correction * positions_[scan] - positions_[scan]});
     }
     const RigidTransform back = onto_given(poses);
     for (RigidTransform& correction : corrected_from_mounted_) correction = back * correction;
     compose();
   }
 
-  /// Distances of the points that were left out from the planes of the others.
-  void judge(double& median_m, ResidualCounts& counts) {
-    find_planes(PointSet::all, kFlatnessOfJudging);
+  /// Measures the distances of held-out points from the planes through the others.
+  void validate(double& median_m, ResidualCounts& counts) {
+    find_planes(PointSet::all, kValidationFlatness_m);
     std::vector<double> residuals_m = steps_.left_out_residuals();
     counts = counts_of(residuals_m);
     median_m = median(std::move(residuals_m));
@@ -387,12 +387,13 @@ class Calibrator {
   Calibration calibration() const {
     Calibration result;
     result.mount = mount_;
-    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
       const TimedPose& given = cloud_.scan_poses[scan];
-      const Vec3d place = given.world_from_sensor.translation - cloud_.origin;
+      const Vec3d position = given.world_from_sensor.translation - cloud_.origin;
       result.poses.push_back({given.time_s, given.world_from_sensor.translation,
-                              rotation_vector(correction.rotation), correction * place - place});
+                              rotation_vector(correction.rotation),
+                              correction * position - position});
     }
     result.lasers = corrections_.offsets;
     result.smooth_s = best_smoothing(result);
@@ -403,15 +404,16 @@ class Calibrator {
   const CalibrateOptions& options_;
   CalibrationSteps& steps_;
   const Executor& executor_;
-  std::vector<Vec3d> places_;  ///< of the sensor, one a scan, as mounted, local coordinates
-  std::vector<Vec3d> axes_;    ///< of its rotation, upwards
+  // One a scan, in local coordinates:
+  std::vector<Vec3d> positions_;  ///< of the sensor with the corrected mount
+  std::vector<Vec3d> axes_;       ///< of the sensor's rotation, upwards
+  std::vector<RigidTransform> mounted_from_given_;
+  std::vector<RigidTransform> corrected_from_mounted_;
   std::size_t lasers_ = 0;
-  ChosenPoints all_;  ///< of the last rounds and of judging
-  ChosenPoints few_;  ///< of the rounds before
+  ChosenPoints all_;  ///< for the last rounds and for validation
+  ChosenPoints few_;  ///< for the rounds before
   MountCorrection mount_;
-  std::vector<RigidTransform> mounted_from_given_;      ///< one a scan, local coordinates, and...
-  std::vector<RigidTransform> corrected_from_mounted_;  ///< ...what is left to correct
-  ScanCorrections corrections_;                         ///< of both, and of lasers
+  ScanCorrections corrections_;  ///< of mount, scans and lasers
 };
 
 }  // namespace

@@ -398,16 +398,6 @@ class ScanView {
   std::vector<std::uint32_t> order_;  ///< points, scan by scan
 };
 
-/// A drive begins where times do not ascend.
-std::vector<ScanSpan> drives_of(const Trajectory& poses) {
-  std::vector<ScanSpan> drives;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (k == 0 || !(poses[k].time_s > poses[k - 1].time_s)) drives.push_back({k, k});
-    drives.back().end = k + 1;
-  }
-  return drives;
-}
-
 }  // namespace
 
 std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans) {

@@ -34,13 +34,6 @@ void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
         windows.window_scans);
 }
 
-/// Consecutive scans [begin, end) of a drive.
-struct ScanSpan {
-  std::size_t begin = 0, end = 0;
-
-  std::size_t size() const { return end - begin; }
-};
-
 /// The windows of a drive: all as long, to a scan, none longer than `window_scans` (2 or more);
 /// each overlaps with the next by half. One, where that holds the drive.
 std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans);

@@ -27,7 +27,7 @@
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/report/report_page.h"
-#include "adasplats/sensors/unit_sensor.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 namespace adasplats {
 namespace {
@@ -68,10 +68,11 @@ std::optional<Trajectory> corrected_poses_of(const fs::path& folder,
   Trajectory scans = open_kitti_sequence(folder).trajectory;
   if (!adasplats::apply(calibration, scans)) return std::nullopt;
   Trajectory poses = read_trajectory(folder / "poses.txt");
+  const CorrectionLookup lookup(calibration);
   for (TimedPose& pose : poses) {
     const RigidTransform given = pose.world_from_sensor;
     pose.world_from_sensor =
-        calibration.corrected(pose).value_or(given * calibration.mount.given_from_mounted());
+        lookup.corrected(pose).value_or(given * calibration.mount.given_from_mounted());
   }
   return poses;
 }

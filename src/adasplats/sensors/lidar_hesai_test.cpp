@@ -92,7 +92,7 @@ TEST_F(HesaiCsv, WrongFiringTimesAreRefusedWithTheLine) {
   };
   refuse("", "expected the columns");
   refuse("Channel,fire time(us)\n1,0\n2,0\n", "no channel 3");
-  refuse("Channel,fire time(us)\n1,-1e300\n2,-1e300\n3,-1e300\n", "longer than a turn");
+  refuse("Channel,fire time(us)\n1,-1e300\n2,-1e300\n3,-1e300\n", "more than a revolution");
   refuse("Channel,fire time(us)\n1,nan\n", "my_firetime.csv:2: fire time is 'nan'");
   refuse("Operational State,0,0\nAzimuth State,0,1\n1,-,-\n", "never fires");
   refuse("Operational State,0,0,0\nAzimuth State,0,1,2\n1,-,1,1\n", "uneven");

@@ -98,7 +98,7 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
     return text;
   };
   expect_data_error("", "not valid JSON");
-  expect_data_error("{\n\n\"a\": }", "mine.json:3: not JSON");
+  expect_data_error("{\n\n\"a\": }", "mine.json:3: not valid JSON");
   expect_data_error("[1, 2]", "not a JSON object");
   expect_data_error("{}", "no beam_altitude_angles");
   expect_data_error(with("[10, -10.5]", "[10]"), "has 1 beams, beam_azimuth_angles 2");

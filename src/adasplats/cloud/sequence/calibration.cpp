@@ -14,17 +14,12 @@
 namespace adasplats {
 namespace {
 
-/// How far from the way between two given positions a third one of the same drive may be: what a
-/// vehicle that brakes or turns does to the straight line, and the noise of poses.
+/// Maximum distance of a pose from the straight line between two poses of its drive: allows for
+/// braking, turning and the noise of poses.
 constexpr double kShareOfWay = 0.25, kMinAside_m = 0.5;
 
-/// Scans [begin, end) of one drive.
-struct DriveSpan {
-  std::size_t begin, end;
-};
-
-DriveSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
-  DriveSpan drive{scan, scan + 1};
+ScanSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
+  ScanSpan drive{scan, scan + 1};
   while (drive.begin > 0 && poses[drive.begin].time_s > poses[drive.begin - 1].time_s)
     --drive.begin;
   while (drive.end < poses.size() && poses[drive.end].time_s > poses[drive.end - 1].time_s)
@@ -32,9 +27,9 @@ DriveSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
   return drive;
 }
 
-/// A line through the corrections of a drive by time, weighted about `time_s`; without the scan
-/// `left_out`. Where all that has weight is one scan: that.
-PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan drive, double time_s,
+/// A line fitted to the corrections of a drive over time, weighted about `time_s`, without the scan
+/// `left_out`. The weighted mean if the weights leave only one scan.
+PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, ScanSpan drive, double time_s,
                            double smooth_s, std::size_t left_out) {
   double w = 0, wt = 0, wtt = 0;
   Vec3d rotation, shift, rotation_t, shift_t;
@@ -63,7 +58,7 @@ PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan d
   return result;
 }
 
-/// Between two scans; `smooth_s` over more of them.
+/// The correction between two scans; averaged over more scans if `smooth_s` is not 0.
 PoseCorrection between(const std::vector<PoseCorrection>& poses, std::size_t first,
                        std::size_t second, double time_s, double smooth_s, std::size_t left_out) {
   const PoseCorrection& a = poses[first];
@@ -77,13 +72,13 @@ PoseCorrection between(const std::vector<PoseCorrection>& poses, std::size_t fir
   return result;
 }
 
-bool leads_past(const PoseCorrection& a, const PoseCorrection& b, double share, Vec3d position) {
+bool passes_close(const PoseCorrection& a, const PoseCorrection& b, double share, Vec3d position) {
   const Vec3d way = b.position - a.position;
   const double aside_m = length(position - (a.position + share * way));
   return aside_m <= kMinAside_m + kShareOfWay * length(way) * std::max(1.0, std::fabs(share));
 }
 
-/// Of scans that follow one another in a drive; 0: none do.
+/// Median interval between consecutive scans of a drive; 0 if there are none.
 double median_step_s(const std::vector<PoseCorrection>& poses) {
   std::vector<double> steps_s;
   for (std::size_t k = 1; k < poses.size(); ++k)
@@ -93,16 +88,16 @@ double median_step_s(const std::vector<PoseCorrection>& poses) {
   return upper_median_of(steps_s);
 }
 
-/// By how much the correction of each scan that is no end of its drive is missed when it is told
-/// from the others, squared, m^2.
+/// Squared errors of the correction of each inner scan of a drive when predicted from the others,
+/// m^2.
 std::vector<double> left_out_squares(const std::vector<PoseCorrection>& poses, double smooth_s) {
-  constexpr double kArm_m = 10;  // what a rotation moves counts at so many metres
+  constexpr double kArm_m = 10;  // rotations count as the displacement at this distance
   std::vector<double> squares;
   for (std::size_t k = 1; k + 1 < poses.size(); ++k) {
     if (!(poses[k].time_s > poses[k - 1].time_s && poses[k + 1].time_s > poses[k].time_s)) continue;
-    const PoseCorrection told = between(poses, k - 1, k + 1, poses[k].time_s, smooth_s, k);
-    const double turn_m = kArm_m * length(told.rotation_rad - poses[k].rotation_rad);
-    const double shift_m = length(told.shift_m - poses[k].shift_m);
+    const PoseCorrection predicted = between(poses, k - 1, k + 1, poses[k].time_s, smooth_s, k);
+    const double turn_m = kArm_m * length(predicted.rotation_rad - poses[k].rotation_rad);
+    const double shift_m = length(predicted.shift_m - poses[k].shift_m);
     squares.push_back(turn_m * turn_m + shift_m * shift_m);
   }
   return squares;
@@ -129,19 +124,54 @@ bool Calibration::moves_scans() const {
 }
 
 std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) const {
-  for (const PoseCorrection& pose : poses)
-    if (pose.time_s == time_s && pose.position == position) return pose;
-  for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
+  return CorrectionLookup(*this).at(time_s, position);
+}
+
+std::optional<RigidTransform> Calibration::corrected(const TimedPose& given) const {
+  return CorrectionLookup(*this).corrected(given);
+}
+
+CorrectionLookup::CorrectionLookup(const Calibration& calibration)
+    : calibration_(calibration), drives_(drives_of(calibration.poses)) {}
+
+std::size_t CorrectionLookup::first_not_before(ScanSpan drive, double time_s) const {
+  const auto begin = calibration_.poses.begin();
+  const auto found =
+      std::lower_bound(begin + static_cast<std::ptrdiff_t>(drive.begin),
+                       begin + static_cast<std::ptrdiff_t>(drive.end), time_s,
+                       [](const PoseCorrection& pose, double time) { return pose.time_s < time; });
+  return static_cast<std::size_t>(found - begin);
+}
+
+std::optional<PoseCorrection> CorrectionLookup::at(double time_s, Vec3d position) const {
+  std::vector<std::size_t> near;
+  near.reserve(drives_.size());
+  for (const ScanSpan& drive : drives_) {
+    const std::size_t k = first_not_before(drive, time_s);
+    if (k < drive.end && calibration_.poses[k].time_s == time_s &&
+        calibration_.poses[k].position == position)
+      return calibration_.poses[k];
+    near.push_back(k);
+  }
+  for (std::size_t drive = 0; drive < drives_.size(); ++drive)
+    if (auto found = interpolated(drives_[drive], near[drive], time_s, position)) return found;
+  return std::nullopt;
+}
+
+/// `near`: the first scan of the drive that is not before `time_s`. Its neighbours are examined
+/// too: two intervals share a scan, and a time past the end of an interval can round to its end.
+std::optional<PoseCorrection> CorrectionLookup::interpolated(ScanSpan drive, std::size_t near,
+                                                             double time_s, Vec3d position) const {
+  const std::vector<PoseCorrection>& poses = calibration_.poses;
+  const std::size_t first = near < drive.begin + 3 ? drive.begin : near - 3;
+  for (std::size_t k = first; k + 1 < drive.end && k <= near; ++k) {
     const PoseCorrection& a = poses[k];
     const PoseCorrection& b = poses[k + 1];
-    const double apart_s = b.time_s - a.time_s;
-    if (!(apart_s > 0)) continue;  // another drive begins
-    const bool is_first = k == 0 || !(a.time_s > poses[k - 1].time_s);
-    const bool is_last = k + 2 == poses.size() || !(poses[k + 2].time_s > b.time_s);
-    const double share = (time_s - a.time_s) / apart_s;
-    if (share < (is_first ? -1.0 : 0.0) || share > (is_last ? 2.0 : 1.0)) continue;
-    if (!leads_past(a, b, share, position)) continue;
-    PoseCorrection found = between(poses, k, k + 1, time_s, smooth_s, poses.size());
+    const double share = (time_s - a.time_s) / (b.time_s - a.time_s);
+    const double min_share = k == drive.begin ? -1.0 : 0.0;
+    const double max_share = k + 2 == drive.end ? 2.0 : 1.0;
+    if (share < min_share || share > max_share || !passes_close(a, b, share, position)) continue;
+    PoseCorrection found = between(poses, k, k + 1, time_s, calibration_.smooth_s, poses.size());
     found.time_s = time_s;
     found.position = position;
     return found;
@@ -149,30 +179,31 @@ std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) con
   return std::nullopt;
 }
 
-std::optional<RigidTransform> Calibration::corrected(const TimedPose& given) const {
+std::optional<RigidTransform> CorrectionLookup::corrected(const TimedPose& given) const {
   const auto correction = at(given.time_s, given.world_from_sensor.translation);
   if (!correction) return std::nullopt;
+  const MountCorrection& mount = calibration_.mount;
   const RigidTransform by_pose = correction->corrected_from_given() * given.world_from_sensor;
   return mount.empty() ? by_pose : by_pose * mount.given_from_mounted();
 }
 
 double best_smoothing(const Calibration& calibration) {
-  // Of white noise the mean of two neighbours errs by 1.5 in variance, that of many by 1: a ratio
-  // of 0.67. Few scans tell no ratio.
-  constexpr double kClearer = 0.8;
-  constexpr std::size_t kFewestScans = 10;
+  // For white noise the variance of the error is 1.5 with the mean of two neighbours and 1 with the
+  // mean of many: a ratio of 0.67. A few scans do not suffice to measure the ratio.
+  constexpr double kMaxRatio = 0.8;
+  constexpr std::size_t kMinScans = 10;
   const std::vector<PoseCorrection>& poses = calibration.poses;
   const double apart_s = median_step_s(poses);
   const std::vector<double> of_neighbours = left_out_squares(poses, 0);
-  if (!(apart_s > 0) || of_neighbours.size() < kFewestScans) return 0;
-  double best_s = 0, least = std::numeric_limits<double>::infinity();
+  if (!(apart_s > 0) || of_neighbours.size() < kMinScans) return 0;
+  double best_s = 0, smallest = std::numeric_limits<double>::infinity();
   for (double scans = 1; scans < 2 * static_cast<double>(poses.size()); scans *= 2) {
     const double sum = sum_of(left_out_squares(poses, scans * apart_s));
-    if (!(sum < least)) continue;
-    least = sum;
+    if (!(sum < smallest)) continue;
+    smallest = sum;
     best_s = scans * apart_s;
   }
-  return least < kClearer * sum_of(of_neighbours) ? best_s : 0;
+  return smallest < kMaxRatio * sum_of(of_neighbours) ? best_s : 0;
 }
 
 CalibrationSizes sizes_of(const Calibration& calibration) {
@@ -192,9 +223,10 @@ CalibrationSizes sizes_of(const Calibration& calibration) {
 }
 
 bool apply(const Calibration& calibration, Trajectory& poses) {
+  const CorrectionLookup lookup(calibration);
   Trajectory corrected = poses;
   for (TimedPose& pose : corrected) {
-    const auto corrected_pose = calibration.corrected(pose);
+    const auto corrected_pose = lookup.corrected(pose);
     if (!corrected_pose) return false;
     pose.world_from_sensor = *corrected_pose;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -13,74 +14,108 @@
 
 namespace adasplats {
 
-/// What the mount of the sensor was taken for wrongly, the same for all scans: its boresight (a
-/// rotation) and its lever arm (a shift), along the axes of the sensor as the poses give it.
+/// Error of the sensor's mount, common to all scans: boresight (a rotation) and lever arm (a shift)
+/// along the axes of the sensor as given by the poses.
 struct MountCorrection {
-  Vec3d rotation_rad;  ///< about the given position: the axis, as long as the angle
+  Vec3d rotation_rad;  ///< rotation vector about the given position
   Vec3d shift_m;       ///< of the position
 
   bool empty() const { return rotation_rad == Vec3d{} && shift_m == Vec3d{}; }
-  /// world_from_given * this is the pose of the sensor as it was mounted.
+  /// world_from_given * given_from_mounted() is the pose of the mounted sensor.
   RigidTransform given_from_mounted() const;
 };
 
-/// What the pose of one scan got wrong.
+/// Correction of the pose of one scan.
 struct PoseCorrection {
-  double time_s = 0;   ///< of the scan, as its recording tells it
+  double time_s = 0;   ///< of the scan in its recording
   Vec3d position;      ///< of the sensor as given, world coordinates, m
-  Vec3d rotation_rad;  ///< of the scan about `position`: the axis, as long as the angle
-  Vec3d shift_m;       ///< and then its shift
+  Vec3d rotation_rad;  ///< rotation vector of the scan about `position`
+  Vec3d shift_m;       ///< of the scan, after the rotation
 
   RigidTransform corrected_from_given() const;
 };
 
-/// What a recording gets wrong: the poses of its scans and the lasers of its sensor. Corrected
-/// coordinates are of the world that the given poses are of.
+/// Corrections of a recording: the mount, the poses of its scans and the lasers of its sensor.
+/// Corrected coordinates are in the world frame of the given poses.
 struct Calibration {
-  MountCorrection mount;              ///< comes first: `poses` correct what it leaves
-  std::vector<PoseCorrection> poses;  ///< scan by scan; where times do not ascend a drive begins
+  MountCorrection mount;              ///< applied first; `poses` correct the remaining errors
+  std::vector<PoseCorrection> poses;  ///< scan by scan; a time that does not ascend starts a drive
   LaserOffsets lasers;
-  /// Over how long corrections are averaged for scans that took no part, s (standard deviation of
-  /// weights by time): drifts go on from scan to scan, noise of single poses does not. 0: nothing
-  /// but the two scans around count.
+  /// Standard deviation of the weights by time that average corrections for scans that were not
+  /// part of the estimate, s: drift persists from scan to scan, noise of single poses does not. 0:
+  /// interpolate between the two adjacent scans.
   double smooth_s = 0;
 
   bool empty() const { return mount.empty() && poses.empty() && lasers.empty(); }
-  /// Whether anything but offsets of lasers is corrected.
+  /// Whether the mount or any pose is corrected.
   bool moves_scans() const;
 
-  /// What a pose needs that was not estimated: that of the two scans around its time, or of the
-  /// scans within `smooth_s`, where the given poses lead past its position. Nothing elsewhere:
-  /// nothing is extrapolated, but the first and the last correction hold for as long as scans are
-  /// apart.
+  /// See CorrectionLookup, which is faster for many poses.
   std::optional<PoseCorrection> at(double time_s, Vec3d position) const;
-
-  /// The pose of a sensor as a recording gives it, corrected: by the mount, and by what `at` has
-  /// for it. Nothing where that has nothing.
   std::optional<RigidTransform> corrected(const TimedPose& given) const;
 };
 
-/// The `smooth_s` with which the correction of each scan is told best from those of the others, up
-/// to twice as long as the drive.
+/// Consecutive scans [begin, end) of a drive or of several.
+struct ScanSpan {
+  std::size_t begin = 0, end = 0;
+
+  std::size_t size() const { return end - begin; }
+};
+
+/// Finds the corrections of poses by binary search. The calibration must outlive it unchanged.
+class CorrectionLookup {
+ public:
+  explicit CorrectionLookup(const Calibration& calibration);
+
+  /// The correction of a scan that was part of the estimate, or an interpolation: between the two
+  /// scans around its time, or over the scans within `smooth_s`, if the given poses pass close to
+  /// its position. Nothing otherwise: corrections are not extrapolated, but the first and the last
+  /// one of a drive remain valid for one interval between scans.
+  std::optional<PoseCorrection> at(double time_s, Vec3d position) const;
+  /// The given pose of a sensor, corrected by the mount and by at(); nothing if at() finds nothing.
+  std::optional<RigidTransform> corrected(const TimedPose& given) const;
+
+ private:
+  std::optional<PoseCorrection> interpolated(ScanSpan drive, std::size_t near, double time_s,
+                                             Vec3d position) const;
+  std::size_t first_not_before(ScanSpan drive, double time_s) const;
+
+  const Calibration& calibration_;
+  std::vector<ScanSpan> drives_;
+};
+
+/// The drives of a series of poses: a time that does not ascend starts a drive.
+template <class Poses>
+std::vector<ScanSpan> drives_of(const Poses& poses) {
+  std::vector<ScanSpan> drives;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (k == 0 || !(poses[k].time_s > poses[k - 1].time_s)) drives.push_back({k, k});
+    drives.back().end = k + 1;
+  }
+  return drives;
+}
+
+/// The `smooth_s` that predicts the correction of each scan best from those of the others, up to
+/// twice the duration of the drive.
 double best_smoothing(const Calibration& calibration);
 
-/// How much a calibration corrects.
+/// Magnitudes of a calibration's corrections.
 struct CalibrationSizes {
   double largest_rotation_rad = 0, largest_shift_m = 0;  ///< of a scan
   double range_rms_m = 0, elevation_rms_rad = 0;         ///< of the lasers
 };
 CalibrationSizes sizes_of(const Calibration& calibration);
 
-/// Corrects the poses of scans, as `at` has it; those that the calibration was estimated from get
-/// what was estimated. `poses` are left as they are, and false given, where one is not of a drive.
+/// Corrects the poses of scans (CorrectionLookup). If a pose belongs to no drive of the
+/// calibration, returns false and leaves `poses` unchanged.
 bool apply(const Calibration& calibration, Trajectory& poses);
-/// The same for all scans of a cloud: points, sensor positions and poses. A cloud that
-/// missing_for_calibration() objects to is not of a drive.
+/// The same for all scans of a cloud: points, sensor positions and poses. Also returns false if
+/// missing_for_calibration() names a reason.
 bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& executor);
-/// The same for a sequence: its poses, and its lasers where the sensor is recognised.
+/// The same for a sequence: its poses, and its lasers if the sensor is recognised.
 bool apply(const Calibration& calibration, KittiSequence& sequence);
 
-/// Why a cloud cannot be calibrated; null: it can.
+/// Why a cloud cannot be calibrated; null if it can.
 const char* missing_for_calibration(const PointCloud& cloud);
 
 }  // namespace adasplats

@@ -8,7 +8,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/unit/unit_beams.h"
-#include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 
 // A share is the rank of a beam, from 0 to 1, among all beams with the same expectation.
 namespace adasplats {

@@ -16,8 +16,8 @@
 #include "adasplats/jobs/evaluate/ring_scans.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/sensors/unit_sensor.h"
 
 namespace adasplats {
 namespace {

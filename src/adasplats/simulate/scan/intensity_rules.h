@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/calibrated_sensor.h"
 #include "adasplats/splats/reflectance/response_tables.h"
 
 namespace adasplats {
