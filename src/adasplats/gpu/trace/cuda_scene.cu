@@ -14,7 +14,7 @@ namespace {
 
 /// Small blocks: a long ray holds back few others.
 constexpr unsigned kCastBlock = 64;
-/// On an SM, which bounds the registers of a ray.
+/// Blocks on an SM, which bounds the registers of a ray.
 constexpr unsigned kMinBlocks = 18;
 /// Of a warp's rays, so many percent must have primitives to test, or they wait. Measured on an
 /// H100: 10 traces 1.3 times as many scans as 0.
@@ -26,8 +26,17 @@ constexpr int kMaxHits = 64;
 constexpr unsigned kMinBlocksOfSmall = 12;
 constexpr int kPostponeInSmall = 20;
 
+/// As many blocks as fit: an SM of Turing holds 1024 threads.
+constexpr unsigned fitting(unsigned blocks) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+  return blocks < 1024 / kCastBlock ? blocks : 1024 / kCastBlock;
+#else
+  return blocks;
+#endif
+}
+
 template <int kWait, unsigned kBlocks, Sensors kSensors>
-__global__ void __launch_bounds__(kCastBlock, kBlocks)
+__global__ void __launch_bounds__(kCastBlock, fitting(kBlocks))
     cast_nearest_kernel(TreesView trees, RaySource source, std::uint64_t count, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;

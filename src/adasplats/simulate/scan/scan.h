@@ -75,19 +75,21 @@ struct ScanFields {
   bool return_indices = true;
 };
 
+/// nvcc warns of a member of this type that is declared without the alias.
+using WantedField = bool ScanFields::*;
+
 /// One attribute of returns with all its names; of(scan) is its array.
 template <class Of>
 struct ScanAttribute {
   Of of;
-  bool ScanFields::*wanted;
+  WantedField wanted;
   const char* name;    ///< in Python and in pickles
   const char* column;  ///< of scan_columns(); arrays of NPZ files have its plural
   bool is_optional;    ///< not every scan has it
   const char* about;   ///< what the numbers are
 };
 template <class Of>
-ScanAttribute(Of, bool ScanFields::*, const char*, const char*, bool, const char*)
-    -> ScanAttribute<Of>;
+ScanAttribute(Of, WantedField, const char*, const char*, bool, const char*) -> ScanAttribute<Of>;
 
 /// Calls visit(ScanAttribute) for every attribute, in the order of files; positions are none. A new
 /// one is a member, a field and an entry here, and whoever computes it.
