@@ -173,8 +173,8 @@ Json measure_all(const Arguments& arguments) {
                              [&](std::size_t, const Scan& scan) { returns += scan.size(); });
       });
   if (device.on_gpu()) {
-    for (const auto results : {GpuScene::Results::host, GpuScene::Results::device}) {
-      const bool on_host = results == GpuScene::Results::host;
+    for (const auto results : {BatchMemory::host, BatchMemory::device}) {
+      const bool on_host = results == BatchMemory::host;
       json[on_host ? "host" : "device"] = streamed(
           arguments, settings, scans, session, [&](ScanSimulator& simulator, std::size_t& returns) {
             return simulator.run_batches(scans, 0, results,

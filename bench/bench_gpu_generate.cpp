@@ -19,7 +19,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/session/device_choice.h"
 #include "adasplats/splats/build_model.h"

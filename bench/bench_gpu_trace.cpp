@@ -52,7 +52,7 @@ double median_seconds(int runs, const F& call) {
 
 struct Arguments {
   std::string model, trajectory, json;
-  GpuBackend backend = GpuBackend::cuda;
+  TracingBackend backend = TracingBackend::cuda;
   std::vector<int> gpus = {0};
   bool quick = false;  ///< scans alone
 };
@@ -64,7 +64,7 @@ Arguments parse(int argc, char** argv) {
     const std::string word = argv[i];
     const auto value = [&] { return i + 1 < argc ? std::string(argv[++i]) : std::string(); };
     if (word == "--backend") {
-      arguments.backend = value() == "optix" ? GpuBackend::optix : GpuBackend::cuda;
+      arguments.backend = value() == "optix" ? TracingBackend::optix : TracingBackend::cuda;
     } else if (word == "--gpus") {
       arguments.gpus.clear();
       const std::string list = value();
@@ -129,23 +129,23 @@ int main(int argc, char** argv) try {
   const Arguments arguments = parse(argc, argv);
   const SplatModel model = load_model(arguments.model);
   const Trajectory trajectory = read_trajectory(arguments.trajectory);
-  const GpuScene scene(model.view(), model.origin, arguments.backend, arguments.gpus);
+  const auto scene = make_gpu_scene(model.view(), model.origin, arguments.backend, arguments.gpus);
   const LidarModel sensor = hdl_64_paper();
   const std::vector<Firing> firings = firings_of(sensor);
-  const auto scanner = scene.scanner(sensor, firings);
+  const auto scanner = scene->scanner(sensor, firings);
 
   nlohmann::ordered_json json;
   const GpuSearch search = find_gpus();
   const DeviceOptions chosen = {
-      .kind = arguments.backend == GpuBackend::optix ? DeviceKind::optix : DeviceKind::cuda,
+      .kind = arguments.backend == TracingBackend::optix ? DeviceKind::optix : DeviceKind::cuda,
       .gpus = arguments.gpus};
   json["provenance"] = to_json(provenance_of(Executor().threads(), choose_device(chosen)));
   json["device"] = search.devices.front().name;
   json["cuda_of_driver"] = search.driver;
-  json["backend"] = scene.name();
+  json["backend"] = scene->name();
   json["gpus"] = arguments.gpus.size();
   json["splats"] = model.size();
-  json["build_s"] = scene.build_seconds();
+  json["build_s"] = scene->build_seconds();
   compare_with_cpu(model, *scanner, sensor, firings, trajectory[trajectory.size() / 2], json);
 
   const auto poses = scans_for(trajectory, 1024 * arguments.gpus.size());
@@ -203,7 +203,7 @@ int main(int argc, char** argv) try {
     image_scene.groups = model.groups;
     image_scene.origin = model.origin;
     ImageOptions options;
-    const auto renderer = scene.renderer(image_scene, options);
+    const auto renderer = scene->renderer(image_scene, options);
     std::vector<Camera> cameras;
     for (std::size_t i = 0; i < 200; ++i) {
       const TimedPose& pose = poses[i % 64].reference;

@@ -8,8 +8,8 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,43 +35,35 @@ struct Options {
 /// Draws all cameras' pictures, by a GPU as many at once as it likes.
 class Drawer {
  public:
-  Drawer(const SplatModel& model, const std::string& device, const Executor& executor)
-      : executor_(executor) {
+  Drawer(const SplatModel& model, const std::string& device, const Executor& executor) {
     scene_.view = model.view();
     scene_.attributes.classes = model.classes;
     scene_.attributes.intensities = model.intensities;
     scene_.groups = model.groups;
     scene_.origin = model.origin;
     if (device == "cpu") {
-      tracer_ = make_cpu_tracer(scene_.view, executor);
+      engine_ = make_cpu_scene_engine(scene_.view, scene_.origin, executor);
     } else {
-      gpu_.emplace(scene_.view, scene_.origin,
-                   device == "optix" ? GpuBackend::optix : GpuBackend::cuda, std::vector<int>{0});
+      engine_ =
+          make_gpu_scene(scene_.view, scene_.origin,
+                         device == "optix" ? TracingBackend::optix : TracingBackend::cuda, {0});
     }
   }
 
   /// Seconds a picture.
   double measure(const std::vector<Camera>& cameras, const ImageOptions& options) {
-    std::unique_ptr<GpuRenderer> renderer;
-    if (gpu_) renderer = gpu_->renderer(scene_, options);
+    const auto renderer = engine_->renderer(scene_, options);
     const auto start = std::chrono::steady_clock::now();
-    if (gpu_) {
-      renderer->render_all(cameras, [&](std::size_t, std::span<const std::uint8_t> pixels) {
-        bytes_ += pixels.size();
-      });
-    } else {
-      for (const Camera& camera : cameras)
-        bytes_ += render_image(*tracer_, scene_, camera, options, executor_).pixels.size();
-    }
+    renderer->render_all(cameras, [&](std::size_t, std::span<const std::uint8_t> pixels) {
+      bytes_ += pixels.size();
+    });
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     return seconds.count() / static_cast<double>(cameras.size());
   }
 
  private:
-  const Executor& executor_;
   ImageScene scene_;
-  std::unique_ptr<Tracer> tracer_;
-  std::optional<GpuScene> gpu_;
+  std::unique_ptr<SceneEngine> engine_;
   std::size_t bytes_ = 0;
 };
 

@@ -135,11 +135,10 @@ nlohmann::ordered_json measure(const ModelScene& scene, const ScanSettings& sett
     simulator.run(scans, 0, [&](std::size_t, const Scan& scan) { returns += scan.size(); });
   });
   ways.emplace_back("complete_some", [&] { some.run(scans, 0, [](std::size_t, const Scan&) {}); });
-  if (const GpuScene* gpu = scene.gpu()) {
-    for (const auto results : {GpuScene::Results::host, GpuScene::Results::device})
-      ways.emplace_back(results == GpuScene::Results::host ? "host" : "device", [&, results] {
-        gpu->report(some.rules(), scans, 0, scene.world(), results, [](ScanBatch&&) {});
-      });
+  if (scene.on_gpu()) {
+    for (const auto memory : {BatchMemory::host, BatchMemory::device})
+      ways.emplace_back(memory == BatchMemory::host ? "host" : "device",
+                        [&, memory] { some.run_batches(scans, 0, memory, [](ScanBatch&&) {}); });
   }
   nlohmann::ordered_json json = rates_of(ways, scans.size(), repeats);
   json["rays"] = rules.firings().size();
@@ -168,13 +167,9 @@ nlohmann::ordered_json measure_unit_cost(const ModelScene& scene, const std::str
   nlohmann::ordered_json json;
   json["complete"] =
       rates_of({{"without", complete(plain)}, {"with", complete(unit)}}, scans.size(), repeats);
-  const GpuScene* const gpu = scene.gpu();
-  if (gpu == nullptr) return json;
-  const auto device = [&](const ScanSimulator& simulator) {
-    return [&] {
-      gpu->report(simulator.rules(), scans, 0, scene.world(), GpuScene::Results::device,
-                  [](ScanBatch&&) {});
-    };
+  if (!scene.on_gpu()) return json;
+  const auto device = [&](ScanSimulator& simulator) {
+    return [&] { simulator.run_batches(scans, 0, BatchMemory::device, [](ScanBatch&&) {}); };
   };
   json["device"] =
       rates_of({{"without", device(plain)}, {"with", device(unit)}}, scans.size(), repeats);

@@ -50,12 +50,12 @@ struct Abandoned {};
 class BatchStream {
  public:
   BatchStream(std::shared_ptr<SceneObject> scene, ScanSettings settings,
-              std::vector<ScanMotion> scans, std::uint64_t first_number, GpuScene::Results results)
+              std::vector<ScanMotion> scans, std::uint64_t first_number, BatchMemory memory)
       : scene_(std::move(scene)),
         simulator_(*scene_->scene, std::move(settings), scene_->executor),
         scans_(std::move(scans)),
         first_number_(first_number),
-        results_(results),
+        memory_(memory),
         thread_([this] { work(); }) {}
   ~BatchStream() {
     {
@@ -89,7 +89,7 @@ class BatchStream {
     std::exception_ptr error;
     try {
       auto use = scene_->lock();
-      simulator_.run_batches(scans_, first_number_, results_, [&](ScanBatch&& batch) {
+      simulator_.run_batches(scans_, first_number_, memory_, [&](ScanBatch&& batch) {
         // Who takes the batches may use the scene meanwhile.
         if (use.owns_lock()) use.unlock();
         put(std::make_shared<BatchObject>(BatchObject{scene_, std::move(batch)}));
@@ -117,7 +117,7 @@ class BatchStream {
   ScanSimulator simulator_;
   std::vector<ScanMotion> scans_;
   std::uint64_t first_number_;
-  GpuScene::Results results_;
+  BatchMemory memory_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Batch> made_;
@@ -197,7 +197,7 @@ std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& 
   const py::gil_scoped_release released;
   iterator->stream = std::make_unique<BatchStream>(
       object, std::move(settings), std::move(scans), arguments.simulate.first_number,
-      arguments.on_device ? GpuScene::Results::device : GpuScene::Results::host);
+      arguments.on_device ? BatchMemory::device : BatchMemory::host);
   return iterator;
 }
 

@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #if defined(ADASPLATS_HAVE_CUDA)
-#include "adasplats/core/error.h"
 #include "adasplats/gpu/base/cuda_check.h"
-#include "adasplats/gpu/base/device.h"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
-#include "adasplats/gpu/gpu_model.h"
-#include "adasplats/gpu/paper/paper_cuda_steps.h"
+#include "adasplats/gpu/base/engines.h"
+#include "adasplats/gpu/base/model_steps.h"
 
 namespace adasplats {
 namespace {
@@ -14,10 +11,7 @@ namespace {
 class CudaModelEngine final : public ModelEngine {
  public:
   explicit CudaModelEngine(int device) : device_(device) {
-    const GpuSearch found = find_gpus();
-    if (found.devices.empty())
-      throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + found.reason);
-    const gpu::DeviceGuard guard(device);  // says so now where there is no such GPU
+    const gpu::DeviceGuard guard = gpu::enter_gpu(device, "build models");  // or throws now
   }
 
   std::string_view name() const override { return "cuda"; }

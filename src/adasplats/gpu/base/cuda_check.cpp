@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/gpu/base/device.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -47,6 +48,13 @@ DeviceGuard::DeviceGuard(int device) {
 DeviceGuard::~DeviceGuard() {
   // A device that was current once can be made current again.
   static_cast<void>(cudaSetDevice(before_));
+}
+
+DeviceGuard enter_gpu(int device, const std::string& doing) {
+  const GpuSearch search = find_gpus();
+  if (search.devices.empty())
+    throw Error(ErrorKind::unavailable, "cannot " + doing + " on a GPU: " + search.reason);
+  return DeviceGuard(device);
 }
 
 }  // namespace adasplats::gpu

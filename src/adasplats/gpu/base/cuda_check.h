@@ -4,6 +4,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <string>
 #include <string_view>
 
 namespace adasplats::gpu {
@@ -24,5 +25,9 @@ class DeviceGuard {
  private:
   int before_ = 0;
 };
+
+/// Makes a GPU the current one. Errors: unavailable ("cannot <doing> on a GPU: ..."; there is none,
+/// or not that one).
+[[nodiscard]] DeviceGuard enter_gpu(int device, const std::string& doing);
 
 }  // namespace adasplats::gpu

@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#if defined(ADASPLATS_HAVE_CUDA)
 #include "adasplats/gpu/base/device.h"
 
-#if defined(ADASPLATS_HAVE_CUDA)
 #include <cuda_runtime_api.h>
-#endif
 
 namespace adasplats {
-
-#if defined(ADASPLATS_HAVE_CUDA)
-
 namespace {
 
 constexpr int kOldest = 75;  // Turing, as 10 * major + minor
@@ -99,18 +95,5 @@ std::size_t free_memory_bytes(int device) {
 
 bool built_with_cuda() { return true; }
 
-#else
-
-GpuSearch find_gpus() {
-  GpuSearch search;
-  search.reason = "this build has no CUDA; build it where CMake finds nvcc (CUDA 12 or newer)";
-  return search;
-}
-
-std::size_t free_memory_bytes(int) { return 0; }
-
-bool built_with_cuda() { return false; }
-
-#endif
-
 }  // namespace adasplats
+#endif

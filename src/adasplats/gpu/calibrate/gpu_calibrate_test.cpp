@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/gpu/calibrate/gpu_calibrate.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/calibrate/recorded_hall_test.h"
 #include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/base/engines.h"
 
 // The oracle of all tests here is the CPU on the same drive.
 namespace adasplats {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/gpu/base/model_steps.h"
 #include "adasplats/gpu/consistent/consistent_cells.h"
 #include "adasplats/gpu/consistent/consistent_cover.cuh"
-#include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/gpu/consistent/consistent_planes.h"
 #include "adasplats/gpu/consistent/consistent_rays.h"
 #include "adasplats/gpu/consistent/consistent_seeds.h"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vector>
 
+#include "adasplats/gpu/base/model_steps.h"
 #include "adasplats/gpu/neighbors/gpu_backend.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods.h"
-#include "adasplats/gpu/paper/paper_cuda_steps.h"
 #include "adasplats/gpu/paper/paper_generation.h"
 #include "adasplats/gpu/paper/paper_resample.h"
 #include "adasplats/gpu/paper/paper_shapes.h"

@@ -17,9 +17,9 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/gpu/base/hilbert_order.h"
 #include "adasplats/gpu/base/sort_keys.h"
-#include "adasplats/gpu/gpu_model.h"
 #include "adasplats/gpu/neighbors/cloud_on_device.h"
 #include "adasplats/gpu/neighbors/neighborhoods_lists.h"
 #include "adasplats/gpu/paper/select_rounds.h"

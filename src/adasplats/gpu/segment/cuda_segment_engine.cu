@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "adasplats/core/error.h"
-#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/segment/device_network.h"
-#include "adasplats/gpu/segment/gpu_segment.h"
 #include "adasplats/segment/cell_features.h"
 
 namespace adasplats {
@@ -118,10 +116,7 @@ class CudaTileSegmenter final : public TileSegmenter {
 class CudaSegmentEngine final : public SegmentEngine {
  public:
   explicit CudaSegmentEngine(int device) : device_(device) {
-    const GpuSearch found = find_gpus();
-    if (found.devices.empty())
-      throw Error(ErrorKind::unavailable, "cannot run networks on a GPU: " + found.reason);
-    const DeviceGuard guard(device);  // says so now where there is no such GPU
+    const DeviceGuard guard = enter_gpu(device, "run networks");  // or throws now
   }
 
   std::string_view name() const override { return "cuda"; }

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/gpu/segment/gpu_segment.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/segment/network/run_network.h"
 
 namespace adasplats {

@@ -56,8 +56,8 @@ using gpu::RaySource;
 using gpu::RenderSlot;
 using gpu::SceneParts;
 
-GpuRenderer::Impl::Impl(const SceneParts& parts, const ImageScene& scene,
-                        const ImageOptions& options)
+GpuRenderer::GpuRenderer(const SceneParts& parts, const ImageScene& scene,
+                         const ImageOptions& options)
     : part_(parts.first()), origin_(parts.origin), options_(options) {
   const DeviceGuard guard(part_.device);
   stream_ = gpu::Stream();  // on this device
@@ -77,7 +77,7 @@ GpuRenderer::Impl::Impl(const SceneParts& parts, const ImageScene& scene,
   stream_.wait("copy the colours of the scene to the GPU");
 }
 
-GpuRenderer::Impl::~Impl() {
+GpuRenderer::~GpuRenderer() {
   const DeviceGuard guard(part_.device);
   for (auto& slot : slots_) {
     // An exception may have left a picture under way.
@@ -86,7 +86,7 @@ GpuRenderer::Impl::~Impl() {
   }
 }
 
-void GpuRenderer::Impl::launch(RenderSlot& slot, const Camera& camera) const {
+void GpuRenderer::launch(RenderSlot& slot, const Camera& camera) const {
   const cudaStream_t stream = slot.stream.get();
   const RaySource source = gpu::source_of(camera, options_, origin_);
   const auto rays =
@@ -104,7 +104,7 @@ void GpuRenderer::Impl::launch(RenderSlot& slot, const Camera& camera) const {
              "copy a picture from the GPU");
 }
 
-void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer::Sink sink) {
+void GpuRenderer::render_all(std::span<const Camera> cameras, Sink sink) {
   if (cameras.empty()) return;
   const int width = cameras.front().width, height = cameras.front().height;
   for (const Camera& camera : cameras) {
@@ -112,6 +112,7 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
     if (camera.width != width || camera.height != height)
       throw Error(ErrorKind::usage, "the cameras of one call have pictures of different sizes");
   }
+  const std::lock_guard lock(mutex_);
   const DeviceGuard guard(part_.device);
   const RaySource source = gpu::source_of(cameras.front(), options_, origin_);
   const std::size_t rays =
@@ -139,13 +140,6 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
     sink(k, {slot.pixels.data(), bytes});
     if (k + lanes < cameras.size()) launch(slot, cameras[k + lanes]);
   }
-}
-
-GpuRenderer::GpuRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-GpuRenderer::~GpuRenderer() = default;
-
-void GpuRenderer::render_all(std::span<const Camera> cameras, Sink sink) {
-  impl_->render_all(cameras, sink);
 }
 
 Image GpuRenderer::render(const Camera& camera) {

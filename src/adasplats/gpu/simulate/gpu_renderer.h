@@ -5,10 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 
-#include "adasplats/gpu/simulate/gpu_scene.h"
+#include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/gpu/trace/scene_parts.h"
+#include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/image/shading_maths.h"
 
 namespace adasplats {
@@ -17,16 +19,17 @@ namespace gpu {
 struct RenderSlot;
 }  // namespace gpu
 
-/// Private to gpu/: how a GpuRenderer works. Two pictures are under way: one is copied while the
-/// next is made.
-struct GpuRenderer::Impl {
+/// Private to gpu/: pictures on the first device of a scene, which must outlive it. Two are under
+/// way: one is copied while the next is made.
+class GpuRenderer final : public ImageRenderer {
  public:
-  Impl(const gpu::SceneParts& parts, const ImageScene& scene, const ImageOptions& options);
-  ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  GpuRenderer(const gpu::SceneParts& parts, const ImageScene& scene, const ImageOptions& options);
+  ~GpuRenderer() override;
+  GpuRenderer(const GpuRenderer&) = delete;
+  GpuRenderer& operator=(const GpuRenderer&) = delete;
 
-  void render_all(std::span<const Camera> cameras, GpuRenderer::Sink sink);
+  Image render(const Camera& camera) override;
+  void render_all(std::span<const Camera> cameras, Sink sink) override;
 
  private:
   void launch(gpu::RenderSlot& slot, const Camera& camera) const;
@@ -44,6 +47,7 @@ struct GpuRenderer::Impl {
   gpu::DeviceBuffer<float> intensities_;
   gpu::DeviceBuffer<Vec3f> class_colors_;
   std::array<std::unique_ptr<gpu::RenderSlot>, 2> slots_;
+  std::mutex mutex_;  ///< of the slots
 };
 
 }  // namespace adasplats

@@ -152,7 +152,7 @@ struct GpuReporter::Run {
   std::span<const ScanMotion> motions;
   std::uint64_t first_number;
   const World* world;
-  Results results;
+  BatchMemory memory;
   std::size_t devices;
   std::size_t scans = 0;  ///< of a batch
   ReportTimes times;
@@ -211,7 +211,7 @@ std::size_t GpuReporter::scans_at_once(std::size_t scans, std::size_t lanes) con
 }
 
 /// Memory for batches of so many scans.
-void GpuReporter::reserve(ReportLane& lane, std::size_t scans, Results results) const {
+void GpuReporter::reserve(ReportLane& lane, std::size_t scans, BatchMemory memory) const {
   const cudaStream_t stream = lane.stream->get();
   const auto grow = [&]<class T>(DeviceBuffer<T>& buffer, std::size_t size) {
     if (buffer.size() >= size) return;
@@ -226,7 +226,7 @@ void GpuReporter::reserve(ReportLane& lane, std::size_t scans, Results results) 
   grow(lane.offsets, scans + 1);
   if (lane.host_offsets.size() < scans + 1)
     lane.host_offsets = gpu::PinnedBuffer<std::uint32_t>(scans + 1);
-  if (results == Results::device) return;
+  if (memory == BatchMemory::device) return;
   const std::size_t bytes = ReturnLayout(fields_, firings * returns_a_firing_, nullptr).bytes;
   if (lane.attributes == nullptr) lane.attributes = std::make_shared<DeviceBuffer<std::uint8_t>>();
   grow(*lane.attributes, bytes);
@@ -243,7 +243,7 @@ void GpuReporter::reserve_all(Run& run) {
         auto& lane = device.lanes[k % run.lanes() / run.devices];
         if (lane == nullptr) lane = std::make_unique<ReportLane>();
         lane->stream->wait("prepare scans on the GPU");  // what an exception left there
-        reserve(*lane, run.scans, run.results);
+        reserve(*lane, run.scans, run.memory);
       }
       return;
     } catch (const Error& error) {
@@ -289,7 +289,7 @@ void GpuReporter::begin(Run& run, std::size_t k) {
   poses.firings = static_cast<std::uint32_t>(firings_);
   gpu::RaySource source = device.source;
   lane.poses.set(source);
-  if (run.results == Results::device) {
+  if (run.memory == BatchMemory::device) {
     const std::size_t room = lane.count * firings_ * returns_a_firing_;
     lane.attributes = std::make_shared<DeviceBuffer<std::uint8_t>>(
         ReturnLayout(fields_, room, nullptr).bytes, stream);
@@ -327,7 +327,7 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
   batch.offsets.assign(lane.host_offsets.data(), lane.host_offsets.data() + lane.count + 1);
   const std::size_t room = lane.count * firings_ * returns_a_firing_;
   const ReturnLayout there(fields_, room, lane.attributes->data());
-  if (run.results == Results::device) {
+  if (run.memory == BatchMemory::device) {
     batch.arrays = there.arrays;
     batch.device = device.part->device;
     void* const first = lane.attributes->data();
@@ -353,11 +353,11 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
 }
 
 ReportTimes GpuReporter::report(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                                const World* world, Results results, BatchSink sink) {
+                                const World* world, BatchMemory memory, BatchSink sink) {
   if (scans.empty()) return {};
-  const std::size_t devices = results == Results::device ? 1 : devices_.size();
+  const std::size_t devices = memory == BatchMemory::device ? 1 : devices_.size();
   if (world != nullptr && world->empty()) world = nullptr;
-  Run run{scans, first_number, world, results, devices, 0, {}};
+  Run run{scans, first_number, world, memory, devices, 0, {}};
   reserve_all(run);
   prepare_world(run);
   const Stopwatch all;

@@ -7,12 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/gpu/trace/scene_parts.h"
-#include "adasplats/simulate/scan/scan_batch.h"
-#include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
-#include "adasplats/simulate/world/world.h"
+#include "adasplats/simulate/world/scene_caster.h"
 
 namespace adasplats {
 
@@ -32,20 +29,19 @@ class GpuReporter {
   GpuReporter(const GpuReporter&) = delete;
   GpuReporter& operator=(const GpuReporter&) = delete;
 
-  using Results = GpuScene::Results;
-  using BatchSink = GpuScene::BatchSink;
+  using BatchSink = SceneCaster::BatchSink;
 
   /// As ScanCaster::report(), in batches; `sink` has them in their order. In host memory they are
   /// page-locked. On a device (the first one alone) they are complete.
   /// `world`: what is cast beside the place, or null; it is the one of the rules' attributes.
   ReportTimes report(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                     const World* world, Results results, BatchSink sink);
+                     const World* world, BatchMemory memory, BatchSink sink);
 
  private:
   struct Run;
 
   std::size_t scans_at_once(std::size_t scans, std::size_t lanes) const;
-  void reserve(gpu::ReportLane& lane, std::size_t scans, Results results) const;
+  void reserve(gpu::ReportLane& lane, std::size_t scans, BatchMemory memory) const;
   void reserve_all(Run& run);
   void prepare_world(Run& run);
   void begin(Run& run, std::size_t k);

@@ -132,7 +132,7 @@ std::vector<Option> options() {
   };
 }
 
-class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
+class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
  protected:
   void SetUp() override {
     const GpuSearch search = find_gpus();
@@ -152,9 +152,9 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
     response_.range_gains = {1.3F, 1.0F, 0.6F};
     response_.cos_incidences = {0, 0.5F, 1};
     response_.incidence_gains = {0.1F, 0.7F, 1};
-    scene_.emplace(SceneView{disks_, nullptr}, kPlaceOrigin, GetParam(), std::vector<int>{0});
+    scene_ = make_gpu_scene({disks_, nullptr}, kPlaceOrigin, GetParam(), {0});
     tracer_ = make_cpu_tracer({disks_, nullptr}, executor_);
-    caster_ = make_cpu_scan_caster(*tracer_, kPlaceOrigin, executor_);
+    caster_ = make_cpu_scene_caster(*tracer_, kPlaceOrigin, executor_);
   }
 
   static ReportCase plain() {
@@ -238,14 +238,13 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
   /// By the CPU; `by_gpu`: by the GPU.
   std::vector<Scan> reported(const ReportCase& setup, const ScanRules& rules,
                              std::span<const ScanMotion> motions, bool by_gpu) const {
-    const ScanCaster& caster = by_gpu ? scene_->scan_caster() : *caster_;
-    if (setup.world == nullptr) return reported_by(caster, rules, motions, executor_);
-    if (!by_gpu)
-      return reported_by(*make_world_caster(*caster_, *setup.world, executor_, 7), rules, motions,
-                         executor_);
+    const SceneCaster& caster = by_gpu ? scene_->scan_caster() : *caster_;
     std::vector<Scan> scans;
-    scene_->report(rules, motions, 7, setup.world.get(), executor_,
-                   [&](std::size_t, Scan&& scan) { scans.push_back(std::move(scan)); });
+    caster.report_world(rules, motions, 7, setup.world.get(), executor_,
+                        [&](std::size_t i, Scan&& scan) {
+                          EXPECT_EQ(i, scans.size());
+                          scans.push_back(std::move(scan));
+                        });
     return scans;
   }
 
@@ -297,9 +296,9 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
   std::vector<std::uint16_t> classes_, instances_;
   std::vector<float> intensities_;
   IntensityResponse response_;
-  std::optional<GpuScene> scene_;
+  std::unique_ptr<GpuScene> scene_;
   std::unique_ptr<Tracer> tracer_;
-  std::unique_ptr<ScanCaster> caster_;
+  std::unique_ptr<SceneCaster> caster_;
 };
 
 // The published guarantee: the bytes of the CPU for every option. Oracle: the CPU.
@@ -370,12 +369,13 @@ TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
   const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
   std::vector<ScanBatch> kept;  // as Python may: their memory is theirs
   std::size_t next = 0;
-  scene_->report(*rules, motions, 7, nullptr, GpuScene::Results::host, [&](ScanBatch&& batch) {
-    EXPECT_EQ(batch.first, next);
-    EXPECT_EQ(batch.device, -1);
-    next += batch.scans();
-    kept.push_back(std::move(batch));
-  });
+  scene_->scan_caster().report_batches(*rules, motions, 7, nullptr, executor_, BatchMemory::host,
+                                       [&](ScanBatch&& batch) {
+                                         EXPECT_EQ(batch.first, next);
+                                         EXPECT_EQ(batch.device, -1);
+                                         next += batch.scans();
+                                         kept.push_back(std::move(batch));
+                                       });
   ASSERT_EQ(next, motions.size());
   EXPECT_GT(kept.size(), 1U);
   std::vector<Scan> found;
@@ -394,8 +394,9 @@ TEST_P(ReportsOnGpu, BatchesOnTheDeviceAreCounted) {
   const std::vector<ScanMotion> motions = scans_of(false);
   const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
   std::vector<ScanBatch> kept;
-  scene_->report(*rules, motions, 7, nullptr, GpuScene::Results::device,
-                 [&](ScanBatch&& batch) { kept.push_back(std::move(batch)); });
+  scene_->scan_caster().report_batches(
+      *rules, motions, 7, nullptr, executor_, BatchMemory::device,
+      [&](ScanBatch&& batch) { kept.push_back(std::move(batch)); });
   std::size_t scan = 0;
   for (const ScanBatch& batch : kept) {
     EXPECT_EQ(batch.device, 0);
@@ -421,9 +422,10 @@ TEST_P(ReportsOnGpu, NoScansAndOtherRules) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, ReportsOnGpu,
-                         testing::Values(GpuBackend::cuda, GpuBackend::optix),
+                         testing::Values(TracingBackend::cuda, TracingBackend::optix),
                          [](const auto& backend) {
-                           return std::string(backend.param == GpuBackend::cuda ? "Cuda" : "Optix");
+                           return std::string(backend.param == TracingBackend::cuda ? "Cuda"
+                                                                                    : "Optix");
                          });
 
 }  // namespace

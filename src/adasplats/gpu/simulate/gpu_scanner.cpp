@@ -71,8 +71,8 @@ using gpu::HitLaunch;
 using gpu::RaySource;
 using gpu::SceneParts;
 
-GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
-                       std::span<const Firing> firings)
+SceneScanner::SceneScanner(const SceneParts& scene, const LidarModel& sensor,
+                           std::span<const Firing> firings)
     : scene_(scene), firings_(firings.size()) {
   if (firings.empty()) throw Error(ErrorKind::usage, "a sensor without a single firing");
   source_.kind = RaySource::Kind::scans;
@@ -94,14 +94,14 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
   }
 }
 
-GpuScanner::Impl::~Impl() {
+SceneScanner::~SceneScanner() {
   const DeviceGuard guard(scene_.first().device);
   kept_poses_.reset();
   single_poses_.reset();
   kept_hits_ = {};
 }
 
-RaySource GpuScanner::Impl::source_of(const DeviceScanner& device, std::size_t scans) const {
+RaySource SceneScanner::source_of(const DeviceScanner& device, std::size_t scans) const {
   RaySource source = source_;
   const bool small = scans * firings_ < gpu::kSmallLaunch;
   const gpu::OrderedFirings& firings = small ? device.spread : device.coherent;
@@ -110,7 +110,7 @@ RaySource GpuScanner::Impl::source_of(const DeviceScanner& device, std::size_t s
   return source;
 }
 
-std::span<const Hit> GpuScanner::Impl::scan(const ScanMotion& motion) {
+std::span<const Hit> SceneScanner::scan(const ScanMotion& motion) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
   const cudaStream_t stream = device.stream.get();
@@ -129,7 +129,7 @@ std::span<const Hit> GpuScanner::Impl::scan(const ScanMotion& motion) {
   return single_.span();
 }
 
-DeviceHits GpuScanner::Impl::cast_on_device(std::span<const ScanMotion> scans, int depth) {
+DeviceHits SceneScanner::cast_on_device(std::span<const ScanMotion> scans, int depth) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
   const cudaStream_t stream = device.stream.get();
@@ -146,8 +146,7 @@ DeviceHits GpuScanner::Impl::cast_on_device(std::span<const ScanMotion> scans, i
   return {kept_hits_.data(), scans.size(), firings_, device.part->device, stream};
 }
 
-void GpuScanner::Impl::reserve(HitLaunch& batch, std::size_t scans, int depth,
-                               Results results) const {
+void SceneScanner::reserve(HitLaunch& batch, std::size_t scans, int depth, Results results) const {
   const std::size_t firings = scans * firings_;
   const std::size_t hits = firings * static_cast<std::size_t>(depth);
   const cudaStream_t stream = batch.stream.get();
@@ -159,8 +158,8 @@ void GpuScanner::Impl::reserve(HitLaunch& batch, std::size_t scans, int depth,
   if (batch.results.size() < bytes) batch.results = gpu::PinnedBuffer<std::uint8_t>(bytes);
 }
 
-void GpuScanner::Impl::launch(DeviceScanner& device, HitLaunch& batch,
-                              std::span<const ScanMotion> scans, int depth, Results results) const {
+void SceneScanner::launch(DeviceScanner& device, HitLaunch& batch,
+                          std::span<const ScanMotion> scans, int depth, Results results) const {
   const cudaStream_t stream = batch.stream.get();
   batch.poses.upload(scans.subspan(batch.first, batch.count), scene_.origin, stream);
   RaySource source = source_of(device, batch.count);
@@ -181,8 +180,8 @@ void GpuScanner::Impl::launch(DeviceScanner& device, HitLaunch& batch,
              "copy the hits from the GPU");
 }
 
-CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results results, int depth,
-                                 FunctionRef<void(std::size_t, const std::uint8_t*)> sink) {
+CastTimes SceneScanner::cast(std::span<const ScanMotion> motions, Results results, int depth,
+                             FunctionRef<void(std::size_t, const std::uint8_t*)> sink) {
   const std::size_t hits_a_scan = firings_ * static_cast<std::size_t>(depth);
   const std::size_t scan_bytes =
       results == Results::points ? firings_ * sizeof(PointHit) : hits_a_scan * sizeof(Hit);
@@ -249,28 +248,17 @@ std::vector<Hit> download(const DeviceHits& hits, int depth) {
   return values;
 }
 
-GpuScanner::GpuScanner(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-GpuScanner::~GpuScanner() = default;
-
-std::span<const Hit> GpuScanner::scan(const ScanMotion& motion) { return impl_->scan(motion); }
-
-CastTimes GpuScanner::cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink) {
-  const std::size_t hits = impl_->firings() * static_cast<std::size_t>(depth);
-  return impl_->cast(scans, Impl::Results::hits, depth,
-                     [&](std::size_t scan, const std::uint8_t* results) {
-                       sink(scan, {reinterpret_cast<const Hit*>(results), hits});
-                     });
+CastTimes SceneScanner::cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink) {
+  const std::size_t hits = firings_ * static_cast<std::size_t>(depth);
+  return cast(scans, Results::hits, depth, [&](std::size_t scan, const std::uint8_t* results) {
+    sink(scan, {reinterpret_cast<const Hit*>(results), hits});
+  });
 }
 
-CastTimes GpuScanner::cast_points(std::span<const ScanMotion> scans, PointSink sink) {
-  return impl_->cast(scans, Impl::Results::points, 1,
-                     [&](std::size_t scan, const std::uint8_t* results) {
-                       sink(scan, {reinterpret_cast<const PointHit*>(results), impl_->firings()});
-                     });
-}
-
-DeviceHits GpuScanner::cast_on_device(std::span<const ScanMotion> scans, int depth) {
-  return impl_->cast_on_device(scans, depth);
+CastTimes SceneScanner::cast_points(std::span<const ScanMotion> scans, PointSink sink) {
+  return cast(scans, Results::points, 1, [&](std::size_t scan, const std::uint8_t* results) {
+    sink(scan, {reinterpret_cast<const PointHit*>(results), firings_});
+  });
 }
 
 }  // namespace adasplats

@@ -19,24 +19,27 @@ struct DeviceScanner;
 struct HitLaunch;
 }  // namespace gpu
 
-/// Private to gpu/: how a GpuScanner works. Two launches are under way on every device: the hits of
-/// one are copied while the other is traced.
-struct GpuScanner::Impl {
+/// Private to gpu/: two launches are under way on every device; the hits of one are copied while
+/// the other is traced.
+class SceneScanner final : public GpuScanner {
  public:
-  Impl(const gpu::SceneParts& scene, const LidarModel& sensor, std::span<const Firing> firings);
-  ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  /// The scene must outlive it.
+  SceneScanner(const gpu::SceneParts& scene, const LidarModel& sensor,
+               std::span<const Firing> firings);
+  ~SceneScanner() override;
+  SceneScanner(const SceneScanner&) = delete;
+  SceneScanner& operator=(const SceneScanner&) = delete;
 
-  std::size_t firings() const { return firings_; }
-  std::span<const Hit> scan(const ScanMotion& motion);
-  DeviceHits cast_on_device(std::span<const ScanMotion> scans, int depth);
+  std::span<const Hit> scan(const ScanMotion& motion) override;
+  CastTimes cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink) override;
+  CastTimes cast_points(std::span<const ScanMotion> scans, PointSink sink) override;
+  DeviceHits cast_on_device(std::span<const ScanMotion> scans, int depth) override;
+
+ private:
   enum class Results : std::uint8_t { hits, points };
   /// `sink` takes the results of one scan: Hits, `depth` of each firing, or one PointHit.
   CastTimes cast(std::span<const ScanMotion> scans, Results results, int depth,
                  FunctionRef<void(std::size_t scan, const std::uint8_t* results)> sink);
-
- private:
   /// What a launch of so many scans casts, without poses.
   gpu::RaySource source_of(const gpu::DeviceScanner& device, std::size_t scans) const;
   void reserve(gpu::HitLaunch& batch, std::size_t scans, int depth, Results results) const;

@@ -68,13 +68,13 @@ std::vector<ScanMotion> motions(std::size_t count) {
 }
 
 /// Both backends; skips where there is no GPU, or no OptiX where that is asked for.
-class OnGpu : public testing::TestWithParam<GpuBackend> {
+class OnGpu : public testing::TestWithParam<TracingBackend> {
  protected:
   void SetUp() override {
     const GpuSearch search = find_gpus();
     if (search.devices.empty()) GTEST_SKIP() << search.reason;
     disks_ = room_of_disks(20'000);
-    scene_.emplace(view(), kOrigin, GetParam(), std::vector<int>{0});
+    scene_ = make_gpu_scene(view(), kOrigin, GetParam(), {0});
     tracer_ = make_brute_force_tracer(view());
   }
 
@@ -90,7 +90,7 @@ class OnGpu : public testing::TestWithParam<GpuBackend> {
   std::vector<Disk> disks_;
   LidarModel sensor_ = small_lidar();
   std::vector<Firing> firings_ = firings_of(sensor_);
-  std::optional<GpuScene> scene_;
+  std::unique_ptr<GpuScene> scene_;
   std::unique_ptr<Tracer> tracer_;
 };
 
@@ -233,7 +233,7 @@ TEST_P(OnGpu, PicturesAreThoseOfTheCpu) {
       ImageOptions options;
       options.color = color;
       options.samples_per_axis = samples;
-      const Image image = scene_->render(scene, camera, options);
+      const Image image = scene_->renderer(scene, options)->render(camera);
       const Image wanted = render_image(*tracer_, scene, camera, options, executor_);
       EXPECT_EQ(image.pixels, wanted.pixels) << static_cast<int>(color) << " " << samples;
     }
@@ -256,7 +256,7 @@ TEST_P(OnGpu, PicturesOfSeveralCamerasComeInTheirOrder) {
   std::size_t next = 0;
   renderer->render_all(cameras, [&](std::size_t i, std::span<const std::uint8_t> pixels) {
     EXPECT_EQ(i, next++);
-    const Image alone = scene_->render(scene, cameras[i], options);
+    const Image alone = scene_->renderer(scene, options)->render(cameras[i]);
     EXPECT_TRUE(std::ranges::equal(pixels, alone.pixels)) << i;
   });
   EXPECT_EQ(next, cameras.size());
@@ -265,15 +265,16 @@ TEST_P(OnGpu, PicturesOfSeveralCamerasComeInTheirOrder) {
                Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, OnGpu, testing::Values(GpuBackend::cuda, GpuBackend::optix),
+INSTANTIATE_TEST_SUITE_P(Backends, OnGpu,
+                         testing::Values(TracingBackend::cuda, TracingBackend::optix),
                          [](const auto& backend) {
-                           return backend.param == GpuBackend::cuda ? "cuda" : "optix";
+                           return backend.param == TracingBackend::cuda ? "cuda" : "optix";
                          });
 
 TEST(GpuScene, SaysWhatItCannotDo) {
   const std::vector<Disk> disks = {{{0, 0, 0}, 1, {0, 0, 1}}};
-  const auto attempt = [&](std::vector<int> devices) {
-    GpuScene({disks, nullptr}, {}, GpuBackend::cuda, std::move(devices));
+  const auto attempt = [&](const std::vector<int>& devices) {
+    make_gpu_scene({disks, nullptr}, {}, TracingBackend::cuda, devices);
   };
   EXPECT_THROW(attempt({1000}), Error);  // here or anywhere
   if (find_gpus().devices.empty()) {

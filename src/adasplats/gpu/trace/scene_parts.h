@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "adasplats/gpu/base/device_memory.h"
@@ -15,13 +14,20 @@ namespace adasplats::gpu {
 /// Private to gpu/: the same scene on one device.
 struct DevicePart {
   int device = 0;
-  std::unique_ptr<DeviceScene> scene;
-  /// What primitives carry, on the device, where it is kept with the scene; null: rules have it.
+  std::shared_ptr<DeviceScene> scene;
+  /// Values of primitives in device memory, of a city; null: the rules have them.
   const PrimitiveValues* values = nullptr;
 };
 
-/// What a GpuScene, its scanners and its renderers share.
+/// What a GpuScene or GpuCity, its scanners and its renderers share.
 struct SceneParts {
+  ~SceneParts() {
+    for (DevicePart& part : parts) {
+      const DeviceGuard guard(part.device);
+      part.scene.reset();
+    }
+  }
+
   std::vector<DevicePart> parts;  ///< one a device, at least one
   Vec3d origin;                   ///< world coordinates of the scene's local origin, m
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "adasplats/calibrate/calibrate.h"
-#include "adasplats/gpu/calibrate/gpu_calibrate.h"
+#include "adasplats/gpu/base/engines.h"
 
 namespace adasplats {
 

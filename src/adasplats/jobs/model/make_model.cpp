@@ -10,7 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/jobs/model/calibrate_on_device.h"
 #include "adasplats/jobs/model/calibration_json.h"
 #include "adasplats/jobs/model/label_use.h"

@@ -13,6 +13,7 @@
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/memory.h"
+#include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/trace/tiled_tracer.h"
@@ -98,8 +99,7 @@ struct ObjectValues {
 /// Tiles that can be cast in.
 class CityTiles : public TileHolder {
  public:
-  virtual const ScanCaster& caster() const = 0;
-  virtual const GpuScene* gpu() const = 0;
+  virtual const SceneCaster& caster() const = 0;
   /// Of all primitives of the city; what those of tiles that are not there carry is not read.
   virtual std::span<const PrimitiveValues> values() const = 0;
 };
@@ -112,11 +112,10 @@ class CpuTiles final : public CityTiles {
     for (const CityTile& tile : city.tiles) first_.push_back(first_.back() + tile.splats);
     values_ = SparseArray<PrimitiveValues>(first_.back() + objects.values.size());
     std::ranges::copy(objects.values, values_.data() + first_.back());
-    caster_ = make_cpu_scan_caster(*tracer_, city.origin, executor);
+    caster_ = make_cpu_scene_caster(*tracer_, city.origin, executor);
   }
 
-  const ScanCaster& caster() const override { return *caster_; }
-  const GpuScene* gpu() const override { return nullptr; }
+  const SceneCaster& caster() const override { return *caster_; }
   std::span<const PrimitiveValues> values() const override {
     return {values_.data(), values_.size()};
   }
@@ -139,7 +138,7 @@ class CpuTiles final : public CityTiles {
   std::vector<std::size_t> first_ = {0};  ///< splat of each tile
   SparseArray<PrimitiveValues> values_;
   std::unique_ptr<TiledTracer> tracer_;
-  std::unique_ptr<ScanCaster> caster_;
+  std::unique_ptr<SceneCaster> caster_;
 };
 
 class GpuTiles final : public CityTiles {
@@ -147,27 +146,26 @@ class GpuTiles final : public CityTiles {
   GpuTiles(const CityManifest& city, const SplatValues& carried, const ObjectValues& objects,
            const std::vector<int>& devices)
       : carried_(carried),
-        scene_(splats_of_tiles(city), objects.values, city.origin, devices),
+        gpus_(make_gpu_city(splats_of_tiles(city), objects.values, city.origin, devices)),
         numbers_(city.splats() + objects.values.size()) {}
 
-  const ScanCaster& caster() const override { return scene_.scan_caster(); }
-  const GpuScene* gpu() const override { return &scene_; }
+  const SceneCaster& caster() const override { return gpus_->scan_caster(); }
   std::span<const PrimitiveValues> values() const override {
     return {numbers_.data(), numbers_.size()};
   }
 
-  std::size_t bytes_a_splat() const override { return GpuScene::kTileBytesASplat; }
+  std::size_t bytes_a_splat() const override { return GpuCity::kTileBytesASplat; }
   void load(std::size_t tile, SplatModel&& model, const Executor& executor) override {
     std::vector<PrimitiveValues> values(model.size());
     carried_.fill(model, values.data(), executor);
-    scene_.load_tile(tile, model.disks, values);
+    gpus_->load_tile(tile, model.disks, values);
   }
-  void drop(std::size_t tile) override { scene_.drop_tile(tile); }
-  void show(std::span<const std::size_t> tiles) override { scene_.show_tiles(tiles); }
+  void drop(std::size_t tile) override { gpus_->drop_tile(tile); }
+  void show(std::span<const std::size_t> tiles) override { gpus_->show_tiles(tiles); }
 
  private:
   const SplatValues& carried_;
-  GpuScene scene_;
+  std::unique_ptr<GpuCity> gpus_;
   SparseArray<PrimitiveValues> numbers_;  ///< says how many there are, and is never written
 };
 
@@ -248,8 +246,7 @@ CityScene::CityScene(const fs::path& model, const std::string& labels, Session& 
 CityScene::~CityScene() = default;
 
 Vec3d CityScene::origin() const { return impl_->city.origin; }
-const ScanCaster& CityScene::scan_caster() const { return impl_->tiles->caster(); }
-const GpuScene* CityScene::gpu() const { return impl_->tiles->gpu(); }
+const SceneCaster& CityScene::scan_caster() const { return impl_->tiles->caster(); }
 const World* CityScene::world() const { return impl_->world ? &*impl_->world : nullptr; }
 const LabelScheme* CityScene::labels() const { return impl_->labels ? &*impl_->labels : nullptr; }
 std::shared_ptr<const PrimitiveTable> CityScene::primitive_table() const { return impl_->table; }

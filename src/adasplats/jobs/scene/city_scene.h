@@ -31,8 +31,7 @@ class CityScene final : public ScanScene {
   ~CityScene() override;
 
   Vec3d origin() const override;
-  const ScanCaster& scan_caster() const override;
-  const GpuScene* gpu() const override;
+  const SceneCaster& scan_caster() const override;
   const World* world() const override;
   const LabelScheme* labels() const override;
   std::shared_ptr<const PrimitiveTable> primitive_table() const override;

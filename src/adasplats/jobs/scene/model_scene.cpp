@@ -69,7 +69,7 @@ void ModelScene::prepare(const std::string& name, Session& session) {
     }
   }
   session.progress.begin_step("build the ray index", 0);
-  make_tracers(session);
+  make_engine(session);
   attributes_ = place_attributes();
 }
 
@@ -105,15 +105,16 @@ std::size_t ModelScene::prefetch(std::span<const ScanMotion> scans, double) cons
   return scans.size();
 }
 
-void ModelScene::make_tracers(Session& session) {
+void ModelScene::make_engine(Session& session) {
   const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
     const bool use_optix = session.device.kind == DeviceKind::optix;
-    gpu_.emplace(view(), origin(), use_optix ? GpuBackend::optix : GpuBackend::cuda,
-                 session.device.gpu_numbers());
+    auto gpu =
+        make_gpu_scene(view(), origin(), use_optix ? TracingBackend::optix : TracingBackend::cuda,
+                       session.device.gpu_numbers());
+    gpu_ = gpu.get();
+    engine_ = std::move(gpu);
   });
-  if (on_gpu) return;
-  tracer_ = make_cpu_tracer(view(), executor_);
-  caster_ = make_cpu_scan_caster(*tracer_, origin(), executor_);
+  if (!on_gpu) engine_ = make_cpu_scene_engine(view(), origin(), executor_);
 }
 
 PrimitiveAttributes ModelScene::place_attributes() const {
@@ -144,23 +145,26 @@ ImageColor ModelScene::default_color() const {
   return scene.groups.empty() ? ImageColor::height : ImageColor::semantic;
 }
 
-Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
-  if (!gpu_) return render_image(*tracer_, image_scene(), camera, options, executor_);
-  // The colours of the scene go to the GPU once for all pictures.
+/// Kept for the next picture: a GPU's has a copy of the colours of the scene.
+std::shared_ptr<ImageRenderer> ModelScene::renderer(const ImageOptions& options) const {
   const std::lock_guard lock(renderer_mutex_);
   if (!renderer_ || !(renderer_options_ == options)) {
-    renderer_ = gpu_->renderer(image_scene(), options);
+    renderer_.reset();  // its memory is free before the next one needs some
+    renderer_ = engine_->renderer(image_scene(), options);
     renderer_options_ = options;
   }
-  return renderer_->render(camera);
+  return renderer_;
+}
+
+Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
+  return renderer(options)->render(camera);
 }
 
 Image ModelScene::render(const Camera& camera, const ImageOptions& options,
                          std::span<const float> values) const {
   ImageScene scene = image_scene();
   scene.attributes.intensities = values;
-  if (gpu_) return gpu_->render(scene, camera, options);
-  return render_image(*tracer_, scene, camera, options, executor_);
+  return engine_->renderer(scene, options)->render(camera);
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {

@@ -16,13 +16,10 @@
 #include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/jobs/session/session.h"
-#include "adasplats/simulate/image/image.h"
-#include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
-#include "adasplats/simulate/world/world.h"
+#include "adasplats/simulate/scene_engine.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/splats/model/any_model.h"
-#include "adasplats/trace/tracer.h"
 
 namespace adasplats {
 
@@ -50,9 +47,9 @@ class ModelScene final : public ScanScene {
   /// World coordinates of the view's local origin, m.
   Vec3d origin() const override { return origin_of(place_); }
   const Crs& crs() const { return crs_of(place_); }
-  const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
+  const Tracer& tracer() const { return engine_->tracer(); }
   /// Of the place without its objects.
-  const ScanCaster& scan_caster() const override { return gpu_ ? gpu_->scan_caster() : *caster_; }
+  const SceneCaster& scan_caster() const override { return engine_->scan_caster(); }
   /// Of the place and, behind it, its objects.
   const PrimitiveAttributes& attributes() const { return attributes_; }
   /// The same, made when it is first asked for. It is shared by all sensors in the scene.
@@ -67,9 +64,9 @@ class ModelScene final : public ScanScene {
   /// Null where it is a mesh.
   const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
   const Executor& executor() const { return executor_; }
-  bool on_gpu() const { return gpu_.has_value(); }
+  bool on_gpu() const { return gpu_ != nullptr; }
   /// Null where it is on the CPU.
-  const GpuScene* gpu() const override { return gpu_ ? &*gpu_ : nullptr; }
+  const GpuScene* gpu() const { return gpu_; }
   /// What the classes mean; null where that is not known.
   const LabelScheme* labels() const override { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
@@ -90,18 +87,18 @@ class ModelScene final : public ScanScene {
 
  private:
   void prepare(const std::string& name, Session& session);
-  void make_tracers(Session& session);
+  void make_engine(Session& session);
+  std::shared_ptr<ImageRenderer> renderer(const ImageOptions& options) const;
   PrimitiveAttributes place_attributes() const;
   std::vector<Vec3f> disk_centers() const;
 
   const Executor& executor_;
   AnyModel place_;
   std::optional<LabelScheme> labels_;
-  std::optional<GpuScene> gpu_;
-  mutable std::unique_ptr<GpuRenderer> renderer_;  ///< of the last options on a GPU
+  std::unique_ptr<SceneEngine> engine_;
+  const GpuScene* gpu_ = nullptr;                    ///< `engine_`, if it is on a GPU
+  mutable std::shared_ptr<ImageRenderer> renderer_;  ///< of the last options
   mutable ImageOptions renderer_options_;
-  std::unique_ptr<Tracer> tracer_;      ///< where there is no `gpu_`
-  std::unique_ptr<ScanCaster> caster_;  ///< likewise
   std::optional<World> world_;
   PrimitiveAttributes attributes_;
   mutable std::shared_ptr<const PrimitiveTable> primitive_table_;

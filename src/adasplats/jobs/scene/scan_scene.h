@@ -9,10 +9,8 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
-#include "adasplats/simulate/world/world.h"
+#include "adasplats/simulate/world/scene_caster.h"
 
 namespace adasplats {
 
@@ -25,9 +23,7 @@ class ScanScene {
   /// World coordinates of the local origin, m.
   virtual Vec3d origin() const = 0;
   /// Of the place without its objects.
-  virtual const ScanCaster& scan_caster() const = 0;
-  /// Null where it is on the CPU.
-  virtual const GpuScene* gpu() const = 0;
+  virtual const SceneCaster& scan_caster() const = 0;
   /// What was put into the place; null where nothing was.
   virtual const World* world() const = 0;
   /// What the classes mean; null where that is not known.

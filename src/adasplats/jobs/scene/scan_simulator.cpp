@@ -109,39 +109,35 @@ ReportTimes ScanSimulator::run(std::span<const ScanMotion> scans, std::uint64_t 
 /// Casts into the place and, object by object, what is in the world.
 ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
                                          std::uint64_t first_number, Sink sink) {
-  if (scene_.gpu() != nullptr)
-    return scene_.gpu()->report(rules_, scans, first_number, scene_.world(), executor_, sink);
-  if (scene_.world() == nullptr)
-    return scene_.scan_caster().report(rules_, scans, first_number, executor_, sink);
-  return make_world_caster(scene_.scan_caster(), *scene_.world(), executor_, first_number)
-      ->report(rules_, scans, first_number, executor_, sink);
+  return scene_.scan_caster().report_world(rules_, scans, first_number, scene_.world(), executor_,
+                                           sink);
 }
 
 ReportTimes ScanSimulator::run_held(std::span<const ScanMotion> scans, std::uint64_t first_number,
                                     HeldSink sink) {
-  if (scene_.gpu() == nullptr || !repeats(settings_.sensor))
+  if (!scene_.scan_caster().has_large_batches() || !repeats(settings_.sensor))
     return run(scans, first_number, [&](std::size_t i, Scan&& scan) { sink(i, pool_.hold(scan)); });
-  return run_batches(scans, first_number, GpuScene::Results::host, [&](ScanBatch&& batch) {
+  return run_batches(scans, first_number, BatchMemory::host, [&](ScanBatch&& batch) {
     for (std::size_t i = 0; i < batch.scans(); ++i)
       sink(batch.first + i, {ScanView(batch, i, scans[batch.first + i], rules_), batch.memory});
   });
 }
 
 ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
-                                       std::uint64_t first_number, GpuScene::Results results,
-                                       GpuScene::BatchSink sink) {
-  if (scene_.gpu() != nullptr && repeats(settings_.sensor))
+                                       std::uint64_t first_number, BatchMemory memory,
+                                       SceneCaster::BatchSink sink) {
+  if (repeats(settings_.sensor))
     return by_spans(scans, [&](std::span<const ScanMotion> span, std::size_t first) {
-      return scene_.gpu()->report(rules_, span, first_number + first, scene_.world(), results,
-                                  [&](ScanBatch&& batch) {
-                                    batch.first += first;
-                                    sink(std::move(batch));
-                                  });
+      return scene_.scan_caster().report_batches(rules_, span, first_number + first, scene_.world(),
+                                                 executor_, memory, [&](ScanBatch&& batch) {
+                                                   batch.first += first;
+                                                   sink(std::move(batch));
+                                                 });
     });
-  if (results == GpuScene::Results::device)
+  if (memory == BatchMemory::device)
     throw Error(ErrorKind::unavailable,
-                "scans stay in GPU memory where the scene is on a GPU (`device` cuda) and the "
-                "sensor's pattern repeats");
+                settings_.sensor.name +
+                    ": its pattern does not repeat, so scans cannot stay in GPU memory");
   return run(scans, first_number,
              [&](std::size_t i, Scan&& scan) { sink(batch_of(i, std::move(scan))); });
 }

@@ -118,11 +118,10 @@ class ScanSimulator {
   /// scans, not many. They view `scans`, too.
   ReportTimes run_held(std::span<const ScanMotion> scans, std::uint64_t first_number,
                        HeldSink sink);
-  /// The same in batches without a copy. On a GPU a batch has as many scans as a launch; else one,
-  /// in memory of its own. Errors: unavailable (results on a device from a scene on the CPU, or
-  /// of a pattern that does not repeat).
+  /// The same in batches (SceneCaster::report_batches); one scan a batch of a pattern that does not
+  /// repeat. Errors: unavailable (device memory for a scene on the CPU, or for such a pattern).
   ReportTimes run_batches(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                          GpuScene::Results results, GpuScene::BatchSink sink);
+                          BatchMemory memory, SceneCaster::BatchSink sink);
   /// One scan.
   Scan scan(const ScanMotion& motion, std::uint64_t number);
 

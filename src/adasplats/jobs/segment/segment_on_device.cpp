@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/segment/segment_on_device.h"
 
-#include "adasplats/gpu/segment/gpu_segment.h"
+#include "adasplats/gpu/base/engines.h"
 
 namespace adasplats {
 

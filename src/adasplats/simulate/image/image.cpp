@@ -113,6 +113,23 @@ class Renderer {
   Shading shading_;
 };
 
+class CpuRenderer final : public ImageRenderer {
+ public:
+  CpuRenderer(const Tracer& tracer, const ImageScene& scene, const ImageOptions& options,
+              const Executor& executor)
+      : tracer_(tracer), scene_(scene), options_(options), executor_(executor) {}
+
+  Image render(const Camera& camera) override {
+    return render_image(tracer_, scene_, camera, options_, executor_);
+  }
+
+ private:
+  const Tracer& tracer_;
+  ImageScene scene_;
+  ImageOptions options_;
+  const Executor& executor_;
+};
+
 }  // namespace
 
 void check_image(const Camera& camera, const ImageOptions& options) {
@@ -134,6 +151,16 @@ Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& 
                    const ImageOptions& options, const Executor& executor) {
   check_image(camera, options);
   return Renderer(tracer, scene, camera, options, executor).render();
+}
+
+void ImageRenderer::render_all(std::span<const Camera> cameras, Sink sink) {
+  for (std::size_t i = 0; i < cameras.size(); ++i) sink(i, render(cameras[i]).pixels);
+}
+
+std::unique_ptr<ImageRenderer> make_cpu_renderer(const Tracer& tracer, const ImageScene& scene,
+                                                 const ImageOptions& options,
+                                                 const Executor& executor) {
+  return std::make_unique<CpuRenderer>(tracer, scene, options, executor);
 }
 
 }  // namespace adasplats

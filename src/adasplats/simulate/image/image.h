@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -11,6 +13,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/sensors/camera.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/scan/scan.h"
@@ -71,5 +74,26 @@ void check_image(const Camera& camera, const ImageOptions& options);
 /// of threads. Errors: usage (width, height or samples below 1, a field of view outside (0, pi)).
 Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
                    const ImageOptions& options, const Executor& executor);
+
+/// Makes pictures of one scene with the same options, on the CPU or on a GPU. Several threads may
+/// use it.
+class ImageRenderer {
+ public:
+  virtual ~ImageRenderer() = default;
+
+  /// The picture that render_image() makes. Errors: those of check_image().
+  virtual Image render(const Camera& camera) = 0;
+
+  /// Calls `sink` with the pixels (8-bit RGB, rows from the top) of every camera, in their order;
+  /// they are valid during the call only. A GPU makes the next picture meanwhile; there all cameras
+  /// must have the same width and height.
+  using Sink = FunctionRef<void(std::size_t camera, std::span<const std::uint8_t> pixels)>;
+  virtual void render_all(std::span<const Camera> cameras, Sink sink);
+};
+
+/// Tracer, executor and whatever `scene` views must outlive it.
+std::unique_ptr<ImageRenderer> make_cpu_renderer(const Tracer& tracer, const ImageScene& scene,
+                                                 const ImageOptions& options,
+                                                 const Executor& executor);
 
 }  // namespace adasplats

@@ -3,7 +3,6 @@
 #include "adasplats/simulate/world/world.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -11,7 +10,6 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/simulate/scan/scan_reporter.h"
 #include "adasplats/simulate/world/object_hits.h"
 #include "adasplats/simulate/world/placed_object.h"
 
@@ -226,72 +224,6 @@ std::vector<ObjectBox> World::boxes(std::uint64_t scan_index, double time_s) con
     boxes.push_back(box);
   }
   return boxes;
-}
-
-namespace {
-
-class WorldCaster final : public ScanCaster {
- public:
-  WorldCaster(const ScanCaster& place, const World& world, const Executor& executor,
-              std::uint64_t first_scan)
-      : place_(place),
-        world_(world),
-        executor_(executor),
-        scene_origin_(world.scene_origin()),
-        first_scan_(first_scan) {}
-
-  CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
-                 std::span<const ScanMotion> scans, int depth, Sink sink) const override {
-    double added_s = 0;
-    std::vector<Hit> all;
-    const auto add = [&](std::size_t scan, std::span<const Hit> hits) {
-      const auto start = std::chrono::steady_clock::now();
-      all.assign(hits.begin(), hits.end());
-      world_.add_hits(first_scan_ + scan, sensor, firings, scans[scan], 1.0 / sensor.rotation_hz,
-                      depth, all, executor_);
-      added_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      sink(scan, all);
-    };
-    CastTimes times = place_.cast(sensor, firings, scans, depth, add);
-    times.traced_s += added_s;
-    times.returned_s += added_s;
-    return times;
-  }
-
-  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
-                     std::uint64_t first_number, const Executor& executor,
-                     ScanSink sink) const override {
-    ScanReporter reporter(rules, executor);
-    ReportTimes times;
-    Scan scan;
-    const auto report_hits = [&](std::size_t i, std::span<const Hit> hits) {
-      const auto start = std::chrono::steady_clock::now();
-      reporter.report(scans[i], ScanPoses(rules, scans[i], scene_origin_), first_number + i, hits,
-                      scan);
-      times.reported_s +=
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      sink(i, std::move(scan));
-    };
-    const CastTimes cast_times =
-        cast(rules.sensor(), rules.cast_firings(), scans, rules.beam().depth, report_hits);
-    times.traced_s = cast_times.traced_s;
-    times.reported_s += cast_times.returned_s;
-    return times;
-  }
-
- private:
-  const ScanCaster& place_;
-  const World& world_;
-  const Executor& executor_;
-  Vec3d scene_origin_;
-  std::uint64_t first_scan_;
-};
-
-}  // namespace
-
-std::unique_ptr<ScanCaster> make_world_caster(const ScanCaster& place, const World& world,
-                                              const Executor& executor, std::uint64_t first_scan) {
-  return std::make_unique<WorldCaster>(place, world, executor, first_scan);
 }
 
 }  // namespace adasplats

@@ -136,10 +136,4 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Casts as `place` does and adds what is in `world`; scan i of a call is scan `first_scan` + i of
-/// the world. AnyModel, world and executor must outlive it.
-std::unique_ptr<ScanCaster> make_world_caster(const ScanCaster& place, const World& world,
-                                              const Executor& executor,
-                                              std::uint64_t first_scan = 0);
-
 }  // namespace adasplats

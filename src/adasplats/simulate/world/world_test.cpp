@@ -12,6 +12,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/simulate/scan/scan_rules.h"
+#include "adasplats/simulate/world/scene_caster.h"
 
 namespace adasplats {
 namespace {
@@ -589,35 +591,40 @@ TEST_F(WorldTest, NothingInManyForms) {
                std::logic_error);
 }
 
-// Oracle: the place's hits and add_hits.
-TEST_F(WorldTest, CasterAddsTheWorldToThePlace) {
+// Oracle: scan_of_hits() of the scene's hits and add_hits().
+TEST_F(WorldTest, CasterAddsTheWorldToTheScene) {
   SplatModel ground;
   ground.disks = {{{0, 0, -2}, 90, {0, 0, 1}}};
   const auto tracer = make_brute_force_tracer(ground.view());
-  const auto place = make_cpu_scan_caster(*tracer, kSceneOrigin, executor_);
+  const auto scene = make_cpu_scene_caster(*tracer, kSceneOrigin, executor_);
   World world(1, kSceneOrigin);
   WorldObject box = object(world.add_geometry(box_mesh({1, 1, 2})), {{0, pose(8, 0, 0)}});
   box.only_scan = 11;
   world.add_object(box);
   const std::vector<ScanMotion> scans(3, driving(5, 0));
-  const auto caster = make_world_caster(*place, world, executor_, 10);
-  std::vector<std::vector<Hit>> alone, all;
-  const auto keep = [](std::vector<std::vector<Hit>>& into) {
-    return [&](std::size_t scan, std::span<const Hit> hits) {
-      EXPECT_EQ(scan, into.size());
-      into.emplace_back(hits.begin(), hits.end());
-    };
+  SimulateOptions options;
+  options.beam.depth = 2;
+  const ScanRules rules(sensor_, firings_, options,
+                        std::make_shared<PrimitiveTable>(primitive_table({}, executor_)));
+  std::vector<std::vector<Hit>> hits;
+  scene->cast(sensor_, firings_, scans, 2, [&](std::size_t scan, std::span<const Hit> found) {
+    EXPECT_EQ(scan, hits.size());
+    hits.emplace_back(found.begin(), found.end());
+  });
+  const auto scan_of = [&](std::size_t i) {
+    return scan_of_hits(hits[i], {}, sensor_, firings_, scans[i], 10 + i, options, executor_);
   };
-  place->cast(sensor_, firings_, scans, 2, keep(alone));
-  const CastTimes times = caster->cast(sensor_, firings_, scans, 2, keep(all));
+  const std::vector<Vec3f> alone = scan_of(1).positions;
+  world.add_hits(11, sensor_, firings_, scans[1], kRevolution_s, 2, hits[1], executor_);
+  EXPECT_NE(scan_of(1).positions, alone);
+  std::size_t count = 0;
+  const ReportTimes times =
+      scene->report_world(rules, scans, 10, &world, executor_, [&](std::size_t i, Scan&& scan) {
+        EXPECT_EQ(i, count++);
+        EXPECT_EQ(scan.positions, scan_of(i).positions) << i;
+      });
+  EXPECT_EQ(count, scans.size());
   EXPECT_GT(times.traced_s, 0);
-  ASSERT_EQ(all.size(), 3U);
-  EXPECT_EQ(all[0], alone[0]);
-  EXPECT_EQ(all[2], alone[2]);
-  std::vector<Hit> expected = alone[1];
-  world.add_hits(11, sensor_, firings_, scans[1], kRevolution_s, 2, expected, executor_);
-  EXPECT_EQ(all[1], expected);
-  EXPECT_NE(all[1], alone[1]);
 }
 
 }  // namespace

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
+#include "adasplats/simulate/scan/scan_batch.h"
+#include "adasplats/simulate/scan/scan_caster.h"
+#include "adasplats/simulate/world/world.h"
+
+namespace adasplats {
+
+/// Where batches of scans are stored.
+enum class BatchMemory : std::uint8_t {
+  host,    ///< on a GPU page-locked, and reused when nobody holds the batch any more
+  device,  ///< of the first GPU; complete when the sink is called
+};
+
+/// Casts into a scene and the objects of its world, on the CPU or on GPUs.
+class SceneCaster : public ScanCaster {
+ public:
+  /// Without objects.
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, const Executor& executor,
+                     ScanSink sink) const final {
+    return report_world(rules, scans, first_number, nullptr, executor, sink);
+  }
+  /// The same with the objects of `world`, whose scan `first_number` is the first; null: none.
+  virtual ReportTimes report_world(const ScanRules& rules, std::span<const ScanMotion> scans,
+                                   std::uint64_t first_number, const World* world,
+                                   const Executor& executor, ScanSink sink) const = 0;
+
+  using BatchSink = FunctionRef<void(ScanBatch&& batch)>;
+  /// The same in batches, in order and without a copy. A batch has the scans of one launch on a
+  /// GPU, of which less memory makes batches smaller; one scan on the CPU. Errors: unavailable (not
+  /// enough GPU memory for one scan; device memory on the CPU).
+  virtual ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
+                                     std::uint64_t first_number, const World* world,
+                                     const Executor& executor, BatchMemory memory,
+                                     BatchSink sink) const = 0;
+  /// Whether batches hold many scans, and cost no copy.
+  virtual bool has_large_batches() const = 0;
+};
+
+/// Casts with a tracer, scan by scan. `scene_origin`: world coordinates of the scene's local
+/// origin. Tracer and executor must outlive it.
+std::unique_ptr<SceneCaster> make_cpu_scene_caster(const Tracer& tracer, Vec3d scene_origin,
+                                                   const Executor& executor);
+
+}  // namespace adasplats
