@@ -26,7 +26,7 @@ template <class Visit>
 void visit_settings(ImlsOptions& imls, Visit&& visit) {
   constexpr const char* kGroup = "IMLS";
   visit(Setting{.name = "voxel",
-                .help = "Side of a voxel, m",
+                .help = "Voxel size, m",
                 .key = "voxel_m",
                 .group = kGroup,
                 .min = 0,

@@ -20,10 +20,11 @@ struct NormalOptions {
 
 template <class Visit>
 void visit_settings(NormalOptions& normals, Visit&& visit) {
-  visit(
-      Setting{
-          .name = "neighbors", .help = "K, number of points for a normal", .min = 3, .max = 1000},
-      normals.neighbors);
+  visit(Setting{.name = "neighbors",
+                .help = "Number of points that a normal is estimated from, K",
+                .min = 3,
+                .max = 1000},
+        normals.neighbors);
 }
 
 struct OrientedNormals {

@@ -56,21 +56,21 @@ void visit_settings(PoissonOptions& poisson, Visit&& visit) {
                 .max = 16},
         poisson.depth);
   visit(Setting{.name = "samples_per_node",
-                .help = "Minimum number of points in a node; default 2, fixed at 1.5 for Open3D",
+                .help = "Minimum number of points in an octree node (default: 2; 1.5 with Open3D, "
+                        "which allows no other)",
                 .group = kGroup,
                 .min = 0,
                 .max = 1000,
                 .exclusive_min = true},
         poisson.samples_per_node);
-  visit(
-      Setting{.name = "trim",
-              .help = "Cut away parts with samples at a lower depth of the octree; default: depth "
-                      "- 3",
-              .group = kGroup},
-      poisson.trim);
+  visit(Setting{.name = "trim",
+                .help = "Remove surface reconstructed at a smaller octree depth than this "
+                        "(default: depth minus 3)",
+                .group = kGroup},
+        poisson.trim);
   visit(Setting{.name = "poisson_program",
-                .help = "Program: PoissonRecon and SurfaceTrimmer on PATH, else Open3D "
-                        "(adasplats-poisson)",
+                .help = "Reconstruction program (auto: PoissonRecon and SurfaceTrimmer if on PATH, "
+                        "else Open3D through adasplats-poisson)",
                 .group = kGroup},
         poisson.provider);
 }

@@ -57,19 +57,22 @@ struct CalibrateOptions {
 /// The settings for users.
 template <class Visit>
 void visit_settings(CalibrateOptions& calibrate, Visit&& visit) {
-  visit(Setting{.name = "poses", .help = "Estimate a correction of the pose of every scan"},
+  visit(Setting{.name = "poses",
+                .help = "Estimate a correction of the pose of every scan",
+                .basic = true},
         calibrate.poses);
   visit(Setting{.name = "ranges",
-                .help = "Estimate a range offset for every laser, if the sensor is recognised"},
+                .help = "Estimate a range offset for every laser of a recognised sensor",
+                .basic = true},
         calibrate.ranges);
-  visit(
-      Setting{.name = "elevations",
-              .help = "Estimate an elevation offset for every laser, if the sensor is recognised"},
-      calibrate.elevations);
+  visit(Setting{.name = "elevations",
+                .help = "Estimate an elevation offset for every laser of a recognised sensor",
+                .basic = true},
+        calibrate.elevations);
   visit(Setting{.name = "mount_correction",
-                .help =
-                    "Estimate a correction of the sensor's mount (boresight and lever arm), common "
-                    "to all scans"},
+                .help = "Estimate a correction of the sensor mount (boresight and lever arm), "
+                        "common to all scans",
+                .basic = true},
         calibrate.mount_correction);
 }
 

@@ -26,11 +26,12 @@ struct CalibrateWindowOptions {
 template <class Visit>
 void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
   visit(Setting{.name = "window_scans",
-                .help = "Scans that are solved at once: longer drives are cut into windows that "
-                        "overlap by half",
+                .help = "Number of scans solved together; longer drives are split into windows "
+                        "that overlap by half",
                 .value = "N",
                 .min = 8,  // four scans are what a window shares with the next
-                .max = 1e6},
+                .max = 1e6,
+                .basic = true},
         windows.window_scans);
 }
 

@@ -14,8 +14,8 @@
 namespace adasplats {
 
 /// One setting as users see it: an option of the command line, a keyword of Python, a key of
-/// configurations, reports and messages. The settings of a struct are listed in one table next to
-/// it,
+/// configurations, reports and messages. The settings of a subject are one table next to its
+/// struct,
 ///
 ///     template <class Visit>
 ///     void visit_settings(BeamOptions& beam, Visit&& visit) {
@@ -24,28 +24,29 @@ namespace adasplats {
 ///             beam.sub_rays);
 ///     }
 ///
-/// and all code that reads, reports or checks settings iterates over it:
-/// cli/options/setting_options, jobs/session/settings_json, python/src/values/keywords,
-/// check_settings(). A new setting is one entry. Members are bool, numbers, vectors, optionals of
-/// these, texts, paths, enumerations with words (words_of(), next to the enumeration) and
-/// GroupScale.
+/// and everything that parses, reports or checks settings visits it: cli/options/setting_options,
+/// jobs/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
+/// one entry. Members are bools, numbers, vectors, optional ones of these, strings, paths,
+/// enumerations with words (words_of(), declared next to the enumeration) and GroupScale.
 struct Setting {
   const char* name;           ///< in snake_case; the option has dashes
   const char* help;           ///< one line, no full stop
   const char* value = "";     ///< placeholder of the value in help: "M", "N"
   const char* key = name;     ///< in JSON, with the unit: "separation_m"
-  const char* opposite = "";  ///< of bool: options that turn it off; "": "no-NAME"
+  const char* opposite = "";  ///< of a bool: options that turn it off; "": "no-NAME"
   const char* group = "";     ///< heading in help
   double min = -std::numeric_limits<double>::max();
   double max = std::numeric_limits<double>::max();
-  bool exclusive_min = false;  ///< whether `min` itself is out of range
+  bool exclusive_min = false;  ///< the minimum itself is out of range
+  bool basic = false;          ///< in the short help, too
+  const char* old_name = "";   ///< deprecated name and key, accepted for one release
 };
 
 /// "--sub-rays".
 std::string option_of(const Setting& setting);
 
-/// Replaces each setting name in backquotes by word(name). Messages of the library name settings
-/// so, "`max_distance` keeps them", and each user interface shows them in its own form.
+/// Messages of the library name settings in backquotes, "`max_distance` keeps them". This replaces
+/// each by word(name): the name that the reader of the message uses.
 std::string with_settings_as(std::string_view message,
                              const std::function<std::string(std::string name)>& word);
 /// "--max-distance keeps them".

@@ -42,8 +42,13 @@ struct MeshOptions {
 
 template <class Visit>
 void visit_settings(MeshOptions& mesh, Visit&& visit) {
-  visit(Setting{.name = "method", .help = "Implicit moving least squares or screened Poisson"},
-        mesh.method);
+  visit(
+      Setting{
+          .name = "method",
+          .help =
+              "Implicit moving least squares (imls) or screened Poisson reconstruction (poisson)",
+          .basic = true},
+      mesh.method);
   visit_settings(mesh.normals, visit);
   visit_settings(mesh.imls, visit);
   visit_settings(mesh.poisson, visit);

@@ -33,20 +33,20 @@ struct SegmentJob {
 template <class Visit>
 void visit_settings(SegmentOptions& segment, Visit&& visit) {
   visit(Setting{.name = "tile",
-                .help = "Side of the squares that are looked at one after the other, m",
+                .help = "Side of the squares processed one after the other, m",
                 .value = "M",
                 .key = "tile_m",
                 .min = 1,
                 .max = 1000},
         segment.tile_m);
   visit(Setting{.name = "margin",
-                .help = "How much around each square is looked at, too, m",
+                .help = "Context around each square, m",
                 .value = "M",
                 .key = "margin_m",
                 .min = 0,
                 .max = 100},
         segment.margin_m);
-  visit(Setting{.name = "intensity", .help = "Use the points' intensities, where they have some"},
+  visit(Setting{.name = "intensity", .help = "Use the intensities of the points, if available"},
         segment.intensity);
 }
 

@@ -49,42 +49,49 @@ struct SimKitti32Job {
 template <class Visit>
 void visit_settings(SimKitti32Job& job, Visit&& visit) {
   constexpr const char* kModel = "Static model";
-  visit(
-      Setting{.name = "offset", .help = "Shift of the sensor in world axes, m", .key = "offset_m"},
-      job.offset_m);
+  visit(Setting{.name = "offset",
+                .help = "Shift of the sensor in world axes, m",
+                .key = "offset_m",
+                .basic = true},
+        job.offset_m);
   visit(Setting{.name = "noise",
-                .help = "Standard deviation of the range, m",
+                .help = "Standard deviation of the range noise, m",
                 .key = "noise_m",
-                .min = 0},
+                .min = 0,
+                .basic = true},
         job.noise_m);
   visit(Setting{.name = "depth",
-                .help = "D, hits of a ray that are averaged",
+                .help = "Number of hits averaged along a ray, D",
                 .min = 1,
                 .max = kMaxDepth},
         job.depth);
-  visit(Setting{.name = "moving", .help = "Simulate what moves, too"}, job.moving);
+  visit(Setting{.name = "moving", .help = "Simulate moving objects, too", .basic = true},
+        job.moving);
   visit(Setting{.name = "moving_radius",
-                .help = "Of the splats of what moves, m",
+                .help = "Splat radius of moving objects, m",
                 .key = "moving_radius_m",
                 .min = 0,
                 .exclusive_min = true},
         job.moving_radius_m);
-  visit(Setting{.name = "method",
-                .help = "How it is made; consistent agrees with the measured rays, semantic is the "
-                        "paper's",
-                .group = kModel},
-        job.method);
+  visit(
+      Setting{
+          .name = "method",
+          .help =
+              "Modelling method: consistent agrees with the measured rays, semantic is the paper's",
+          .group = kModel},
+      job.method);
   visit(Setting{.name = "model_every",
-                .help = "Take every n-th of the scans for it, for less memory",
+                .help = "Use every n-th scan for the model, to save memory",
                 .value = "N",
                 .group = kModel,
                 .min = 1,
-                .max = 1e6},
+                .max = 1e6,
+                .basic = true},
         job.model_every);
-  visit(
-      Setting{
-          .name = "keep_model", .help = "Leave it in the output, as model.ply", .group = kModel},
-      job.keep_model);
+  visit(Setting{.name = "keep_model",
+                .help = "Keep the model in the output folder, as model.ply",
+                .group = kModel},
+        job.keep_model);
   visit_settings(job.weather, visit);
 }
 

@@ -30,32 +30,38 @@ inline constexpr double kFarthestSensed_m = 1e6;
 
 template <class Visit>
 void visit_settings(SensorOverrides& sensor, Visit&& visit) {
+  constexpr const char* kGroup = "Sensor";
   visit(Setting{.name = "range_noise",
-                .help = "Standard deviation of the noise on ranges, m; the default is the sensor's",
+                .help = "Standard deviation of the range noise, m (default: the sensor's)",
                 .value = "M",
                 .key = "range_noise_m",
+                .group = kGroup,
                 .min = 0,
-                .max = 1000},
+                .max = 1000,
+                .basic = true},
         sensor.range_noise_m);
   visit(Setting{.name = "min_range",
-                .help = "Minimum range, m; the default is the sensor's",
+                .help = "Minimum range, m (default: the sensor's)",
                 .value = "M",
                 .key = "min_range_m",
+                .group = kGroup,
                 .min = 0,
                 .max = kFarthestSensed_m},
         sensor.min_range_m);
   visit(Setting{.name = "max_range",
-                .help = "Maximum range, m; the default is the sensor's",
+                .help = "Maximum range, m (default: the sensor's)",
                 .value = "M",
                 .key = "max_range_m",
+                .group = kGroup,
                 .min = 0,
                 .max = kFarthestSensed_m,
                 .exclusive_min = true},
         sensor.max_range_m);
   visit(Setting{.name = "rotation_rate",
-                .help = "Revolutions per second; the default is the sensor's",
+                .help = "Revolutions per second (default: the sensor's)",
                 .value = "HZ",
                 .key = "rotation_hz",
+                .group = kGroup,
                 .min = 1e-3,
                 .max = 1e4},
         sensor.rotation_hz);

@@ -49,8 +49,9 @@ void visit_methods(Choice& choice, Visit&& visit) {
 template <class Visit>
 void visit_settings(MethodChoice& choice, Visit&& visit) {
   visit(Setting{.name = "method",
-                .help = "Method: consistent agrees with the measured rays; the others are the "
-                        "paper's variants, of which semantic needs labels"},
+                .help = "Modelling method: consistent agrees with the measured rays; the others "
+                        "are the paper's variants (semantic needs labels)",
+                .basic = true},
         choice.method);
   visit_methods(choice, [&](auto& options, const char*) { visit_settings(options, visit); });
 }

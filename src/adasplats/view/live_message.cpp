@@ -99,7 +99,7 @@ class SettingFromJson {
 
   template <class T>
   void operator()(const Setting& setting, T& value) {
-    if (key_ != setting.key) return;
+    if (key_ != setting.key && key_ != setting.old_name) return;
     found_ = true;
     if constexpr (std::is_enum_v<T>) {
       take_word(setting, value);

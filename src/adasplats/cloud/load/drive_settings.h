@@ -75,8 +75,15 @@ struct DriveSettings {
 template <class Visit>
 void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit) {
   visit(Setting{.name = "mount",
-                .help = "Lever arm: position of the sensor in the frame of the trajectory's poses, "
-                        "m (default: the poses are the sensor's own)",
+                .help = "Lever arm: sensor position in the frame of the trajectory's poses, m "
+                        "(default: the poses are the sensor's)",
+                .group = group},
+        drive.mount);
+  visit(Setting{.name = "mount_rotation",
+                .help = "Boresight: yaw, pitch and roll of the sensor in the frame of the "
+                        "trajectory's poses, degrees. It rotates the poses of scans only, so "
+                        "points in world coordinates need none",
+                .key = "mount_rotation_deg",
                 .group = group},
         drive.mount);
   visit(
@@ -88,8 +95,8 @@ void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit
               .group = group},
       drive.mount_rotation_deg);
   visit(Setting{.name = "time_offset",
-                .help = "Offset added to the points' times to get trajectory times, s (default: "
-                        "inferred from the GPS, UTC and PTP clocks)",
+                .help = "Seconds to add to the times of points to get times of the trajectory "
+                        "(default: inferred from GPS, UTC and PTP clocks)",
                 .value = "S",
                 .key = "time_offset_s",
                 .group = group},
@@ -99,46 +106,46 @@ void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit
 /// How to read the scans.
 template <class Visit>
 void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit) {
-  visit(Setting{.name = "points_in",
-                .help = "Frame of the points in a folder of scans with a trajectory",
-                .group = group},
-        drive.points_in);
-  visit(Setting{.name = "sweep_points",
-                .help = "State of scans in the sensor frame with point times: as measured, or "
-                        "motion-compensated",
-                .group = group},
-        drive.sweep_points);
+  visit(
+      Setting{.name = "points_in",
+              .help = "Frame of the points in a folder of scans with a trajectory (auto: inferred)",
+              .group = group},
+      drive.points_in);
+  visit(
+      Setting{
+          .name = "sweep_points",
+          .help = "Whether scans with times are as measured or motion-compensated (auto: inferred)",
+          .group = group},
+      drive.sweep_points);
   visit(Setting{.name = "scan_times",
-                .help = "Times of the scans of a folder, s: one per line, in the order of the file "
+                .help = "Times of the scans of a folder, s, one per line in the order of the file "
                         "names, in the clock of the trajectory",
                 .value = "FILE",
                 .group = group},
         drive.scan_times);
-  visit(
-      Setting{.name = "topic",
-              .help = "Topic of the points in a recording (MCAP, ROS bag) (default: the only one)",
-              .value = "NAME",
-              .group = group},
-      drive.topic);
+  visit(Setting{.name = "topic",
+                .help = "MCAP, ROS bag: topic of the points (default: the only one)",
+                .value = "NAME",
+                .group = group},
+        drive.topic);
   visit(Setting{.name = "poses_topic",
-                .help = "Topic of the poses in a recording: tf, odometry or poses (default: tf, "
-                        "else the only one)",
+                .help = "MCAP, ROS bag: topic of the poses, of type tf, odometry or poses "
+                        "(default: tf, else the only one)",
                 .value = "NAME",
                 .group = group},
         drive.poses_topic);
   visit(Setting{.name = "scene",
-                .help = "Name of the scene in a nuScenes data root (default: the only one)",
+                .help = "nuScenes: name of the scene (default: the only one)",
                 .value = "NAME",
                 .group = group},
         drive.scene);
-  visit(
-      Setting{.name = "packets_of",
-              .help =
-                  "Sensor that sent the packets of a capture (PCAP): a name of the library or the "
-                  "maker's file (default: metadata.json or calibration*.yaml in the same folder)",
-              .value = "SENSOR",
-              .group = group},
-      drive.packets_of);
+  visit(Setting{.name = "packet_sensor",
+                .help = "PCAP: sensor that sent the packets, by name or manufacturer's file "
+                        "(default: metadata.json or calibration*.yaml next to the capture)",
+                .value = "SENSOR",
+                .group = group,
+                .old_name = "packets_of"},
+        drive.packets_of);
 }
 
 }  // namespace adasplats

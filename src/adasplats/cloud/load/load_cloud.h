@@ -78,24 +78,24 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .exclusive_min = true},
         load.max_distance_m);
   visit(Setting{.name = "max_dropped",
-                .help = "Maximum share of points that may be dropped as too far or not finite; "
-                        "more is an error",
+                .help =
+                    "Maximum fraction of points dropped as not finite or too far; more is an error",
                 .value = "SHARE",
                 .group = group,
                 .min = 0,
                 .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
-                .help = "Remove points nearer than this to their sensor as part of the recording "
-                        "vehicle, m; 0 keeps all (default: points that move with the sensor)",
+                .help = "Remove points closer to their sensor than this as the recording vehicle, "
+                        "m; 0 keeps all (default: points that move with the sensor)",
                 .value = "M",
                 .key = "own_body_m",
                 .group = group,
                 .min = 0},
         load.own_body_m);
   visit(Setting{.name = "driven_path",
-                .help = "Half width of the driven path, m: points in the volume that the vehicle "
-                        "drove through are removed; 0 keeps all",
+                .help = "Remove points in the volume that the vehicle drove through, up to this "
+                        "distance to each side of its path, m; 0 keeps all",
                 .value = "M",
                 .key = "driven_path_m",
                 .group = group,
@@ -103,16 +103,16 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
-                .help = "Accept sensor positions even if points are hidden behind others as seen "
-                        "from there (files with later returns)",
+                .help = "Trust the sensor positions of the file even if points are hidden behind "
+                        "others from there, as later returns are",
                 .group = group},
         load.trust_origins);
   visit(
       Setting{
-          .name = "strict", .help = "Treat points that are not finite as an error", .group = group},
+          .name = "strict", .help = "Reject files with points that are not finite", .group = group},
       load.strict);
   visit(Setting{.name = "salvage",
-                .help = "Read the whole records of truncated LAS files",
+                .help = "Read the complete records of truncated LAS files",
                 .group = group},
         load.salvage);
 }
@@ -122,39 +122,36 @@ template <class Visit>
 void visit_settings(LoadOptions& load, Visit&& visit) {
   constexpr const char* kGroup = "Input";
   visit(Setting{.name = "label_field",
-                .help = "Column of the semantic class",
+                .help = "Column with the semantic class",
                 .value = "NAME",
                 .group = kGroup},
         load.label_field);
   visit(Setting{.name = "viewpoint",
-                .help = "Position of the station that measured all points without a sensor "
-                        "position, world coordinates",
+                .help = "Sensor position of all points without one, world coordinates (a single "
+                        "scanner station)",
                 .group = kGroup},
         load.viewpoint);
-  visit(
-      Setting{.name = "trajectory",
-              .help =
-                  "Poses of the recording. Points with times get the start of each beam from them: "
-                  "with the recognised sensor and mount for a folder of scans, else with `mount`. "
-                  "Points without times use the nearest pose as a guess, only to orient normals",
-              .group = kGroup},
-      load.trajectory);
-  visit_mount_settings(load, kGroup, visit);
-  visit(Setting{.name = "extent",
-                .help = "Read only the points of files in this box (COPC: only the nodes that "
-                        "overlap it are unpacked)",
+  visit(Setting{.name = "trajectory",
+                .help = "Poses of the recording. Points with times get their beam origins from it, "
+                        "with the recognised sensor and mount or with --mount. Points without "
+                        "times only get normals oriented towards the nearest pose",
                 .group = kGroup},
-        load.selection.extent);
+        load.trajectory);
+  visit_mount_settings(load, kGroup, visit);
+  visit(
+      Setting{.name = "extent",
+              .help = "Load only points in this box; COPC files are decompressed only where needed",
+              .group = kGroup},
+      load.selection.extent);
   visit(Setting{.name = "level",
-                .help = "Files with levels of detail (COPC): read levels 0 (coarsest) to this one",
+                .help = "COPC files: load levels of detail from the coarsest, 0, to this one",
                 .value = "N",
                 .group = kGroup,
                 .min = 0,
                 .max = 30},
         load.selection.level);
   visit(Setting{.name = "resolution",
-                .help = "Files with levels of detail (COPC): read as many levels as this point "
-                        "spacing needs, m",
+                .help = "COPC files: load the levels of detail needed for this point spacing, m",
                 .value = "M",
                 .key = "resolution_m",
                 .group = kGroup,
@@ -162,17 +159,17 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                 .exclusive_min = true},
         load.selection.resolution_m);
   visit(Setting{.name = "boxes",
-                .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
-                        "size_z,yaw): points in boxes that move are removed from scans with times",
+                .help = "Boxes of objects over time (CSV: "
+                        "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw); points in moving "
+                        "boxes are removed from scans with times",
                 .value = "FILE",
                 .group = kGroup},
         load.boxes);
   visit_scan_settings(load, kGroup, visit);
-  visit(
-      Setting{.name = "beams_from_poses",
-              .help = "Start the beams of sequences at the poses, even if the sensor is recognised",
-              .group = kGroup},
-      load.beams_from_poses);
+  visit(Setting{.name = "beams_from_poses",
+                .help = "Use the poses as beam origins, even if the sensor is recognised",
+                .group = kGroup},
+        load.beams_from_poses);
   visit_drop_settings(load, kGroup, visit);
 }
 

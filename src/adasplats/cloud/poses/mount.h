@@ -23,10 +23,15 @@ struct MountSettings {
 
 template <class Visit>
 void visit_settings(MountSettings& mount, Visit&& visit) {
-  visit(Setting{.name = "mount", .help = "Where the sensor sits in the frame of the poses, m"},
-        mount.translation_m);
+  constexpr const char* kGroup = "Trajectory";
+  visit(
+      Setting{
+          .name = "mount", .help = "Sensor position in the frame of the poses, m", .group = kGroup},
+      mount.translation_m);
   visit(Setting{.name = "mount_rotation",
-                .help = "Its yaw, pitch and roll there, degrees; a positive pitch looks down"},
+                .help = "Yaw, pitch and roll of the sensor in the frame of the poses, degrees; a "
+                        "positive pitch looks down",
+                .group = kGroup},
         mount.rotation_deg);
 }
 

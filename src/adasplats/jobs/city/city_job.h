@@ -20,18 +20,19 @@ struct TileChoice {
 template <class Visit>
 void visit_settings(TileChoice& choice, Visit&& visit) {
   constexpr const char* kGroup = "Cities";
-  visit(Setting{.name = "tile",
-                .help = "Side of square tiles that the place is cut into and modelled one by one, "
-                        "m; the output is a folder. 0: in one piece, whatever memory that "
-                        "takes (default: 0 where that fits into memory)",
-                .key = "tile_m",
-                .group = kGroup,
-                .min = 0,
-                .max = 10'000},
-        choice.tile_m);
+  visit(
+      Setting{.name = "tile",
+              .help = "Split the scene into square tiles of this side and model them one by one, "
+                      "m; the output is a folder. 0: one model (default: 0 if it fits into memory)",
+              .key = "tile_m",
+              .group = kGroup,
+              .min = 0,
+              .max = 10'000,
+              .basic = true},
+      choice.tile_m);
   visit(Setting{.name = "halo",
-                .help = "Around a tile the points that it is modelled with, m; splats farther than "
-                        "that from the borders are those of one large model",
+                .help = "Margin of points around a tile that it is modelled with, m; splats "
+                        "farther than this from the tile's borders equal those of one large model",
                 .key = "halo_m",
                 .group = kGroup,
                 .min = 0,
@@ -47,9 +48,8 @@ struct MemoryChoice {
 template <class Visit>
 void visit_settings(MemoryChoice& choice, Visit&& visit) {
   visit(Setting{.name = "memory",
-                .help =
-                    "Memory that modelling may take, GB, or with a unit (8G, 500M): what needs "
-                    "more is modelled in tiles that fit (default: three quarters of what there is)",
+                .help = "Memory limit of modelling, GB or with a unit (8G, 500M); larger inputs "
+                        "are modelled in tiles (default: three quarters of the available memory)",
                 .value = "GB",
                 .key = "memory_gb",
                 .group = "Cities",
@@ -65,12 +65,14 @@ struct AdditionChoice {
 
 template <class Visit>
 void visit_settings(AdditionChoice& choice, Visit&& visit) {
-  visit(Setting{.name = "most_shift",
-                .help = "How far points may lie beside the city that they are added to, m",
-                .key = "most_shift_m",
+  visit(Setting{.name = "max_shift",
+                .help =
+                    "Maximum offset between added points and the city, m; a larger one is an error",
+                .key = "max_shift_m",
                 .group = "Cities",
                 .min = 0,
-                .max = 1'000},
+                .max = 1'000,
+                .old_name = "most_shift"},
         choice.max_shift_m);
 }
 

@@ -29,14 +29,14 @@ struct CompareLimits {
 template <class Visit>
 void visit_settings(CompareLimits& limits, Visit&& visit) {
   visit(Setting{.name = "time_limit",
-                .help = "Seconds",
+                .help = "Time limit of every step, s",
                 .value = "S",
                 .min = 0,
                 .max = std::numeric_limits<double>::infinity(),
                 .exclusive_min = true},
         limits.seconds);
   visit(Setting{.name = "memory_limit",
-                .help = "GiB; 0: 90 % of the machine's memory",
+                .help = "Memory limit of every step, GiB; 0: 90 % of the machine's",
                 .value = "GIB",
                 .min = 0,
                 .max = 1e9},
@@ -77,19 +77,19 @@ void visit_settings(CompareJob& job, Visit&& visit) {
                 .min = 0},
         job.every);
   visit(Setting{.name = "picture_width",
-                .help = "Pixels; the height is 9/16 of it",
+                .help = "Picture width, pixels; the height is 9/16 of it",
                 .value = "N",
                 .min = 64,
                 .max = 8192},
         job.picture_width);
   visit(Setting{.name = "poisson_depth",
-                .help = "Depth of the octree",
+                .help = "Octree depth of Poisson reconstruction",
                 .value = "N",
                 .min = 1,
                 .max = 16},
         job.poisson_depth);
   visit(Setting{.name = "network",
-                .help = "Network file for the method kpconv; default: the network of the program"},
+                .help = "Network file of the method kpconv (default: the included network)"},
         job.network);
 }
 

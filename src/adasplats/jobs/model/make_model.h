@@ -32,25 +32,26 @@ struct CalibrationChoice {
 template <class Visit>
 void visit_settings(CalibrationChoice& choice, Visit&& visit) {
   constexpr const char* kGroup = "Calibration";
-  visit(Setting{.name = "calibrate",
-                .help = "Estimate from the points what their poses and lasers get wrong and "
-                        "correct it, where the evidence is clear",
-                .group = kGroup},
-        choice.on);
-  visit(Setting{.name = "calibrate_poses",
-                .help = "With a correction of the pose of every scan",
-                .group = kGroup},
-        choice.options.poses);
+  visit(
+      Setting{
+          .name = "calibrate",
+          .help = "Estimate and correct the errors of poses and lasers where the evidence is clear",
+          .group = kGroup,
+          .basic = true},
+      choice.on);
+  visit(
+      Setting{.name = "calibrate_poses", .help = "Correct the pose of every scan", .group = kGroup},
+      choice.options.poses);
   visit(Setting{.name = "calibrate_ranges",
-                .help = "With an offset of the ranges of every laser",
+                .help = "Correct the range offset of every laser",
                 .group = kGroup},
         choice.options.ranges);
   visit(Setting{.name = "calibrate_elevations",
-                .help = "With an offset of the elevation of every laser",
+                .help = "Correct the elevation offset of every laser",
                 .group = kGroup},
         choice.options.elevations);
   visit(Setting{.name = "calibrate_mount",
-                .help = "With a correction of the sensor's mount, common to all scans",
+                .help = "Correct the sensor mount, common to all scans",
                 .group = kGroup},
         choice.options.mount_correction);
 }
@@ -64,11 +65,11 @@ struct SegmentChoice {
 template <class Visit>
 void visit_settings(SegmentChoice& choice, Visit&& visit) {
   visit(Setting{.name = "segment",
-                .help = "Give the points classes by a network, in place of labels that they have"},
+                .help = "Classify the points with a network; labels in the input are replaced",
+                .basic = true},
         choice.on);
   visit(Setting{.name = "network",
-                .help = "File of the network that gives classes; else the one that comes with the "
-                        "program"},
+                .help = "Network file that classifies the points (default: the included network)"},
         choice.network);
 }
 

@@ -48,29 +48,39 @@ struct RenderResult {
 
 template <class Visit>
 void visit_settings(RenderJob& job, Visit&& visit) {
-  visit(Setting{.name = "samples", .help = "Rays a pixel: the square of this", .min = 1, .max = 64},
+  visit(Setting{.name = "samples",
+                .help = "Samples per pixel along each axis: N x N rays",
+                .min = 1,
+                .max = 64},
         job.look.samples_per_axis);
-  visit(Setting{.name = "relief", .help = "Dark corners and gaps, splats that run into each other"},
-        job.look.relief);
-  visit(Setting{.name = "captions", .help = "Title, legend, scale and north"}, job.look.captions);
-  visit(Setting{.name = "difference",
-                .help = "Of two models: how much farther the second is along the view, by colour"},
-        job.difference);
+  visit(
+      Setting{.name = "relief", .help = "Darken corners and gaps, and blend splats that intersect"},
+      job.look.relief);
+  visit(Setting{.name = "captions", .help = "Draw title, legend, scale and north arrow"},
+        job.look.captions);
+  visit(
+      Setting{
+          .name = "difference",
+          .help = "Colour by how much farther away the second of two models is along the view rays",
+          .basic = true},
+      job.difference);
   visit(Setting{.name = "seconds",
-                .help = "Length of a film",
+                .help = "Length of a film, s",
                 .value = "S",
+                .group = "Film",
                 .min = 0,
                 .max = 3600,
                 .exclusive_min = true},
         job.seconds);
   visit(Setting{.name = "frames_per_s",
-                .help = "Pictures a second of a film",
+                .help = "Frame rate of a film, 1/s",
                 .value = "N",
+                .group = "Film",
                 .min = 1,
                 .max = 120},
         job.frames_per_s);
   visit(Setting{.name = "repeat",
-                .help = "Render so often and report the median of the time",
+                .help = "Render this many times and report the median time",
                 .value = "N",
                 .min = 1},
         job.repeat);

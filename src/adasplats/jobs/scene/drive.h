@@ -38,51 +38,71 @@ struct DriveOptions {
 /// All but the trajectory, the places, the path, and the mount, which users give as MountSettings.
 template <class Visit>
 void visit_settings(DriveOptions& drive, Visit&& visit) {
+  constexpr const char* kGroup = "Trajectory";
   visit(Setting{.name = "speed",
-                .help = "On a path, m/s; without it 10",
+                .help = "Speed on a path, m/s (default: 10)",
                 .value = "M/S",
                 .key = "speed_mps",
+                .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         drive.speed_mps);
   visit(Setting{.name = "height",
-                .help = "Above the ground at places and on paths, m; without it 1.73, a car's roof",
+                .help = "Sensor height above the ground with --at and --path, m (default: 1.73, "
+                        "the roof of a car)",
                 .value = "M",
-                .key = "height_m"},
+                .key = "height_m",
+                .group = kGroup},
         drive.height_m);
-  visit(Setting{.name = "offset", .help = "Shift of the trajectory in world axes, m"},
+  visit(Setting{.name = "offset",
+                .help = "Shift of the trajectory in world axes, m",
+                .group = kGroup,
+                .basic = true},
         drive.offset_m);
-  visit(Setting{.name = "every", .help = "Take every n-th pose", .value = "N", .min = 1},
+  visit(Setting{.name = "every",
+                .help = "Use every n-th pose",
+                .value = "N",
+                .group = kGroup,
+                .min = 1,
+                .basic = true},
         drive.every);
   visit(Setting{.name = "rate",
-                .help = "Poses a second instead of those of the file, or 10 on a path",
+                .help = "Interpolate poses at this rate, Hz (default: the poses of the trajectory; "
+                        "10 on a path)",
                 .value = "HZ",
+                .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         drive.rate_hz);
   visit(Setting{.name = "spacing",
-                .help = "Poses so far apart instead of those of the file or the path",
+                .help = "Interpolate poses at this distance, m (default: the poses of the "
+                        "trajectory or path)",
                 .value = "M",
+                .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         drive.spacing_m);
-  visit(
-      Setting{.name = "rolling_shutter",
-              .help = "The sensor moves while it turns; a pose is that of the middle of its scan"},
-      drive.rolling_shutter);
+  visit(Setting{.name = "rolling_shutter",
+                .help = "Move the sensor while it turns; a pose is that of the middle of its scan",
+                .group = kGroup,
+                .basic = true},
+        drive.rolling_shutter);
   visit(Setting{.name = "topic",
-                .help = "Of a recording as trajectory: the topic of points at whose times it is "
-                        "taken (default: the only one)",
-                .value = "NAME"},
+                .help = "Recording as trajectory: topic of the points that define the times of the "
+                        "scans (default: the only one)",
+                .value = "NAME",
+                .group = kGroup},
         drive.topic);
   visit(Setting{.name = "poses_topic",
-                .help = "Of a recording as trajectory: the topic of its poses, tf, odometry or "
+                .help = "Recording as trajectory: topic of the poses, of type tf, odometry or "
                         "poses (default: tf, else the only one)",
-                .value = "NAME"},
+                .value = "NAME",
+                .group = kGroup},
         drive.poses_topic);
   visit(Setting{.name = "motion",
-                .help = "How it moves where the trajectory has too few poses to tell (with a "
-                        "rolling shutter)"},
+                .help = "Poses that describe the motion within scans if the trajectory has too few "
+                        "(with --rolling-shutter)",
+                .group = kGroup},
         drive.motion);
 }
 

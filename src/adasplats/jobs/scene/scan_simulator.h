@@ -68,27 +68,36 @@ struct ScanChoice {
 /// All but the sensor.
 template <class Visit>
 void visit_settings(ScanChoice& scan, Visit&& visit) {
+  constexpr const char* kGroup = "Sensor";
   visit(Setting{.name = "points",
-                .help = "With a rolling shutter: as measured, or with the motion taken out"},
+                .help = "Coordinates of the points with --rolling-shutter: as measured, or "
+                        "motion-compensated",
+                .group = kGroup},
         scan.frame);
   visit(Setting{.name = "noise",
-                .help = "Noise of the sensor on ranges and angles",
-                .opposite = "no-noise,no-range-noise"},
+                .help = "Simulate the sensor's noise of ranges and angles",
+                .opposite = "no-noise,no-range-noise",
+                .group = kGroup,
+                .basic = true},
         scan.noise);
-  visit(Setting{.name = "unit_offsets",
-                .help =
-                    "Report ranges with the offsets of the sensor's rings (range_offsets_m of its "
-                    "file), as that very unit does"},
+  visit(Setting{.name = "sensor_offsets",
+                .help = "Apply the calibrated range offsets of the sensor's rings (range_offsets_m "
+                        "of its file)",
+                .group = kGroup,
+                .old_name = "unit_offsets"},
         scan.unit_offsets);
   visit_settings(scan.overrides, visit);
   visit_settings(scan.beam, visit);
   visit(Setting{.name = "ray_drop",
-                .help = "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'; "
-                        "'none': no beam, though the sensor's file says which ([drop])"},
+                .help = "Model of lost beams: a file of 'adasplats fit-drop', or 'none' to ignore "
+                        "[drop] in the sensor's file",
+                .group = kGroup},
         scan.ray_drop);
   visit(Setting{.name = "vehicle_body",
-                .help = "Returns from what carries the sensor, where its file has them ([body])",
-                .opposite = "no-vehicle-body"},
+                .help = "Simulate returns from the recording vehicle if the sensor's file "
+                        "describes it ([body])",
+                .opposite = "no-vehicle-body",
+                .group = kGroup},
         scan.vehicle_body);
   visit_settings(scan.weather, visit);
 }

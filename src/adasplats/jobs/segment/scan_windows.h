@@ -23,8 +23,8 @@ struct WindowOptions {
 template <class Visit>
 void visit_settings(WindowOptions& window, Visit&& visit) {
   visit(Setting{.name = "window_points",
-                .help = "Most points of a drive that are looked at together; longer ones are cut "
-                        "into windows of scans",
+                .help = "Maximum number of points of a drive processed together; longer drives are "
+                        "split into windows of scans",
                 .value = "N",
                 .min = 60,
                 .max = 1e9},

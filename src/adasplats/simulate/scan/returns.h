@@ -50,39 +50,52 @@ inline constexpr std::size_t kMaxSubRays = 64;
 
 template <class Visit>
 void visit_settings(BeamOptions& beam, Visit&& visit) {
-  visit(Setting{.name = "depth",
-                .help = "Splats along a ray whose weighted mean is the echo (the paper's D = 5)",
-                .value = "D",
-                .min = 1,
-                .max = kMaxDepth},
-        beam.depth);
+  constexpr const char* kGroup = "Beams and returns";
+  visit(
+      Setting{
+          .name = "depth",
+          .help = "Number of splats along a ray that are averaged into an echo (the paper's D = 5)",
+          .value = "D",
+          .group = kGroup,
+          .min = 1,
+          .max = kMaxDepth},
+      beam.depth);
   visit(Setting{.name = "depth_gap",
-                .help = "Splats of a ray farther behind the one before are not averaged, m",
+                .help = "Maximum distance between consecutive splats of a ray that are averaged, m",
                 .value = "M",
                 .key = "depth_gap_m",
+                .group = kGroup,
                 .min = 0,
                 .max = std::numeric_limits<double>::infinity()},
         beam.depth_gap_m);
   visit(Setting{.name = "sub_rays",
-                .help = "Rays over the cross-section of a beam",
+                .help = "Number of rays per beam, spread over its cross-section",
                 .value = "N",
+                .group = kGroup,
                 .min = 1,
-                .max = kMaxSubRays},
+                .max = kMaxSubRays,
+                .basic = true},
         beam.sub_rays);
   visit(Setting{.name = "separation",
-                .help = "Echoes nearer to one another are one return, m",
+                .help = "Minimum distance between returns, m; closer echoes are merged",
                 .value = "M",
                 .key = "separation_m",
+                .group = kGroup,
                 .min = 0,
                 .max = std::numeric_limits<double>::infinity()},
         beam.separation_m);
   visit(Setting{.name = "returns",
-                .help = "Most returns of a firing",
+                .help = "Maximum number of returns per firing",
                 .value = "N",
+                .group = kGroup,
                 .min = 1,
-                .max = kMaxSubRays},
+                .max = kMaxSubRays,
+                .basic = true},
         beam.returns);
-  visit(Setting{.name = "return_mode", .help = "Which echo comes first or alone"}, beam.mode);
+  visit(
+      Setting{
+          .name = "return_mode", .help = "Which echo is reported first, or alone", .group = kGroup},
+      beam.mode);
 }
 
 /// One echo that a sensor reports.

@@ -29,10 +29,12 @@ inline constexpr double kMaxRain_mm_h = 3000;
 
 template <class Visit>
 void visit_settings(Weather& weather, Visit&& visit) {
+  constexpr const char* kGroup = "Weather";
   visit(Setting{.name = "rain",
-                .help = "Rate of rain, mm/h",
+                .help = "Rain rate, mm/h",
                 .value = "MM/H",
                 .key = "rain_mm_h",
+                .group = kGroup,
                 .min = 0,
                 .max = kMaxRain_mm_h},
         weather.rain_mm_h);
@@ -40,20 +42,23 @@ void visit_settings(Weather& weather, Visit&& visit) {
                 .help = "Visibility in fog, m",
                 .value = "M",
                 .key = "fog_visibility_m",
+                .group = kGroup,
                 .min = 0,
                 .max = std::numeric_limits<double>::infinity()},
         weather.fog_visibility_m);
   visit(Setting{.name = "snow",
-                .help = "Rate of snow, mm/h of water",
+                .help = "Snow rate, mm/h of water",
                 .value = "MM/H",
                 .key = "snow_mm_h",
+                .group = kGroup,
                 .min = 0,
                 .max = kMaxRain_mm_h},
         weather.snow_mm_h);
   visit(Setting{.name = "white_intensity",
-                .help = "Intensity of a white wall in the model's unit, for weather: 1, or 100 of "
-                        "bytes",
+                .help = "Intensity of a white wall in the units of the model, for the effects of "
+                        "weather (1, or 100 for intensities stored as bytes)",
                 .value = "I",
+                .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         weather.white_intensity);

@@ -90,14 +90,15 @@ template <class Visit>
 void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
   constexpr const char* kGroup = "Method consistent";
   visit(Setting{.name = "cell",
-                .help = "Side of the cells that points are fused in, m",
+                .help = "Size of the cells in which points are fused, m",
                 .key = "cell_m",
                 .group = kGroup,
                 .min = 0,
-                .exclusive_min = true},
+                .exclusive_min = true,
+                .basic = true},
         consistent.cell_m);
   visit(Setting{.name = "small_cell",
-                .help = "Side of cells where the surface is not flat, m; 0: the same as elsewhere",
+                .help = "Cell size where the surface is not flat, m; 0: that of --cell",
                 .key = "small_cell_m",
                 .group = kGroup,
                 .min = 0},
@@ -112,27 +113,27 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
       Setting{
           .name = "balance_rounds",
           .help =
-              "Rounds of checking small disks against the measured rays; 0: no visibility check",
+              "Rounds of the visibility check of small splats against measured rays; 0: no check",
           .group = kGroup,
           .min = 0},
       consistent.balance_rounds);
   visit(Setting{.name = "strict_rounds",
-                .help = "Rounds of shrinking grown splats that measured rays pass through",
+                .help = "Rounds of limiting grown splats that measured rays pass through",
                 .group = kGroup,
                 .min = 0},
         consistent.strict_rounds);
   visit(Setting{.name = "settle_rounds",
-                .help = "Rounds of moving splats to the ends of the measured rays",
+                .help = "Rounds of moving splats to where rays end",
                 .group = kGroup,
                 .min = 0},
         consistent.settle_rounds);
   visit(Setting{.name = "empty_beams",
-                .help = "Use beams without return as evidence of free space, if the recording "
-                        "shows them",
+                .help = "Use beams without return as free-space evidence, if a drive shows which "
+                        "beams those were",
                 .group = kGroup},
         consistent.empty_beams);
   visit(Setting{.name = "fill",
-                .help = "Put small splats where measured rays pass between splats",
+                .help = "Add small splats where measured rays pass through the surface",
                 .group = kGroup},
         consistent.fill);
 }

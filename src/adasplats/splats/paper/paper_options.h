@@ -77,51 +77,56 @@ struct PaperOptions {
 template <class Visit>
 void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
   constexpr const char* kCleaning = "Denoising and resampling";
-  visit(Setting{.name = "denoise", .help = "Remove noise", .group = kCleaning}, paper.denoise);
+  visit(Setting{.name = "denoise", .help = "Remove noisy points", .group = kCleaning},
+        paper.denoise);
   visit(Setting{.name = "denoise_sigmas",
-                .help = "A neighbourhood votes against points farther than this from its plane",
+                .help = "Distance from its plane beyond which a neighbourhood votes against a "
+                        "point, standard deviations",
                 .group = kCleaning,
                 .min = 0,
                 .exclusive_min = true},
         paper.denoise_sigmas);
   visit(Setting{.name = "denoise_votes",
-                .help = "Share of its neighbourhoods that removes a point",
+                .help = "Fraction of a point's neighbourhoods whose votes remove it",
                 .group = kCleaning,
                 .min = 0,
                 .max = 1,
                 .exclusive_min = true},
         paper.denoise_votes);
   visit(Setting{.name = "resample",
-                .help = "Fill in points on splats and generate again",
+                .help = "Add points on sparse splats and generate all splats again",
                 .group = kCleaning},
         paper.resample);
+  visit(Setting{.name = "resample_density",
+                .help = "Target density of splats relative to their mean; nothing is added above "
+                        "two thirds of it",
+                .group = kCleaning,
+                .min = 0,
+                .max = 100},
+        paper.resample_density);
   visit(
-      Setting{.name = "resample_density",
-              .help = "Target density of splats, times its mean; neighbourhoods with more than two "
-                      "thirds of it get no new points",
-              .group = kCleaning,
-              .min = 0,
-              .max = 100},
-      paper.resample_density);
-  visit(Setting{.name = "resample_base",
-                .help = "Input of the second generation, in addition to the new points",
-                .group = kCleaning},
-        paper.resample_base);
+      Setting{.name = "resample_base",
+              .help = "Points that the second generation starts from, in addition to the new ones",
+              .group = kCleaning},
+      paper.resample_base);
 }
 
 template <class Visit>
 void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
-  constexpr const char* kScales = "Scales of neighbours K, radius R and error bound E by group";
+  constexpr const char* kScales = "Factors of neighbours K, radius R and error bound E by group";
   const auto scale = [&](const char* name, const char* help, GroupScale& value) {
     visit(Setting{.name = name, .help = help, .group = kScales, .min = 0}, value);
   };
-  scale("ground_scale", "Scales of the group ground", paper.semantic_scales[0]);
-  scale("surface_scale", "Scales of the group surface", paper.semantic_scales[1]);
-  scale("linear_scale", "Scales of the group linear", paper.semantic_scales[2]);
-  scale("non_surface_scale", "Scales of the group non-surface", paper.semantic_scales[3]);
-  scale("planar_scale", "Scales of planar points in the method descriptors", paper.planar_scale);
+  scale("ground_scale", "Factors of K, R and E for the group ground", paper.semantic_scales[0]);
+  scale("surface_scale", "Factors of K, R and E for the group surface", paper.semantic_scales[1]);
+  scale("linear_scale", "Factors of K, R and E for the group linear", paper.semantic_scales[2]);
+  scale("non_surface_scale", "Factors of K, R and E for the group non-surface",
+        paper.semantic_scales[3]);
+  scale("planar_scale", "Factors of K, R and E for planar points (method descriptors)",
+        paper.planar_scale);
   visit(Setting{.name = "group_normals",
-                .help = "Compute normals from the group's own neighbourhood, not from the base one",
+                .help = "Compute normals from the group's own neighbourhood (--base-normals: from "
+                        "the base one)",
                 .opposite = "base-normals",
                 .group = kScales},
         paper.group_normals);
@@ -129,32 +134,43 @@ void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
 
 template <class Visit>
 void visit_settings(PaperOptions& paper, Visit&& visit) {
-  visit(
-      Setting{
-          .name = "neighbors", .help = "K, number of neighbours of a point", .min = 3, .max = 1e5},
-      paper.neighbors);
+  constexpr const char* kGroup = "The paper's methods";
+  visit(Setting{.name = "neighbors",
+                .help = "Number of neighbours of a point, K",
+                .group = kGroup,
+                .min = 3,
+                .max = 1e5},
+        paper.neighbors);
   visit(Setting{.name = "alpha",
-                .help = "Share of a splat's radius within which other seeds are discarded",
+                .help = "Fraction of a splat's radius within which other seeds are discarded",
+                .group = kGroup,
                 .min = 0,
                 .max = 1},
         paper.alpha);
   visit(Setting{.name = "smoothness",
-                .help = "Minimum dot product of normals in a splat",
+                .help = "Minimum dot product of normals within a splat",
+                .group = kGroup,
                 .min = -1,
                 .max = 1},
         paper.smoothness);
   visit(Setting{.name = "radius",
-                .help = "R, m; default: the mean distance to the K-th neighbour",
+                .help =
+                    "Neighbourhood radius R, m (default: the mean distance to the K-th neighbour)",
                 .key = "radius_m",
+                .group = kGroup,
                 .min = 0,
                 .exclusive_min = true},
         paper.radius_m);
   visit(Setting{.name = "error_bound",
-                .help = "E, m; default: the mean distance of neighbours from their plane",
+                .help =
+                    "Error bound E, m (default: the mean distance of neighbours from their plane)",
                 .key = "error_m",
+                .group = kGroup,
                 .min = 0},
         paper.error_m);
-  visit(Setting{.name = "selection", .help = "Order in which candidate splats are selected"},
+  visit(Setting{.name = "selection",
+                .help = "Order in which candidate splats are selected",
+                .group = kGroup},
         paper.selection);
   visit_cleaning_settings(paper, visit);
   visit_scale_settings(paper, visit);

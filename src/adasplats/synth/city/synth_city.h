@@ -30,26 +30,31 @@ struct SynthCityOptions {
 template <class Visit>
 void visit_settings(SynthCityOptions& city, Visit&& visit) {
   visit(Setting{.name = "length",
-                .help = "Of the drive, m, or with a unit: 10km",
+                .help = "Length of the drive, m or with a unit (10km)",
                 .value = "M",
                 .key = "length_m",
                 .min = 50,
-                .max = 1e6},
+                .max = 1e6,
+                .basic = true},
         city.length_m);
   visit(Setting{.name = "points",
-                .help = "Of all scans together: chooses their spacing",
+                .help = "Number of points of all scans together; determines their spacing",
                 .value = "N",
                 .min = 1,
-                .max = 1e12},
+                .max = 1e12,
+                .basic = true},
         city.points);
   visit(Setting{.name = "spacing",
-                .help = "Between scans, m (1 where --points is not given)",
+                .help = "Distance between scans, m (default: 1 without --points)",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0.001,
-                .max = 1000},
+                .max = 1000,
+                .basic = true},
         city.spacing_m);
-  visit(Setting{.name = "truth", .help = "Write the exact surface of what stands, piece by piece"},
+  visit(Setting{.name = "truth",
+                .help = "Write the exact surface of static objects, tile by tile",
+                .basic = true},
         city.truth);
 }
 

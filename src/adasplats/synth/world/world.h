@@ -47,26 +47,33 @@ struct WorldScanOptions {
 
 template <class Visit>
 void visit_settings(WorldOptions& world, Visit&& visit) {
-  visit(Setting{.name = "kind", .help = "Of place"}, world.kind);
+  visit(Setting{.name = "kind", .help = "Kind of scene", .basic = true}, world.kind);
   visit(Setting{.name = "length",
-                .help = "Of the road, m",
+                .help = "Length of the road, m",
                 .value = "M",
                 .key = "length_m",
                 .min = 80,
-                .max = 1000},
+                .max = 1000,
+                .basic = true},
         world.length_m);
 }
 
 template <class Visit>
 void visit_settings(WorldScanOptions& scan, Visit&& visit) {
-  visit(Setting{.name = "scans", .help = "How many", .value = "N", .min = 1, .max = 10000},
+  visit(Setting{.name = "scans",
+                .help = "Number of scans",
+                .value = "N",
+                .min = 1,
+                .max = 10000,
+                .basic = true},
         scan.scans);
   visit(Setting{.name = "spacing",
-                .help = "Between scans, m",
+                .help = "Distance between scans, m",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0,
-                .max = 100},
+                .max = 100,
+                .basic = true},
         scan.spacing_m);
 }
 
