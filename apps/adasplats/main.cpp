@@ -16,8 +16,8 @@
 #include "adasplats/core/setting.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "cli/commands.h"
-#include "cli/help_text.h"
 #include "cli/interrupt.h"
+#include "cli/manual/manual.h"
 #include "cli/options/config_file.h"
 #include "cli/options/option_types.h"
 #include "cli/report.h"
@@ -27,24 +27,26 @@ namespace adasplats::app {
 namespace {
 
 constexpr int kExitNoMemory = 71;  // EX_OSERR
-constexpr int kExitSignal = 128;   // plus the signal's number, as shells have it
+constexpr int kExitSignal = 128;   // plus the signal's number, as in shells
 constexpr int kSigPipe = 13;
 
 constexpr const char* kProgramExamples =
     "Examples:\n"
     "  adasplats demo\n"
-    "  adasplats model scans/sequences/00 -o place.ply\n"
-    "  adasplats simulate place.ply --trajectory scans/sequences/00 --offset 1,1,-0.5 -o new\n"
+    "  adasplats model scans/sequences/00 -o model.ply\n"
+    "  adasplats simulate model.ply --trajectory scans/sequences/00 --offset 1,1,-0.5 -o new\n"
     "  adasplats evaluate c2c new scans/sequences/00\n"
-    "adasplats SUBCOMMAND --help tells more. Exit codes are those of sysexits(3).";
+    "Exit codes are those of sysexits(3).";
 
-/// The program's command line and everything it can do.
+/// The program's command line: all commands with their options.
 struct Program {
-  CLI::App app{"Real LiDAR point clouds in, splat models and simulated scans out", "adasplats"};
+  CLI::App app{"Turn LiDAR recordings into splat models, and models into simulated scans",
+               "adasplats"};
   std::vector<std::unique_ptr<Command>> commands;
 
   Program() {
-    app.formatter(std::make_shared<HelpFormatter>());  // subcommands inherit it
+    app.set_help_flag("-h,--help", "Print the basic options and exit");  // subcommands inherit it
+    app.set_help_all_flag("--help-all", "Print all options and exit");
     app.footer(kProgramExamples);
     app.set_version_flag("--version", std::string("adasplats ") + ADASPLATS_VERSION,
                          "Print the version and exit");
@@ -78,16 +80,24 @@ struct Program {
     commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));
     for (const auto& command : commands) command->add_common_options();  // last in the help
-    // These tell of the program and compute nothing: no threads, seed or report.
+    // These describe the program and compute nothing: no threads, seed or report.
     commands.push_back(make_help_command(app));
     commands.push_back(make_version_command(app));
     commands.push_back(make_completion_command(app));
     commands.push_back(make_man_command(app));
   }
 
-  /// For what is told of the commands; a parser that knew it would ask too early.
+  /// For help and manual pages. Not earlier: the parser would reject command lines that a
+  /// configuration file completes.
   void mark_required() {
     for (const auto& command : commands) command->mark_required();
+  }
+
+  RenamedOptions renamed() const {
+    RenamedOptions renamed;
+    for (const auto& command : commands)
+      renamed.insert(command->options().renamed().begin(), command->options().renamed().end());
+    return renamed;
   }
 
   /// A subcommand that only has subcommands.
@@ -101,7 +111,22 @@ struct Program {
   }
 };
 
-/// The innermost subcommand that the command line names, or the program itself.
+/// The arguments with deprecated options replaced by the new ones, last one first as the parser
+/// wants them.
+std::vector<std::string> reversed_arguments(int argc, char** argv, const RenamedOptions& renamed) {
+  std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  for (std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (!argument.starts_with("--")) continue;
+    const std::size_t end = std::min(argument.find('='), argument.size());
+    const std::string name = current_name(argument.substr(2, end - 2), renamed, "--");
+    argument.replace(2, end - 2, name);
+  }
+  std::ranges::reverse(arguments);
+  return arguments;
+}
+
+/// The innermost subcommand of the command line, or the program itself.
 CLI::App& chosen_app(CLI::App& app) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   return parsed.empty() ? app : chosen_app(*parsed.front());
@@ -116,7 +141,7 @@ std::vector<std::string> option_names(CLI::App& app) {
   return names;
 }
 
-/// Refuses what no option or subcommand took.
+/// Rejects arguments that no option or subcommand accepted.
 void check_extras(CLI::App& program, CLI::App& chosen) {
   std::vector<std::string> extras = program.remaining(true);
   if (extras.empty()) return;
@@ -126,7 +151,7 @@ void check_extras(CLI::App& program, CLI::App& chosen) {
     const std::string name = option->substr(0, option->find('='));
     const std::vector<std::string> known = option_names(chosen);
     if (std::find(known.begin(), known.end(), name) != known.end()) {
-      throw Error(ErrorKind::usage, name + " must stand behind the subcommand");
+      throw Error(ErrorKind::usage, name + " must follow the subcommand");
     }
     throw Error(ErrorKind::usage, unknown_word("option", name, known));
   }
@@ -149,7 +174,8 @@ Command& find_command(Program& program, CLI::App& chosen) {
 
 void run_command(Program& program, Command& command) {
   const CommonOptions& common = command.common();
-  if (!common.config.empty()) apply_config(common.config, program.app, command.options().parser());
+  if (!common.config.empty())
+    apply_config(common.config, program.app, command.options().parser(), program.renamed());
   command.check_required();
   command.check_outputs();
   if (!common.report.empty()) check_output_file(common.report);
@@ -168,10 +194,14 @@ int run(int argc, char** argv) {
   install_signal_handlers();
   Program program;
   try {
-    program.app.parse(argc, argv);
+    program.app.parse(reversed_arguments(argc, argv, program.renamed()));
   } catch (const CLI::CallForHelp&) {
     program.mark_required();
-    print(help_text(chosen_app(program.app)));
+    print(help_text(command_entry(chosen_app(program.app)), HelpLength::short_help));
+    return 0;
+  } catch (const CLI::CallForAllHelp&) {
+    program.mark_required();
+    print(help_text(command_entry(chosen_app(program.app)), HelpLength::all));
     return 0;
   } catch (const CLI::CallForVersion& version) {
     print(std::string(version.what()) + "\n");
@@ -208,7 +238,7 @@ int guarded_run(int argc, char** argv) {
     return failed(exit_code(ErrorKind::io), error.what());
   } catch (const std::exception& error) {
     return failed(exit_code(ErrorKind::software),
-                  std::string(error.what()) + " (a bug of adasplats; please report it)");
+                  std::string(error.what()) + " (a bug in adasplats; please report it)");
   }
 }
 

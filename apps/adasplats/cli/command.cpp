@@ -7,7 +7,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/jobs/output/output_check.h"
-#include "cli/option_traits.h"
+#include "cli/command_entry.h"
 
 namespace adasplats::app {
 
@@ -35,7 +35,7 @@ void Command::check_required() const {
     const CLI::Option& option = required->parser();
     if (option.count() == 0) {
       throw Error(ErrorKind::usage,
-                  option.get_name() + " is missing; see adasplats " + full_name() + " --help");
+                  option.get_name() + " is required; see adasplats " + full_name() + " --help");
     }
   }
 }
@@ -66,7 +66,7 @@ Option* Command::writes_folder(Option* option) { return writes(option, {}); }
 
 std::vector<fs::path> Command::inputs() const {
   std::vector<fs::path> found;
-  for (const CLI::Option* option : options_of(options_.parser())) {
+  for (const CLI::Option* option : options_.parser().get_options()) {
     const bool is_output = std::ranges::any_of(
         outputs_, [option](const Output& output) { return output.option == option; });
     if (is_output || !names_files(*option)) continue;
@@ -90,7 +90,7 @@ void Command::check_outputs() const {
     }
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
-    // What is no file cannot be written whatever its name is: check_output_file says so.
+    // Anything but a regular file is rejected later by check_output_file, whatever its name.
     if (!fs::exists(status) || fs::is_regular_file(status)) require_ending(path, endings);
     require_no_input(path, read);
   }
@@ -100,7 +100,7 @@ std::vector<CLI::Option*> settings_of(CLI::App& app) {
   std::vector<CLI::Option*> settings = app.get_options([](const CLI::Option* option) {
     const auto& names = option->get_lnames();
     return std::none_of(names.begin(), names.end(), [](const std::string& name) {
-      return name == "help" || name == "version" || name == "config";
+      return name == "help" || name == "help-all" || name == "version" || name == "config";
     });
   });
   return settings;

@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "cli/options/common_options.h"
-#include "cli/options/device_option.h"
 #include "cli/options/option_set.h"
+#include "cli/options/shared_options.h"
 #include "cli/session.h"
 
 namespace adasplats::app {
 
-/// One subcommand: its options, and what it does.
+/// One subcommand: its options and its action.
 class Command {
  public:
-  /// A subcommand "name" of `parent`; `examples` are the lines shown at the end of its help.
+  /// A subcommand "name" of `parent`. `examples`: commands, indented by two columns, and notes
+  /// without indent, for the end of its help.
   Command(CLI::App& parent, const std::string& name, const std::string& description,
           const std::string& examples);
   virtual ~Command() = default;
@@ -27,42 +27,43 @@ class Command {
 
   virtual void run(Session& session) = 0;
 
-  /// Adds --threads, --seed and so on; to be called once, behind the subcommand's own options.
+  /// Adds --threads, --seed and so on; to be called once, after the subcommand's own options.
   void add_common_options();
 
   OptionSet& options() { return options_; }
+  const OptionSet& options() const { return options_; }
   const CommonOptions& common() const { return common_; }
-  /// Nothing where the subcommand has no --device.
+  /// Empty if the subcommand has no --device.
   const std::optional<DeviceOptions>& device() const { return device_; }
-  /// Names from the program down: "evaluate c2c".
+  /// Names below the program: "evaluate c2c".
   std::string full_name() const;
   /// Throws a usage Error naming the first required option that has no value.
   void check_required() const;
-  /// Throws usage where an output is an input, too, and where the name of a file says another
-  /// format than is written.
+  /// Throws usage if an output is also an input, or if the name of an output file has the ending of
+  /// another format.
   void check_outputs() const;
-  /// For the help text: CLI11 marks what it knows to be required.
+  /// Marks required options in the parser, for help.
   void mark_required() const;
 
  protected:
   /// Whether the user has given an option, on the command line or in a configuration.
   bool is_given(const std::string& name) const { return options_.is_given(name); }
-  /// Throws a usage Error that names the first of these options that is given: "--x has no effect "
-  /// and `why`. For options that only fit some cases.
+  /// Throws a usage Error if one of these options is given: "--x has no effect " and `why`. For
+  /// options that only apply in some cases.
   void refuse(std::initializer_list<const char*> names, const std::string& why) const;
-  /// Makes an option required; a configuration file may give it, too.
+  /// Makes an option required, on the command line or in a configuration file.
   void require(Option* option) { required_.push_back(option); }
-  /// Says that an option names a file that is written, whose name ends with one of `endings`.
+  /// Marks an option as the name of an output file, which must end with one of `endings`.
   Option* writes(Option* option, std::vector<std::string> endings);
-  /// Says that an option names a folder that is made.
+  /// Marks an option as the name of an output folder.
   Option* writes_folder(Option* option);
-  /// Adds --device; to be called once, behind the subcommand's own options.
+  /// Adds --device; to be called once, after the subcommand's own options.
   void add_device_options(GpuCount count = GpuCount::one) {
     app::add_device_options(options_, device_.emplace(), count);
   }
 
  private:
-  /// An option that names what is written; a folder has no endings.
+  /// An option that names an output; folders have no endings.
   struct Output {
     const CLI::Option* option;
     std::vector<std::string> endings;
@@ -77,8 +78,8 @@ class Command {
   std::vector<Output> outputs_;
 };
 
-/// Options of the program that are neither help nor one-off: what a configuration may set and a
-/// report shows.
+/// The options that a configuration may set and a report shows: all but help, version and
+/// configuration.
 std::vector<CLI::Option*> settings_of(CLI::App& app);
 
 }  // namespace adasplats::app

@@ -24,7 +24,7 @@ void install_signal_handlers() {
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // Where our parent has it ignored, children vanish without an exit code.
+  // If our parent ignores it, exit codes of our children are lost.
   std::signal(SIGCHLD, SIG_DFL);
 }
 

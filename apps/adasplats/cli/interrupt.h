@@ -4,14 +4,13 @@
 
 namespace adasplats::app {
 
-/// Thrown where work stops because of Ctrl-C (SIGINT) or SIGTERM. Not an Error: nothing is wrong.
+/// Thrown to stop work on Ctrl-C (SIGINT) or SIGTERM. Not an Error: nothing is wrong.
 struct Interrupted {
   int signal;
 };
 
-/// From now on the first SIGINT or SIGTERM is noted and the second one ends the process at once;
-/// SIGPIPE and SIGXFSZ are ignored, so that a closed stdout and a file too large are errors of the
-/// write.
+/// Makes the first SIGINT or SIGTERM set a flag and the second one end the process at once. SIGPIPE
+/// and SIGXFSZ are ignored: a closed stdout or a file that is too large makes writes fail instead.
 void install_signal_handlers();
 
 /// Throws Interrupted if a signal has arrived.

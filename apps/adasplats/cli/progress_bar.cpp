@@ -43,7 +43,7 @@ void ProgressBar::end_step() {
 }
 
 void ProgressBar::warn(std::string_view message) {
-  // Work that is done again on another device says the same again.
+  // Work that is repeated on another device repeats its warnings.
   if (std::find(warnings_.begin(), warnings_.end(), message) != warnings_.end()) return;
   clear();
   warnings_.emplace_back(message);

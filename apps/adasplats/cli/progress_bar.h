@@ -12,8 +12,8 @@
 
 namespace adasplats::app {
 
-/// Shows steps as a bar on stderr where both stderr and stdout are terminals, prints warnings in
-/// any case (each once), and cancels the work on Ctrl-C (by throwing Interrupted).
+/// Shows steps as a bar on stderr if both stderr and stdout are terminals, prints every warning
+/// once, and stops the work on Ctrl-C (by throwing Interrupted).
 class ProgressBar final : public ProgressSink {
  public:
   ProgressBar();
@@ -28,7 +28,7 @@ class ProgressBar final : public ProgressSink {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  /// Seconds in place of a bar where the size of a step is not known.
+  /// Seconds instead of a bar if the size of a step is unknown.
   void draw(std::uint64_t done);
   void clear();
 

@@ -7,8 +7,8 @@
 namespace adasplats::app {
 
 /// Writes the --report of a command that has run: program, version, command, provenance (see
-/// jobs/provenance/provenance.h), parameters, what the command itself reported, warnings,
-/// threads and peak memory. Atomic.
+/// jobs/provenance/provenance.h), parameters, the command's own keys, warnings, threads and peak
+/// memory. Atomic.
 void write_report(Command& command, const Session& session);
 
 }  // namespace adasplats::app

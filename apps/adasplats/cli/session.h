@@ -9,7 +9,7 @@
 
 namespace adasplats::app {
 
-/// What one run of a subcommand works with.
+/// The context of one run of a subcommand.
 struct Session : adasplats::Session {
   ProgressBar& bar;                ///< its `progress`
   nlohmann::ordered_json& report;  ///< keys that the subcommand adds to its --report

@@ -6,14 +6,14 @@
 
 namespace adasplats::app {
 
-/// Thrown where stdout is a pipe that nobody reads any more. Not an Error: `| head` is no fault.
+/// Thrown if stdout is a pipe that was closed, as by `| head`. Not an Error.
 struct ClosedStdout {};
 
 /// Writes to stdout at once. Errors: io (disk full), ClosedStdout.
 void print(const std::string& text);
 
 /// Writes one line "adasplats: MESSAGE" to stderr; line breaks and other control characters of
-/// the message (of a file's name, say) become blanks.
+/// the message, which can come from file names, become blanks.
 void print_message(const std::string& message);
 
 }  // namespace adasplats::app

@@ -8,14 +8,14 @@
 
 namespace adasplats::app {
 
-/// Rows of text in columns: the first column flush left, numbers behind it flush right.
+/// Rows of text in columns: the first column flush left, the others flush right.
 class TextTable {
  public:
   explicit TextTable(std::vector<std::string> header);
 
-  /// Cells from the left; missing ones stay blank.
+  /// Cells from the left; missing ones are blank.
   void add_row(std::vector<std::string> cells);
-  /// The table with a line under the header, each line ended.
+  /// The table with a line under the header; every line ends with a line break.
   std::string text() const;
 
  private:
@@ -24,7 +24,7 @@ class TextTable {
 
 /// "12,345,678".
 std::string grouped(std::uint64_t number);
-/// With that many digits behind the point; "-" for NaN.
+/// With that many decimals; "-" for NaN.
 std::string fixed(double number, int digits);
 /// A share of 0..1 as "12.3 %"; "-" for NaN.
 std::string percent(double share);

@@ -5,9 +5,9 @@
 #include "adasplats/io/point_format.h"
 #include "adasplats/jobs/calibrate_drive.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/calibration_text.h"
@@ -18,28 +18,26 @@ namespace {
 constexpr const char* kCalibrateExamples =
     "  adasplats calibrate sequences/00 -o calibrated\n"
     "  adasplats calibrate frames --trajectory vehicle.csv -o calibrated --scans 0:64:2\n"
-    "  adasplats simulate place.ply --sensor calibrated/sensor.toml --unit-offsets \\\n"
+    "  adasplats simulate model.ply --sensor calibrated/sensor.toml --sensor-offsets \\\n"
     "    --trajectory calibrated/trajectory.csv -o scans\n";
 
 class CalibrateCommand final : public Command {
  public:
   explicit CalibrateCommand(CLI::App& program)
       : Command(program, "calibrate",
-                "Estimate from a drive's points what its poses and lasers get wrong",
+                "Estimate errors of poses, lasers and mount from the points of a drive",
                 kCalibrateExamples) {
     OptionSet& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "INPUT",
-                   [this](const std::vector<std::string>& names) {
-                     job_.inputs.assign(names.begin(), names.end());
-                   },
-                   "SemanticKITTI sequence folders, and folders of scans with times (" +
-                       point_format_names() + ") with --trajectory, and recordings")
-                ->type_name("PATH"));
-    require(writes_folder(add_path(app, "-o,--output", job_.output,
-                                   "Folder to create: trajectory.csv, poses.txt, lasers.csv, "
-                                   "sensor.toml, report.html and report.json, as far as known")));
-    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    require(add_paths(
+        app, "INPUT", job_.inputs,
+        "SemanticKITTI sequence folders, recordings, and with --trajectory folders of scans "
+        "with times (" +
+            point_format_names() + ")"));
+    require(writes_folder(
+        add_path(app, "-o,--output", job_.output,
+                 "Folder to create: trajectory.csv, poses.txt, lasers.csv, "
+                 "sensor.toml, report.html and report.json, as far as they were estimated")));
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     add_settings(app, job_.calibrate);
     add_settings(app, job_.windows);
     add_load_options(app, job_.load);
@@ -47,7 +45,7 @@ class CalibrateCommand final : public Command {
   }
 
   void run(Session& session) override {
-    // OptiX casts rays; calibration is CUDA's alone.
+    // OptiX only casts rays; calibration runs on CUDA.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const CalibrateResult result = run_calibrate(job_, session);
     session.report.update(to_json(result));
@@ -69,7 +67,7 @@ class CalibrateCommand final : public Command {
   static void add_mount(const MountReport& report, TextTable& table) {
     table.add_row({"mount", report.objection.empty() ? "corrected" : "as given"});
     if (const std::string names = not_observed_text(report.found); !names.empty())
-      table.add_row({"not observed of it", names});
+      table.add_row({"not observed", names});
   }
 
   CalibrateJob job_;

@@ -13,10 +13,10 @@ std::string mount_text(const MountEstimate& found) {
   std::string text = "Mount corrected by " + fixed(length(found.mount.rotation_rad) / kDegree, 2) +
                      " deg and " + centimetres(length(found.mount.shift_m));
   const std::string not_observed = not_observed_text(found);
-  return not_observed.empty() ? text : text + "; not observed and left as given: " + not_observed;
+  return not_observed.empty() ? text : text + "; not observed and unchanged: " + not_observed;
 }
 
-/// What single poses and lasers were corrected by.
+/// The corrections of single poses and lasers.
 std::string rest_text(const CalibrationReport& report, const Calibration& calibration) {
   const CalibrationSizes sizes = sizes_of(calibration);
   std::string text = "Calibrated by " + grouped(report.planes) + " planes: poses by up to " +
@@ -28,16 +28,15 @@ std::string rest_text(const CalibrationReport& report, const Calibration& calibr
   return text;
 }
 
-/// "\n12 windows of up to 200 scans, which differ ... where they overlap" and those without
-/// evidence, one a line.
+/// "12 windows of up to 200 scans; ..." and the windows without evidence, one per line.
 std::string windows_text(const WindowsReport& report) {
   const PoseDisagreement& apart = report.overlaps;
-  std::string text = grouped(report.windows.size()) + " windows of up to " +
-                     grouped(report.window_scans) + " scans; where they overlap poses differ by " +
-                     centimetres(apart.median_shift_m) + " and " +
-                     fixed(apart.median_rotation_rad / kDegree, 3) + " deg (median), " +
-                     centimetres(apart.largest_shift_m) + " and " +
-                     fixed(apart.largest_rotation_rad / kDegree, 3) + " deg (largest)";
+  std::string text =
+      grouped(report.windows.size()) + " windows of up to " + grouped(report.window_scans) +
+      " scans; poses of overlapping windows differ by " + centimetres(apart.median_shift_m) +
+      " and " + fixed(apart.median_rotation_rad / kDegree, 3) + " deg (median), " +
+      centimetres(apart.largest_shift_m) + " and " +
+      fixed(apart.largest_rotation_rad / kDegree, 3) + " deg (largest)";
   if (report.laser_windows > 0)
     text += "; lasers of " + grouped(report.laser_windows) + " windows differ by " +
             centimetres(report.range_disagreement_m) + " and " +
@@ -47,7 +46,7 @@ std::string windows_text(const WindowsReport& report) {
     if (!window.objection.empty())
       text += "Scans " + grouped(window.begin) + " to " + grouped(window.end - 1) +
               (window.drive > 0 ? " of drive " + grouped(window.drive) : std::string()) +
-              ", nothing of their own: " + window.objection + "\n";
+              ", not calibrated by themselves: " + window.objection + "\n";
   return text;
 }
 
@@ -67,11 +66,11 @@ std::string calibration_text(const CalibrationReport& report, const Calibration&
   const bool is_mounted = report.mount && report.mount->objection.empty();
   if (is_mounted) text = mount_text(report.mount->found) + ". ";
   text += is_mounted && !report.mount->alone_because.empty()
-              ? "Nothing else is corrected: " + report.mount->alone_because
+              ? "Nothing else was corrected: " + report.mount->alone_because
               : rest_text(report, calibration);
-  return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
-         " from planes (" + centimetres(report.given_m) +
-         " before); as a whole the place stays where the given poses have it\n" + windows;
+  return text + "; held-out points are " + centimetres(report.calibrated_m) + " from planes (" +
+         centimetres(report.given_m) + " before); the scene as a whole stays at the given poses\n" +
+         windows;
 }
 
 }  // namespace adasplats::app

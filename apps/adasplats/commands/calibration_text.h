@@ -8,10 +8,10 @@
 
 namespace adasplats::app {
 
-/// What was corrected, or why nothing was; a line.
+/// What was corrected, or why nothing was; one line.
 std::string calibration_text(const CalibrationReport& report, const Calibration& calibration);
 
-/// Names of the directions in which a drive does not tell the mount; empty: it tells all.
+/// Names of the directions of the mount that a drive does not constrain; empty: none.
 std::string not_observed_text(const MountEstimate& found);
 
 }  // namespace adasplats::app

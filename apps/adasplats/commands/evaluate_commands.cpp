@@ -11,9 +11,9 @@
 #include "adasplats/jobs/evaluate/evaluate_realism.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 #include "adasplats/jobs/evaluate/evaluate_surface.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/text_table.h"
 #include "commands/result_command.h"
 

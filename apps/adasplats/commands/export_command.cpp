@@ -4,8 +4,8 @@
 
 #include "adasplats/jobs/export.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -35,16 +35,11 @@ class ExportCommand final : public Command {
                    {".ply", ".glb", ".las", ".laz", ".mcap"}));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
-                                            "Of the file; else what its ending says");
-    app.add_option(
-           "--labels", job_.labels,
-           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "what the model says")
-        ->type_name("SCHEME");
-    add_choice<std::optional<ExportColor>>(app, "--color", job_.color,
-                                           choices_of_optional(kExportColors),
-                                           "What colours show; else the first of these there is");
+                                            "File format (default: by the file name)");
+    add_labels_option(app, job_.labels, "that of the model");
+    add_choice<std::optional<ExportColor>>(
+        app, "--color", job_.color, choices_of_optional(kExportColors),
+        "Meaning of the colours (default: the first available of these)");
     add_load_options(app, job_.load);
   }
 
@@ -58,7 +53,7 @@ class ExportCommand final : public Command {
     std::string text = job_.output.string() + ": " + grouped(result.count) + " " + result.unit +
                        ", " + fixed(megabytes, 1) + " MB";
     if (result.dropped > 0) {
-      text += ", " + grouped(result.dropped) + " points not finite or too far were dropped";
+      text += ", " + grouped(result.dropped) + " points dropped as not finite or too far";
     }
     print(text + "\n");
   }

@@ -10,8 +10,8 @@
 #include "adasplats/jobs/city/city_addition.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/info_job.h"
@@ -76,22 +76,15 @@ class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
       : Command(program, "info",
-                "Say what point clouds, models, meshes and sequences hold, or which GPUs there are",
+                "Describe point clouds, models, meshes, sequences and recordings, or list the GPUs",
                 kInfoExamples) {
     OptionSet& app = options();
-    app.add_option_function<std::vector<std::string>>(
-           "FILE",
-           [this](const std::vector<std::string>& names) {
-             inputs_.assign(names.begin(), names.end());
-           },
-           "Files, sequence folders and recordings; without any: as --devices")
-        ->type_name("PATH");
-    app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
-    app.add_flag("--verify", verify_, "Check every tile and all points of a city by their SHA-256");
-    app.add_option("--labels", labels_,
-                   "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or "
-                   "a TOML file")
-        ->type_name("SCHEME");
+    add_paths(app, "FILE", inputs_,
+              "Files, sequence folders and recordings (default: as --devices)");
+    app.add_flag("--devices", devices_,
+                 "List the GPUs of this machine, or the reason why none is usable");
+    app.add_flag("--verify", verify_, "Check the SHA-256 of every tile and all points of a city");
+    add_labels_option(app, labels_, "numbers only");
     add_load_options(app, load_);
   }
 
@@ -128,12 +121,12 @@ class InfoCommand final : public Command {
   }
 
  private:
-  /// Models and meshes are described as they are; of a sequence, scans can be chosen.
+  /// Rejects options that have no effect on inputs of these kinds.
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
     if (kinds.empty() || kinds.contains("capture")) return;
     const std::string why = "on a " + *kinds.begin();
     if (!kinds.contains("city of splats")) refuse({"--verify"}, why);
-    refuse({"--packets-of"}, why);
+    refuse({"--packet-sensor"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
         kinds.contains("nuScenes scene"))
@@ -146,7 +139,7 @@ class InfoCommand final : public Command {
     if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
   }
 
-  /// With the sequences of a tree one by one.
+  /// The inputs, with trees replaced by their sequences.
   std::vector<std::filesystem::path> all_inputs() const {
     std::vector<std::filesystem::path> all;
     for (const std::filesystem::path& input : inputs_) {

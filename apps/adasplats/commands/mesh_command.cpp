@@ -6,10 +6,9 @@
 #include "adasplats/io/point_format.h"
 #include "adasplats/jobs/make_mesh.h"
 #include "cli/commands.h"
-#include "cli/options/build_options.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -24,25 +23,16 @@ constexpr const char* kMeshExamples =
 class MeshCommand final : public Command {
  public:
   explicit MeshCommand(CLI::App& program)
-      : Command(program, "mesh", "Turn point clouds into a triangle mesh, to compare with",
+      : Command(program, "mesh",
+                "Turn point clouds into a triangle mesh, for comparison with splat models",
                 kMeshExamples) {
     OptionSet& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "INPUT",
-                   [this](const std::vector<std::string>& names) {
-                     job_.inputs.assign(names.begin(), names.end());
-                   },
-                   "Point files (" + point_format_names() +
-                       "), SemanticKITTI sequence folders and recordings (" +
-                       recording_format_names() + ", PCAP)")
-                ->type_name("PATH"));
+    require(add_paths(app, "INPUT", job_.inputs,
+                      "Point files (" + point_format_names() +
+                          "), SemanticKITTI sequence folders and recordings (" +
+                          recording_format_names() + ", PCAP)"));
     require(writes(add_path(app, "-o,--output", output_, "Mesh to write, PLY"), {".ply"}));
-    app.add_option(
-           "--labels", job_.labels,
-           "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "semantickitti for sequence folders, else none")
-        ->type_name("SCHEME");
+    add_labels_option(app, job_.labels, "semantickitti for sequence folders, else none");
     add_removal_option(app, job_.remove);
     add_settings(app, job_);
     add_load_options(app, job_.load);

@@ -18,10 +18,9 @@
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/consistent/origin_check.h"
 #include "cli/commands.h"
-#include "cli/options/build_options.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/calibration_text.h"
@@ -31,21 +30,22 @@ namespace adasplats::app {
 namespace {
 
 constexpr const char* kModelExamples =
-    "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
-    "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
-    "  adasplats model cloud.laz -o place.ply --method semantic --segment\n"
-    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
+    "  adasplats model sequences/00 -o model.ply --scans 0:100:2 --remove moving\n"
+    "  adasplats model cloud.laz -o model.ply --method semantic --segment\n"
     "  adasplats model strips/ -o city --tile 64 --segment --trajectory drive.csv\n"
+    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
+    "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model strips/ -o city --tile 64 --plan --trajectory drive.csv > tasks\n";
 
-/// How well the sensor positions explain the points; empty where that cannot be told.
+/// How well the sensor positions explain the points; empty without evidence.
 std::string origins_text(const std::optional<OriginCheck>& check) {
   if (!check || check->near_rise == 0) return {};
-  return "Sensor positions checked: from beside them rays would go through " +
-         fixed(check->near_rise, 2) + " and " + fixed(check->far_rise, 2) + " times as much\n";
+  return "Sensor positions are plausible: shifted ones make rays cross " +
+         fixed(check->near_rise, 2) + " and " + fixed(check->far_rise, 2) +
+         " times as many surfaces\n";
 }
 
-/// What the method itself counts and measures.
+/// The figures of the method.
 std::string figures_of(const BuildReport& built) {
   if (!built.consistent) {
     return grouped(built.points_noise) + " noisy points removed, " +
@@ -54,7 +54,7 @@ std::string figures_of(const BuildReport& built) {
   }
   const ConsistentReport& report = *built.consistent;
   const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
-  if (!report.checked) return seeds + ", not checked against measured rays";
+  if (!report.checked) return seeds + ", no visibility check (no measured rays)";
   return seeds + ", " + grouped(report.seeds_removed) + " of them contradicted by " +
          grouped(report.rays) + " measured rays" +
          (report.empty_beams == 0
@@ -66,64 +66,56 @@ std::string figures_of(const BuildReport& built) {
 
 std::string segmentation_text(const SegmentReport& segmented) {
   constexpr std::size_t kDigits = 12;
-  return "classes by the network " + segmented.network.name + " (SHA-256 " +
-         segmented.network.sha256.substr(0, kDigits) + "...), of " +
-         grouped(segmented.classes.cells) + " cells in " + grouped(segmented.classes.tiles) +
-         " tiles" + (segmented.replaced_labels ? ", in place of the points' labels\n" : "\n");
+  return "classified by the network " + segmented.network.name + " (SHA-256 " +
+         segmented.network.sha256.substr(0, kDigits) + "...), " + grouped(segmented.classes.cells) +
+         " cells in " + grouped(segmented.classes.tiles) + " tiles" +
+         (segmented.replaced_labels ? "; labels in the input were replaced\n" : "\n");
 }
 
 class ModelCommand final : public Command {
  public:
   explicit ModelCommand(CLI::App& program)
-      : Command(program, "model", "Turn point clouds into a splat model", kModelExamples) {
+      : Command(program, "model", "Turn point clouds and recordings into a splat model",
+                kModelExamples) {
     OptionSet& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "INPUT",
-                   [this](const std::vector<std::string>& names) {
-                     job_.inputs.assign(names.begin(), names.end());
-                   },
-                   "Point files (" + point_format_names() +
-                       "), SemanticKITTI sequence folders and recordings (" +
-                       recording_format_names() + ", PCAP)")
-                ->type_name("PATH"));
+    require(add_paths(app, "INPUT", job_.inputs,
+                      "Point files (" + point_format_names() +
+                          "), SemanticKITTI sequence folders and recordings (" +
+                          recording_format_names() + ", PCAP)"));
     require(writes(add_path(app, "-o,--output", job_.output,
-                            "Model to write, PLY; with --tile the folder of a city"),
+                            "Model to write, PLY; with --tile: folder of a city"),
                    {".ply", ""}));
-    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing city");
     add_settings(app, job_.tiles);
     visit_settings(job_.memory, [&app](const Setting& setting, double& value) {
       add_memory(app, setting, value)->group(setting.group);
     });
-    app.add_flag("--keep-points", job_.keep_points,
-                 "With --tile: leave the points in the city's folder, so that others can be added")
+    app.add_flag(
+           "--keep-points", job_.keep_points,
+           "With --tile: keep the points in the city's folder, so that more can be added later")
         ->group("Cities");
     add_path(app, "--add-to", job_.add_to,
-             "Add the points to a city that was made with --keep-points: the output is a city of "
-             "both, with its tiles and the same options")
+             "Add the points to a city made with --keep-points; the output is a city of both, with "
+             "the same tiles and options")
         ->group("Cities");
     add_settings(app, job_.addition);
     app.add_flag("--plan", plan_,
-                 "With --tile: do what comes before the tiles, then print the command of each tile "
-                 "that is to be modelled, a line each, for many processes or machines; the same "
-                 "command without it finishes")
+                 "With --tile: prepare the tiles and print one command per tile, to be run by many "
+                 "processes or machines; the same command without --plan finishes the city")
         ->group("Cities");
     app.add_option_function<std::string>(
            "--only-tile", [this](const std::string& name) { only_tile_ = parse_tile(name); },
-           "Model one tile (such as x3_y-2) of a city that was planned, and no more")
+           "Model only this tile of a planned city, such as x3_y-2")
         ->type_name("TILE")
         ->group("Cities");
-    app.add_option(
-           "--labels", job_.labels,
-           "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "semantickitti for sequence folders, else none")
-        ->type_name("SCHEME");
+    add_labels_option(app, job_.labels, "semantickitti for sequence folders, else none");
     add_settings(app, job_.segment);
     add_settings(app, recipe_);
     add_removal_option(app, job_.build.remove);
-    add_switch(app, "--reflectance,!--no-reflectance", job_.build.reflectances,
-               "Make reflectances of intensities: without what range and incidence did to them, "
-               "which simulate applies again");
+    add_switch(
+        app, "--reflectance,!--no-reflectance", job_.build.reflectances,
+        "Convert intensities to reflectances by removing the effects of range and incidence, "
+        "which simulate applies again");
     add_settings(app, job_.calibration);
     add_load_options(app, job_.load);
     add_device_options();
@@ -136,10 +128,10 @@ class ModelCommand final : public Command {
     }
     job_.build.recipe = recipe_.recipe();
     job_.removal_is_asked = is_given("--remove");
-    // OptiX casts rays; models are made with CUDA alone.
+    // OptiX only casts rays; models are made on CUDA.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     if (job_.add_to.empty())
-      refuse({"--most-shift"}, "without --add-to");
+      refuse({"--max-shift"}, "without --add-to");
     else if (is_given("--tile") && job_.tiles.tile_m == 0)
       refuse({"--add-to"}, "with --tile 0");
     if (!job_.add_to.empty())
@@ -160,7 +152,7 @@ class ModelCommand final : public Command {
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
       refuse({"--halo", "--overwrite", "--plan", "--only-tile", "--keep-points"}, "without --tile");
-    // What is no file cannot be written whatever its name is, which run_model says.
+    // run_model rejects anything but a regular file, whatever its name.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
     const ModelResult result = run_model({job_, job_.output}, session);
@@ -178,7 +170,7 @@ class ModelCommand final : public Command {
   }
 
  private:
-  /// In tiles, where the inputs do not fit into memory.
+  /// Chooses tiles if the inputs do not fit into memory.
   void choose_tiles(Session& session) {
     const bool can_be_tiles = std::holds_alternative<ConsistentOptions>(job_.build.recipe);
     const bool is_asked = is_given("--memory");
@@ -188,29 +180,28 @@ class ModelCommand final : public Command {
     if (advice.tile_m == 0) {
       if (is_asked && job_.output.extension() != ".ply")
         throw Error(ErrorKind::usage,
-                    "the points fit into --memory as one model: name a file (-o " +
+                    "the points fit into --memory as one model; name a file (-o " +
                         job_.output.filename().string() +
-                        ".ply), or take --tile 64 for a folder of tiles");
+                        ".ply), or use --tile 64 for a folder of tiles");
       return;
     }
     const auto gigabytes = [](double gb) { return fixed(gb, gb < 1 ? 4 : 1) + " GB"; };
     const std::string why = "about " + grouped(static_cast<std::size_t>(advice.points)) +
-                            " points take about " + gigabytes(advice.need_gb) +
+                            " points need about " + gigabytes(advice.need_gb) +
                             " as one model, more than the " + gigabytes(advice.memory_gb) +
-                            (is_asked ? " of --memory" : " of memory that may be used");
+                            (is_asked ? " of --memory" : " of available memory");
     if (!can_be_tiles)
-      throw Error(ErrorKind::usage,
-                  why + ", and tiles are modelled by the method consistent alone");
+      throw Error(ErrorKind::usage, why + "; only the method consistent can model tiles");
     if (job_.output.extension() == ".ply")
       throw Error(ErrorKind::usage,
                   why + ": name a folder (-o " + job_.output.stem().string() +
-                      ") for a model in tiles, or take --tile 0 for one piece nevertheless");
+                      ") for a model in tiles, or use --tile 0 for one model all the same");
     job_.tiles.tile_m = advice.tile_m;
     session.report["tile_m"] = advice.tile_m;
-    session.progress.warn(why + ": modelled in tiles of " + fixed(advice.tile_m, 0) + " m");
+    session.progress.warn(why + "; modelling in tiles of " + fixed(advice.tile_m, 0) + " m");
   }
 
-  /// Where they are not given: as the city's are that points are added to.
+  /// Uses the tile options of the city that points are added to, unless they are given.
   void take_tiles_of_city() {
     if (is_given("--tile") && is_given("--halo")) return;
     const TileChoice tiles = tiles_of_city(job_.add_to);
@@ -218,7 +209,7 @@ class ModelCommand final : public Command {
     if (!is_given("--halo")) job_.tiles.halo_m = tiles.halo_m;
   }
 
-  /// The command as it was given, with the tiles that were chosen.
+  /// The command line, with the tiles that were chosen.
   std::vector<std::string> words_with_tiles() const {
     std::vector<std::string> words = own_arguments();
     if (!is_given("--tile")) words.insert(words.end(), {"--tile", decimal_text(job_.tiles.tile_m)});
@@ -252,7 +243,7 @@ class ModelCommand final : public Command {
     session.report["tile"] = name_of(*only_tile_);
     session.report["was_done"] = result.was_done;
     print(job_.output.string() + ": " + result.file +
-          (result.was_done ? " was done\n" : " made\n"));
+          (result.was_done ? " already done\n" : " done\n"));
   }
 
   void run_city(Session& session) {
@@ -264,30 +255,30 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(result.city.splats()) +
           " splats in " + grouped(result.city.tiles.size()) + " tiles of " +
           fixed(job_.tiles.tile_m, 0) + " m from " + grouped(result.city.points()) + " points" +
-          (result.tiles_resumed == 0
-               ? std::string()
-               : ", " + grouped(result.tiles_resumed) + " of the tiles made by an earlier run") +
+          (result.tiles_resumed == 0 ? std::string()
+                                     : ", " + grouped(result.tiles_resumed) +
+                                           " of the tiles were made by an earlier run") +
           "\n" + addition_text(result) +
           (result.segmented ? segmentation_text(*result.segmented) : "") +
           origins_text(result.origins));
   }
 
-  /// What became of points that were added to a city.
+  /// How added points fit the city.
   std::string addition_text(const CityResult& result) const {
     if (!result.fit) return "";
     const PointFit& fit = *result.fit;
-    std::string text = grouped(result.tiles_kept) + " tiles as they were in " +
+    std::string text = grouped(result.tiles_kept) + " tiles unchanged from " +
                        job_.add_to.string() + ", the others modelled again; ";
     if (result.alignment && result.alignment->aligned > 0)
       text += grouped(result.alignment->aligned) + " of " + grouped(result.alignment->groups) +
-              " groups of ten scans laid on it, shifted by " +
-              centimetres(result.alignment->median_shift_m) + " in the median, " +
-              centimetres(result.alignment->largest_shift_m) + " at most; ";
+              " groups of ten scans aligned to it, shifted by " +
+              centimetres(result.alignment->median_shift_m) + " (median) and up to " +
+              centimetres(result.alignment->largest_shift_m) + "; ";
     if (fit.parts > 0)
-      text += "new points lie " + centimetres(length(fit.shift_m)) +
-              " beside it, in single tiles " + centimetres(fit.part_shift_m);
+      text += "new points are offset by " + centimetres(length(fit.shift_m)) +
+              " from it, single tiles by up to " + centimetres(fit.part_shift_m);
     else
-      text += "they have next to nothing in common";
+      text += "the new points hardly overlap with it";
     return text + "\n";
   }
 

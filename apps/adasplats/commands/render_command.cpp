@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -26,52 +27,48 @@ class RenderCommand final : public Command {
  public:
   explicit RenderCommand(CLI::App& program)
       : Command(program, "render",
-                "Draw splat models, meshes and point clouds, side by side, from above a corner or "
-                "as told",
+                "Draw splat models, meshes and point clouds, side by side, as a picture or film",
                 kRenderExamples) {
     OptionSet& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "MODEL",
-                   [this](const std::vector<std::string>& names) {
-                     job_.models.assign(names.begin(), names.end());
-                   },
-                   "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders")
-                ->type_name("PATH"));
+    require(add_paths(app, "MODEL", job_.models,
+                      "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders"));
     require(writes(
-        add_path(app, "-o,--output", job_.output, "Picture to write, PNG; a film: WebP or MP4"),
+        add_path(app, "-o,--output", job_.output, "Picture (PNG) or film (WebP, MP4) to write"),
         {".png", ".webp", ".mp4"}));
-    app.add_option(
-           "--labels", job_.labels,
-           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "what the model says")
-        ->type_name("SCHEME");
-    add_choice<std::optional<ImageColor>>(
-        app, "--color", job_.look.color,
-        {{"shading", ImageColor::shading},
-         {"semantic", ImageColor::semantic},
-         {"normal", ImageColor::normal},
-         {"intensity", ImageColor::intensity},
-         {"range", ImageColor::range},
-         {"height", ImageColor::height}},
-        "What colours show; without it classes where most have one, else intensity, else height");
-    app.add_option("--width", job_.view.width, "Pixels, of one model's part")
-        ->capture_default_str();
-    app.add_option("--height", job_.view.height, "Pixels")->capture_default_str();
-    app.add_flag("--turntable", turntable_, "A film once around the place");
-    app.add_flag("--drive", drive_, "A film along --trajectory");
+    add_labels_option(app, job_.labels, "that of the model");
+    add_choice<std::optional<ImageColor>>(app, "--color", job_.look.color,
+                                          {{"shading", ImageColor::shading},
+                                           {"semantic", ImageColor::semantic},
+                                           {"normal", ImageColor::normal},
+                                           {"intensity", ImageColor::intensity},
+                                           {"range", ImageColor::range},
+                                           {"height", ImageColor::height}},
+                                          "Meaning of the colours (default: classes if most splats "
+                                          "or points have one, else intensity, "
+                                          "else height)")
+        ->basic();
+    app.add_option("--width", job_.view.width, "Width of the picture of one model, pixels")
+        ->capture_default_str()
+        ->basic();
+    app.add_option("--height", job_.view.height, "Height, pixels")->capture_default_str()->basic();
+    app.add_flag("--turntable", turntable_, "Make a film around the scene")->basic();
+    app.add_flag("--drive", drive_, "Make a film along --trajectory")->basic();
     add_settings(app, job_);
     app.add_option("--fov", job_.view.horizontal_fov_deg,
-                   "Horizontal field of view, degrees; 45 from afar, else 70");
-    add_vector(app, "--eye", job_.view.eye, "Where the camera is, world coordinates");
-    add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the model");
-    app.add_flag("--birds-eye", job_.view.birds_eye, "From straight above, north up");
+                   "Horizontal field of view, degrees (default: 45 for an overview, else 70)");
+    add_vector(app, "--eye", job_.view.eye, "Camera position, world coordinates")->basic();
+    add_vector(app, "--target", job_.view.target,
+               "Point that the camera looks at (default: the middle of the model)")
+        ->basic();
+    app.add_flag("--birds-eye", job_.view.birds_eye, "Look straight down, north up")->basic();
     add_path(app, "--trajectory", job_.view.trajectory,
-             "Look ahead from a pose: a pose file or a sequence folder");
-    app.add_option("--pose", job_.view.pose, "Number of that pose, from 0")->capture_default_str();
-    add_path(app, "--errors", job_.errors,
-             "Colour the splats of one model by held-out beams: a file of 'evaluate resimulate "
-             "--errors'");
+             "Look ahead from a pose of this pose file or sequence folder")
+        ->basic();
+    app.add_option("--pose", job_.view.pose, "Number of the pose, from 0")->capture_default_str();
+    add_path(
+        app, "--errors", job_.errors,
+        "Colour the splats of one model by errors of held-out beams, from 'evaluate resimulate "
+        "--errors'");
     add_device_options();
   }
 
@@ -87,7 +84,7 @@ class RenderCommand final : public Command {
       refuse({"--seconds", "--frames-per-s"}, "without --turntable or --drive");
     }
     if (job_.view.birds_eye) refuse({"--fov"}, "with --birds-eye");
-    if (!draws_a_model(job_)) refuse({"--samples"}, "on points; it is for models and meshes");
+    if (!draws_a_model(job_)) refuse({"--samples"}, "on points, only on models and meshes");
     const RenderResult result = run_render(job_, session);
     const double rate = static_cast<double>(result.images) / result.seconds_rendered;
     session.report["images_per_second"] = rate;

@@ -5,9 +5,9 @@
 #include "adasplats/io/point_format.h"
 #include "adasplats/jobs/segment_points.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -22,29 +22,22 @@ constexpr const char* kSegmentExamples =
 class SegmentCommand final : public Command {
  public:
   explicit SegmentCommand(CLI::App& program)
-      : Command(program, "segment", "Give points semantic classes, by a network",
-                kSegmentExamples) {
+      : Command(program, "segment", "Classify points with a neural network", kSegmentExamples) {
     OptionSet& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "INPUT",
-                   [this](const std::vector<std::string>& names) {
-                     job_.inputs.assign(names.begin(), names.end());
-                   },
-                   "Sequence folders, or point files (" + point_format_names() + ")")
-                ->type_name("PATH"));
-    require(
-        add_path(app, "-o,--output", job_.output,
-                 "Of sequences: folder to create; of files: PLY, LAS or LAZ to write; of one .bin "
-                 "also .label"));
-    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
-    add_path(app, "--network", job_.network,
-             "File of a network; else the one that comes with the program");
+    require(add_paths(app, "INPUT", job_.inputs,
+                      "Sequence folders, or point files (" + point_format_names() + ")"));
+    require(add_path(
+        app, "-o,--output", job_.output,
+        "Folder to create for sequences; file to write for point files: PLY, LAS or LAZ, or "
+        ".label for one .bin"));
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
+    add_path(app, "--network", job_.network, "Network file (default: the included network)");
     add_path(app, "--class-map", job_.class_map,
-             "File with your own numbers and names of the network's classes");
+             "File that maps the network's classes to your own numbers and names");
     app.add_flag("--confidences", job_.segment.confidences,
-                 "Also write how probable each point's label is");
+                 "Also write the probability of each point's label");
     app.add_flag("--probabilities", job_.segment.probabilities,
-                 "Also write how probable every class is for each point");
+                 "Also write the probability of every class for each point");
     add_settings(app, job_.segment);
     add_settings(app, job_.window);
     add_load_options(app, job_.load);
@@ -52,7 +45,7 @@ class SegmentCommand final : public Command {
   }
 
   void run(Session& session) override {
-    // OptiX casts rays; networks are run with CUDA alone.
+    // OptiX only casts rays; networks run on CUDA.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const SegmentResult result = run_segment(job_, session);
     session.report.update(to_json(result));

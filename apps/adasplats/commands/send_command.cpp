@@ -24,22 +24,22 @@ class SendCommand final : public Command {
                 kSendExamples) {
     OptionSet& app = options();
     require(add_path(app, "CAPTURE", capture_, "Capture of packets (.pcap, .pcapng)"));
-    require(app.add_option("--to", to_,
-                           "Where to: a name or an IPv4 address, and a port (default: that of each "
-                           "packet)")
-                ->type_name("HOST[:PORT]"));
+    require(
+        app.add_option("--to", to_,
+                       "Destination: name or IPv4 address, and port (default: that of each packet)")
+            ->type_name("HOST[:PORT]"));
     app.add_option("--port", sending_.only_port,
-                   "Only the packets that were sent to this port (default: all UDP)")
+                   "Send only the packets of this destination port (default: all UDP packets)")
         ->type_name("PORT");
     app.add_option("--speed", sending_.speed,
-                   "Captured seconds a second; 0: as fast as they can be read")
+                   "Playback speed; 1: real time, 0: as fast as possible")
         ->capture_default_str()
         ->type_name("X");
   }
 
   void run(Session& session) override {
     if (!(sending_.speed >= 0))
-      throw Error(ErrorKind::usage, "--speed is below 0, expected captured seconds a second");
+      throw Error(ErrorKind::usage, "--speed is below 0, expected 0 or more");
     require_input(capture_);
     set_destination(to_, sending_);
     session.progress.begin_step("send", 0);

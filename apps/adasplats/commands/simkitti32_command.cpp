@@ -19,34 +19,36 @@ constexpr const char* kSimkitti32Examples =
     "  adasplats simkitti32 sequences/00 -o vlp16 --sensor velodyne-vlp-16 --offset 0,0,0\n"
     "  adasplats simkitti32 sequences/08 -o part --scans 0:500 --model-every 2\n"
     "  adasplats simkitti32 sequences/08 -o made --model model.ply  # model ... --remove moving\n"
-    "Interrupted (Ctrl-C, kill -9), the same command goes on where it stopped and gives the same\n"
-    "bytes. What the data set is and how it was made is in adasplats.json.\n";
+    "The same command resumes an interrupted run (Ctrl-C, kill -9), with the same bytes as "
+    "result.\n"
+    "adasplats.json in the output describes the data set and how it was made.\n";
 
 class SimKitti32Command final : public Command {
  public:
   explicit SimKitti32Command(CLI::App& program)
       : Command(program, "simkitti32",
-                "Make a labelled data set of another LiDAR from a SemanticKITTI sequence",
+                "Turn a SemanticKITTI sequence into a labelled data set of another LiDAR",
                 kSimkitti32Examples) {
     OptionSet& app = options();
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option("--sensor", job_.sensor, "Name of a sensor, or a file; see adasplats sensors")
+    app.add_option("--sensor", job_.sensor, "Sensor: a name from 'adasplats sensors', or a file")
         ->capture_default_str()
-        ->type_name("NAME|FILE");
-    add_scan_range(app, "--scans", job_.scans, "Which scans are modelled and simulated");
-    app.add_option("--labels", job_.labels, "What labels mean: semantickitti or a TOML file")
+        ->type_name("NAME|FILE")
+        ->basic();
+    add_scan_range(app, "--scans", job_.scans, "Scans to model and simulate")->basic();
+    app.add_option("--labels", job_.labels, "Label scheme: semantickitti or a TOML file")
         ->capture_default_str()
         ->type_name("SCHEME");
     add_settings(app, job_);
     add_path(app, "--model", job_.model,
-             "This one instead of one that is made of the scans, with its classes; where it is "
-             "calibrated, scans stand at the poses that it corrected")
-        ->group("Static model");
-    add_path(
-        app, "--ray-drop", job_.ray_drop,
-        "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'; 'none': no beam");
-    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+             "Use this model with its classes instead of making one from the scans; if it is "
+             "calibrated, scans are simulated at its corrected poses")
+        ->group("Static model")
+        ->basic();
+    add_path(app, "--ray-drop", job_.ray_drop,
+             "Model of lost beams: a file of 'adasplats fit-drop', or 'none'");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     add_device_options(GpuCount::several);
   }
 

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/task_lines.h"
@@ -27,62 +28,58 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
     "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
     "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
-    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were\n"
-    "complete, points with all their attributes in host memory; written, until the last file was "
-    "on\n"
-    "disk. Each one holds those before it. A run that ended early goes on with the same command.\n";
+    "Rates in the output: traced (the tracer alone, or the kernels of all GPUs), assembled (until\n"
+    "scans with all attributes were in host memory), written (until the last file was on disk).\n"
+    "Each includes the ones before it. The same command resumes an interrupted run.\n";
 
 class SimulateCommand final : public Command {
  public:
   explicit SimulateCommand(CLI::App& program)
-      : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh",
+      : Command(program, "simulate", "Simulate a LiDAR that drives through a splat model or a mesh",
                 kSimulateExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, city, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option("--sensor", job_.scan.sensor,
-                   "A sensor of 'adasplats sensors', or a file: TOML, Ouster JSON, Velodyne YAML, "
-                   "CSV of rays")
-        ->capture_default_str()
-        ->type_name("NAME|FILE");
     app.add_option(
-           "--labels", job_.labels,
-           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "what the model says")
-        ->type_name("SCHEME");
+           "--sensor", job_.scan.sensor,
+           "Sensor: a name from 'adasplats sensors', or a file (TOML, Ouster JSON, Velodyne "
+           "YAML, CSV of rays)")
+        ->capture_default_str()
+        ->type_name("NAME|FILE")
+        ->basic();
+    add_labels_option(app, job_.labels, "that of the model");
     add_drive_options(app);
     add_settings(app, job_.scan);
     add_choice<ScanFormat>(app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
-                           "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap "
-                           "OUTPUT/scans.mcap, pcap OUTPUT/drive.pcap with the packets that the "
-                           "sensor sends, kitti-raw, pandaset and nuscenes the trees of those "
-                           "data sets");
+                           "Format of the scans; semantickitti writes OUTPUT/sequences/00, mcap "
+                           "OUTPUT/scans.mcap, pcap OUTPUT/drive.pcap (the sensor's packets); "
+                           "kitti-raw, pandaset and nuscenes write the trees of those data sets")
+        ->basic();
     add_choice<PointOrder>(
         app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
-        "Of trees of data sets: as the data set's own files (KITTI's: ring by ring, "
-        "counter-clockwise from straight ahead), or as fired");
+        "Point order in trees of data sets: that of the data set (KITTI: ring by ring, "
+        "counter-clockwise from straight ahead), or the firing order");
     add_memory(app,
                {.name = "tile_memory",
-                .help = "Of a city's tiles that are kept at a time along a trajectory, GB, or with "
-                        "a unit: 500M; without it 1, on a GPU 6",
+                .help = "Memory limit for tiles of a city along a trajectory, GB or with a unit "
+                        "(500M) (default: 1; on a GPU 6)",
                 .value = "GB",
                 .min = 0,
                 .exclusive_min = true},
                job_.tile_memory_gb);
-    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     constexpr int kMaxScans = 1'000'000'000;
-    app.add_option(
-           "--plan", scans_a_task_,
-           "Simulate nothing, but print commands that simulate so many scans each, a line a "
-           "command, for many processes or machines; the same command without it finishes")
+    app.add_option("--plan", scans_a_task_,
+                   "Only print commands that simulate N scans each, one per line, to be run by "
+                   "many processes "
+                   "or machines; the same command without --plan finishes the drive")
         ->range(1, kMaxScans)
         ->type_name("N");
     app.add_option_function<std::string>(
            "--only-scans",
            [this](const std::string& text) { span_ = parse_scan_range("--only-scans", text); },
-           "Simulate these scans of a drive that was planned, and no more")
+           "Simulate only these scans of a planned drive")
         ->type_name("FIRST:COUNT");
     add_device_options(GpuCount::several);
   }
@@ -119,9 +116,9 @@ class SimulateCommand final : public Command {
     session.report["rays"] = result.rays;
     session.report["hits"] = result.hits;
     session.report["was_done"] = result.was_done;
-    print(job_.output.string() + ": " + grouped(span_->count) + " scans from " +
+    print(job_.output.string() + ": " + grouped(span_->count) + " scans from number " +
           std::to_string(span_->first) +
-          (result.was_done ? " on: were done\n" : " on: " + grouped(result.hits) + " returns\n"));
+          (result.was_done ? ": already done\n" : ": " + grouped(result.hits) + " returns\n"));
   }
 
   void run_drive(Session& session) {
@@ -140,7 +137,7 @@ class SimulateCommand final : public Command {
     if (!job_.scan.noise) refuse({"--range-noise"}, "with --no-noise");
     if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
     if (!is_tree(job_.format))
-      refuse({"--point-order"}, "with formats that are no tree of a data set");
+      refuse({"--point-order"}, "with formats that are not trees of a data set");
     const auto require_positive = [this](const char* name, double value) {
       if (is_given(name) && !(value > 0)) {
         throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");
@@ -150,13 +147,21 @@ class SimulateCommand final : public Command {
   }
 
   void add_drive_options(OptionSet& app) {
+    constexpr const char* kGroup = "Trajectory";
     add_path(app, "--trajectory", job_.drive.trajectory,
-             "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording");
-    add_places(app, "--at", job_.drive.at,
-               "Instead: a place where it stands; without Z above the ground of the model. May be "
-               "given several times, a scan each");
+             "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording")
+        ->group(kGroup)
+        ->basic();
+    add_places(
+        app, "--at", job_.drive.at,
+        "Instead of --trajectory: position of a stationary sensor; without Z: above the ground. "
+        "One scan each, may be given several times")
+        ->group(kGroup)
+        ->basic();
     add_corners(app, "--path", job_.drive.path,
-                "Instead: a way along straight lines, above the ground of the model");
+                "Instead of --trajectory: a polyline above the ground")
+        ->group(kGroup)
+        ->basic();
     add_settings(app, job_.drive);
     add_settings(app, mount_);
   }

@@ -10,7 +10,7 @@
 namespace adasplats::app {
 namespace {
 
-/// Takes out an option; `with_value`: and the word behind it, where it stands in one of its own.
+/// Removes an option; `with_value`: and the next word, unless the value follows "=".
 std::vector<std::string> without(const std::vector<std::string>& words, const std::string& option,
                                  bool with_value) {
   std::vector<std::string> kept;
@@ -28,11 +28,12 @@ std::vector<std::string> without(const std::vector<std::string>& words, const st
 TaskLines::TaskLines(const std::vector<std::string>& words, bool has_value)
     : words_(without(words, "--plan", has_value)), for_task_(without(words_, "--report", true)) {
   if (words_.size() == words.size() || words_.empty())
-    throw Error(ErrorKind::usage, "`plan` stands on the command line, not in a configuration");
+    throw Error(ErrorKind::usage,
+                "`plan` must be given on the command line, not in a configuration");
 }
 
 std::string TaskLines::task(const std::string& option, const std::string& value) const {
-  // Behind the subcommand: what stands last may be behind "--".
+  // Directly after the subcommand: the last words may follow "--".
   std::vector<std::string> words = for_task_;
   words.insert(words.begin() + 1, {option, value});
   return command_text(words) + "\n";

@@ -7,13 +7,11 @@
 
 namespace adasplats::app {
 
-/// The commands of the tasks that a command given with --plan leaves to be done: the same command,
-/// for one part of the work each.
+/// The commands of the tasks that --plan prints: the same command, each for one part of the work.
 class TaskLines {
  public:
-  /// `words`: the command as it was given (own_arguments()), --plan among them. Errors: usage
-  /// (--plan is not: it came from a configuration, which the tasks would read, too).
-  /// `has_value`: --plan takes one.
+  /// `words`: the command line (own_arguments()) with --plan. `has_value`: --plan has a value.
+  /// Errors: usage (no --plan: it came from a configuration, which the tasks would read, too).
   TaskLines(const std::vector<std::string>& words, bool has_value);
 
   /// "adasplats model --only-tile x3_y-2 ...", a line for a shell.
@@ -23,7 +21,7 @@ class TaskLines {
 
  private:
   std::vector<std::string> words_;     ///< without --plan
-  std::vector<std::string> for_task_;  ///< without --report, too: tasks would write one file
+  std::vector<std::string> for_task_;  ///< also without --report: tasks would overwrite one file
 };
 
 }  // namespace adasplats::app

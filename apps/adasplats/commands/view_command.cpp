@@ -1,22 +1,121 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "adasplats/core/error.h"
+#include "adasplats/view/live_message.h"
+#include "adasplats/view/live_scans.h"
+#include "adasplats/view/page_files.h"
+#include "adasplats/view/view_pages.h"
 #include "cli/commands.h"
-#include "cli/options/load_options.h"
+#include "cli/interrupt.h"
 #include "cli/options/option_types.h"
-#include "commands/view_job.h"
+#include "cli/options/shared_options.h"
+#include "cli/terminal.h"
+#include "commands/view_inputs.h"
 
 namespace adasplats::app {
 namespace {
 
 constexpr const char* kViewExamples =
-    "  adasplats view place.ply\n"
-    "  adasplats view place.ply --sequence sequences/00 --sensor velodyne-vlp-16\n"
-    "  adasplats view place.ply --cloud mapping.ply --errors distances.ply --port 8123\n"
+    "  adasplats view model.ply\n"
+    "  adasplats view model.ply --sequence sequences/00 --sensor velodyne-vlp-16\n"
+    "  adasplats view model.ply --cloud mapping.ply --errors distances.ply --port 8123\n"
     "  adasplats view sequences/00\n"
     "  adasplats view world.toml --poses drive.csv --layer other.ply\n"
-    "Prints the address of a page to look at it, and to drive a LiDAR through it, with a browser "
-    "on\n"
-    "this machine. Ctrl-C ends it.\n";
+    "Prints the address of a page that shows the input, for a browser on this machine. Ctrl-C "
+    "ends\n"
+    "it.\n";
+
+/// Interval at which an interrupt is checked.
+constexpr std::chrono::milliseconds kInterruptCheck{50};
+
+void check_page() {
+  if (!page_files().empty()) return;
+  throw Error(ErrorKind::unavailable,
+              "this program was built without the viewer; install Node.js 18 or newer with npm and "
+              "build it again (the build prints what it found)");
+}
+
+/// Stops the server on an interrupt. The caller's thread throws the exception.
+class StopOnSignal {
+ public:
+  explicit StopOnSignal(HttpServer& server) : thread_([this, &server] { watch(server); }) {}
+  ~StopOnSignal() {
+    done_ = true;
+    thread_.join();
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+ private:
+  void watch(HttpServer& server) {
+    while (!done_) {
+      try {
+        throw_if_interrupted();
+      } catch (const Interrupted&) {
+        server.stop();
+        return;
+      }
+      std::this_thread::sleep_for(kInterruptCheck);
+    }
+  }
+
+  std::atomic<bool> done_ = false;
+  std::thread thread_;
+};
+
+/// Opens an address in the desktop's browser; does nothing without a desktop.
+void open_browser(const std::string& url) {
+  const bool has_desktop =
+      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (!has_desktop) return;
+  std::string program = "xdg-open";
+  std::string address = url;
+  char* const words[] = {program.data(), address.data(), nullptr};
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_RDWR, 0);
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, words[0], &quiet, nullptr, words, environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  // Without xdg-open, the address is still on the terminal.
+  if (failure == 0) std::thread([child] { waitpid(child, nullptr, 0); }).detach();
+}
+
+/// Serves until Ctrl-C. Errors: unavailable (no viewer in this build, port taken), those of
+/// loading.
+void run_view(const ViewJob& job, Session& session) {
+  check_page();
+  live_sensor(job.sensor);  // rejects an unknown name before anything is loaded
+  const LoadedView view = load_view(job, session);
+  const ViewPages pages(view.scene);
+  LiveScans live(view.scene, session.executor);
+  HttpServerOptions options;
+  options.address = job.address;
+  options.port = job.port;
+  options.token = job.token.empty() ? random_token() : job.token;
+  HttpServer server(
+      options, [&pages](std::string_view path) { return pages.get(path); }, live);
+  print(server.url() + "\n");
+  if (job.browser) open_browser(server.url());
+  {
+    const StopOnSignal stop(server);
+    server.run();
+  }
+  throw_if_interrupted();
+}
 
 class ViewCommand final : public Command {
  public:
@@ -28,32 +127,26 @@ class ViewCommand final : public Command {
         add_path(app, "INPUT", job_.input,
                  "Splat model, mesh, world file, point cloud, sequence, or a folder with a model "
                  "and a sequence"));
-    add_paths(app, "--cloud", job_.clouds, "Points to show beside the model: a file or a sequence");
-    add_paths(app, "--layer", job_.layers,
-              "Another model, mesh or cloud to show beside it; rays do not meet it");
-    add_paths(app, "--errors", job_.errors, "Points with errors: what evaluate --errors wrote");
-    add_paths(app, "--sequence", job_.sequences, "Recorded scans, and where they were taken");
-    add_paths(app, "--poses", job_.trajectories,
-              "A trajectory to show: KITTI poses.txt, CSV or TUM");
-    app.add_option("--sensor", job_.sensor, "The LiDAR to begin with: one of 'adasplats sensors'")
+    add_each(app, "--cloud", job_.clouds, "Points to show with the model: a file or a sequence");
+    add_each(app, "--layer", job_.layers,
+             "Another model, mesh or cloud to show; simulated rays ignore it");
+    add_each(app, "--errors", job_.errors, "Points with errors, written by evaluate --errors");
+    add_each(app, "--sequence", job_.sequences, "Recorded scans with their poses");
+    add_each(app, "--poses", job_.trajectories, "Trajectory to show: KITTI poses.txt, CSV or TUM");
+    app.add_option("--sensor", job_.sensor, "Initial LiDAR: a name from 'adasplats sensors'")
         ->capture_default_str()
         ->type_name("NAME");
     app.add_option("--mount-height", job_.mount_height_m,
-                   "Of the sensor above the ground where no pose tells, m")
+                   "Sensor height above the ground without poses, m")
         ->capture_default_str();
-    app.add_option(
-           "--labels", job_.labels,
-           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
-           "file; the default is "
-           "what the model says")
-        ->type_name("SCHEME");
-    app.add_option("--port", job_.port, "Of the page; 0: any free one")->capture_default_str();
+    add_labels_option(app, job_.labels, "that of the model");
+    app.add_option("--port", job_.port, "Port of the page; 0: any free one")->capture_default_str();
     app.add_option("--address", job_.address,
-                   "To listen at. Anything but this machine's own (127.0.0.1, ::1) lets others on "
-                   "the network in who know the page's address")
+                   "Address to listen on. All but 127.0.0.1 and ::1 give access to anyone on the "
+                   "network who has the address of the page")
         ->capture_default_str();
     app.add_option("--token", job_.token,
-                   "Secret part of the page's address; the default is a new one every time")
+                   "Secret part of the page's address (default: a new one every time)")
         ->type_name("TEXT");
     add_switch(app, "--browser,!--no-browser", job_.browser, "Open the page in a browser");
     add_load_options(app, job_.load);
@@ -67,9 +160,9 @@ class ViewCommand final : public Command {
   }
 
  private:
-  static void add_paths(OptionSet& app, const std::string& name,
-                        std::vector<std::filesystem::path>& target, const std::string& help) {
-    app.add_option(name, target, help)->type_name("PATH")->repeatable();
+  static void add_each(OptionSet& app, const std::string& name,
+                       std::vector<std::filesystem::path>& target, const std::string& help) {
+    add_paths(app, name, target, help)->repeatable();
   }
 
   ViewJob job_;

@@ -27,13 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the tiles of a city around the sensor may take.
+/// Memory limit for the tiles of a city around the sensor.
 constexpr std::size_t kTileBytes = 1'000'000'000;
 
-/// The inputs by what they are.
+/// The inputs by kind.
 struct Sorted {
   fs::path model;                ///< splats, a mesh or a world file; empty: none
-  std::vector<fs::path> places;  ///< splats and meshes beside it
+  std::vector<fs::path> places;  ///< other splats and meshes
   std::vector<fs::path> clouds, errors, sequences, trajectories;
 };
 
@@ -53,8 +53,8 @@ fs::path model_in(const fs::path& folder) {
               folder.string() + ": holds several models (" + names + "); name one of them");
 }
 
-/// The one sequence beside a model, also of the street of `demo`; empty: there is none.
-fs::path sequence_beside(const fs::path& folder) {
+/// The one sequence next to a model, also in the street of `demo`; empty: none.
+fs::path sequence_next_to(const fs::path& folder) {
   std::vector<fs::path> sequences = sequences_of_tree(folder);
   if (sequences.empty()) sequences = sequences_of_tree(folder / "street");
   if (sequences.size() > 1)
@@ -66,11 +66,11 @@ fs::path sequence_beside(const fs::path& folder) {
 void sort_folder(const fs::path& folder, Sorted& sorted) {
   sorted.model = is_city(folder) ? folder : model_in(folder);
   if (!sorted.model.empty()) {
-    const fs::path sequence = sequence_beside(folder);
+    const fs::path sequence = sequence_next_to(folder);
     if (!sequence.empty()) sorted.sequences.push_back(sequence);
     return;
   }
-  // Without a model a sequence is shown as points, too; beside one those are asked for by --cloud.
+  // Without a model, a sequence is also shown as points; with a model, --cloud adds them.
   const fs::path points = resolve_cloud_input(folder);
   if (is_kitti_sequence(points)) sorted.sequences.push_back(points);
   sorted.clouds.push_back(points);
@@ -79,11 +79,12 @@ void sort_folder(const fs::path& folder, Sorted& sorted) {
 bool is_world_file(const fs::path& path) { return path.extension() == ".toml"; }
 bool is_place(const fs::path& path) { return is_splat_model(path) || is_mesh_file(path); }
 
-/// By what it is, as the input itself.
+/// Sorts a layer by kind, as the input itself.
 void sort_layer(const fs::path& path, Sorted& sorted) {
   require_input(path);
   if (is_world_file(path))
-    throw Error(ErrorKind::usage, path.string() + ": a world file is the input itself, no layer");
+    throw Error(ErrorKind::usage,
+                path.string() + ": a world file cannot be a layer; give it as INPUT");
   if (fs::is_directory(path) && !is_city(path))
     sorted.clouds.push_back(resolve_cloud_input(path));
   else if (is_place(path))
@@ -120,7 +121,7 @@ std::string name_of(const fs::path& path) {
   return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
 }
 
-/// Loads what `sorted` names, layer by layer.
+/// Loads the sorted inputs, layer by layer.
 class Loading {
  public:
   Loading(const ViewJob& job, const Sorted& sorted, Session& session)
@@ -148,21 +149,21 @@ class Loading {
   }
 
  private:
-  /// A city with levels of detail; what beams of errors hit is not known of it.
+  /// Whether tiles are loaded on demand: a city with levels of detail, without errors to show.
   bool stays_on_disk() const {
     if (!is_city(sorted_.model)) return false;
     const bool errors = !sorted_.errors.empty();
     if (!errors && has_levels(sorted_.model)) return true;
     session_.progress.warn(sorted_.model.string() +
-                           (errors ? ": all of the city is loaded, since errors are shown"
-                                   : ": a city without levels of detail, so all of it is loaded; "
-                                     "cities have them that this program models"));
+                           (errors ? ": the complete city is loaded, because errors are shown"
+                                   : ": the city has no levels of detail, so all of it is loaded; "
+                                     "'adasplats model' writes them"));
     return false;
   }
 
   void add_city() {
     const fs::path& folder = sorted_.model;
-    // Of large cities both take long.
+    // Both are slow for large cities.
     auto table =
         std::async(std::launch::async, [&] { return read_levels(folder / kTopLevelsFile); });
     view_.city = std::make_unique<CityScene>(folder, job_.labels, session_, kTileBytes);
@@ -202,7 +203,7 @@ class Loading {
   void add_place(const fs::path& path) {
     const AnyModel place = load_any_model_or_city(path);
     if (view_of(place).primitive_count() == 0)
-      throw Error(ErrorKind::data, path.string() + ": nothing in it");
+      throw Error(ErrorKind::data, path.string() + ": holds no splats or triangles");
     crs_.add(path, crs_of(place));
     if (view_.scene.layers.empty()) set_place(origin_of(place), world_box_of(place));
     session_.progress.begin_step("levels of detail", 0);
@@ -211,7 +212,7 @@ class Loading {
     session_.progress.end_step();
   }
 
-  /// Of all files of errors that say which splats their beams hit; empty without any.
+  /// Mean errors of splats, from files with the splats that beams hit; empty without such a file.
   std::vector<float> errors_of_splats(const SplatModel& model) const {
     SplatErrors errors(model.size());
     bool any = false;
@@ -222,8 +223,8 @@ class Loading {
         any = true;
       } else {
         session_.progress.warn(file.string() +
-                               ": does not say which splats its beams hit (column 'splat' of "
-                               "'evaluate resimulate --errors'), so its points alone are shown");
+                               ": has no column 'splat' (written by 'evaluate resimulate "
+                               "--errors'), so only its points are shown");
       }
     }
     return any ? errors.means_m() : std::vector<float>();
@@ -292,7 +293,7 @@ LoadedView load_view(const ViewJob& job, Session& session) {
                 job.cloud_option + " has no effect: no points are shown (--cloud)");
   }
   if (sorted.model.empty() && job.sensor_is_asked) {
-    throw Error(ErrorKind::usage, "--sensor has no effect: there is no model to drive through");
+    throw Error(ErrorKind::usage, "--sensor has no effect: the input has no model to simulate in");
   }
   return Loading(job, sorted, session).run();
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "cli/manual/completion.h"
+#include "cli/manual/manual.h"
 
 namespace adasplats::app {
 namespace {
@@ -32,7 +32,7 @@ constexpr const char* kBashEnd = R"(  esac
   if [[ $files ]]; then
     compopt -o filenames 2>/dev/null
     mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current")
-    # What is in quotes the shell itself knows to complete.
+    # The shell itself completes words in quotes.
     [[ ${#COMPREPLY[@]} != 0 ]] || compopt -o default 2>/dev/null
   fi
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/manual/completion.h"
+#include "cli/manual/manual.h"
 
 namespace adasplats::app {
 namespace {

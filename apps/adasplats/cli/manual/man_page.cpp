@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/manual/man_page.h"
-
 #include <sstream>
+
+#include "cli/manual/manual.h"
 
 namespace adasplats::app {
 namespace {
 
-/// Text that roff shows as it is: '-' is not to become a hyphen, which nobody can copy, and a line
-/// must not begin with a control character.
+/// Text that roff shows unchanged: '-' must not become a hyphen, which cannot be pasted into a
+/// shell, and a line must not begin with a control character.
 std::string roff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -44,7 +44,7 @@ std::string tag_of(const OptionEntry& option) {
   return tag;
 }
 
-/// Text as a sentence, which more can follow.
+/// Text that ends with a full stop.
 std::string sentence(const std::string& text) {
   return text.empty() || text.back() == '.' ? roff(text) : roff(text) + ".";
 }
@@ -87,7 +87,7 @@ std::string options_text(const CommandEntry& command) {
   if (!arguments.empty()) text += ".SH ARGUMENTS\n" + arguments;
   text += ".SH OPTIONS\n";
   for (const auto& [heading, options] : headings) {
-    if (heading != "Options") text += ".SS " + roff(heading) + "\n";
+    if (heading != kOptionsHeading) text += ".SS " + roff(heading) + "\n";
     text += options;
   }
   return text;
@@ -125,7 +125,7 @@ std::string see_also(const CommandEntry& command) {
 
 constexpr const char* kExitStatus =
     ".SH \"EXIT STATUS\"\n"
-    "0 where all went well, else one of\n.BR sysexits (3),\n"
+    "0 on success, else one of\n.BR sysexits (3),\n"
     "or 128 and the number of the signal that ended the program.\n";
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/manual/completion.h"
+#include "cli/manual/manual.h"
 
 namespace adasplats::app {
 namespace {
@@ -41,7 +41,7 @@ std::string zsh_value(const OptionEntry& option) {
   return ":" + zsh_text(option.type) + ":" + action;
 }
 
-/// What _arguments is told of an option, as a word of the shell.
+/// The specification of an option for _arguments, as words of the shell.
 std::string zsh_option(const OptionEntry& option) {
   if (option.is_positional) {
     const std::string place = option.takes_more ? "*" : "";

@@ -25,7 +25,8 @@ struct Source {
   const std::filesystem::path& file;
   CLI::App& program;
   CLI::App& chosen;
-  std::map<const CLI::Option*, std::string> given;  ///< options set so far, by the key that did
+  const RenamedOptions& renamed;
+  std::map<const CLI::Option*, std::string> given;  ///< options set so far, and their keys
 };
 
 Error config_error(const std::filesystem::path& file, toml::source_index line,
@@ -35,7 +36,7 @@ Error config_error(const std::filesystem::path& file, toml::source_index line,
 
 /// Dotted keys make one table a dot, and toml++ destroys tables recursively: a key of a million
 /// dots would end in a stack overflow. (Brackets are limited by toml++ itself.)
-void refuse_deep_keys(const std::filesystem::path& file, const std::string& text) {
+void reject_deep_keys(const std::filesystem::path& file, const std::string& text) {
   toml::source_index line_number = 1;
   std::size_t begin = 0;
   while (begin <= text.size()) {
@@ -51,7 +52,7 @@ void refuse_deep_keys(const std::filesystem::path& file, const std::string& text
 
 toml::table parse(const std::filesystem::path& file) {
   const std::string text = read_file(file);
-  refuse_deep_keys(file, text);
+  reject_deep_keys(file, text);
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
@@ -81,7 +82,7 @@ CLI::App* find_subcommand(CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
-/// A scalar as the command line would have it.
+/// A scalar as written on the command line.
 std::string scalar_text(const Source& source, const std::string& key, const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer()) return std::to_string(number->get());
@@ -96,8 +97,8 @@ std::string scalar_text(const Source& source, const std::string& key, const toml
                      "'" + key + "' must be a string, a number, true or false, or a list of them");
 }
 
-/// The values that the command line would hold; a list for an option of one value, such as
-/// offset = [1, 1, -0.5], is that value with commas.
+/// The values as written on the command line. A list for an option with one value, such as
+/// offset = [1, 1, -0.5], becomes that value with commas.
 std::vector<std::string> value_texts(const Source& source, const std::string& key,
                                      const toml::node& node, const CLI::Option& option) {
   const toml::array* list = node.as_array();
@@ -116,7 +117,7 @@ void set_option(Source& source, const std::string& key, const toml::node& node,
   const auto [before, is_new] = source.given.emplace(&option, key);
   if (!is_new) {
     throw config_error(source.file, line,
-                       "'" + key + "' is a duplicate: '" + before->second + "' set it already");
+                       "'" + key + "' is a duplicate: '" + before->second + "' already sets it");
   }
   std::vector<std::string> values = value_texts(source, key, node, option);
   const bool is_flag = option.get_items_expected_max() == 0;
@@ -150,12 +151,13 @@ void apply_subtable(Source& source, const std::string& key, const toml::table& t
 void apply_table(Source& source, const toml::table& table, CLI::App& app) {
   CLI::App& target = &app == &source.program ? source.chosen : app;
   for (const auto& [key_node, node] : table) {
-    const std::string key(key_node.str());
+    std::string key(key_node.str());
     const toml::source_index line = key_node.source().begin.line;
     if (const toml::table* subtable = node.as_table()) {
       apply_subtable(source, key, *subtable, line, app);
       continue;
     }
+    key = current_name(key, source.renamed, "");
     CLI::Option* option = find_setting(target, key);
     if (option == nullptr) {
       throw config_error(source.file, line, unknown_word("key", key, names_of(target)));
@@ -166,8 +168,9 @@ void apply_table(Source& source, const toml::table& table, CLI::App& app) {
 
 }  // namespace
 
-void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen) {
-  Source source{file, program, chosen, {}};
+void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen,
+                  const RenamedOptions& renamed) {
+  Source source{file, program, chosen, renamed, {}};
   const toml::table table = parse(file);
   apply_table(source, table, program);
 }

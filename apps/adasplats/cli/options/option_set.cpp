@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "cli/terminal.h"
+
 namespace adasplats::app {
 
 Option* Option::type_name(const std::string& name) {
@@ -34,17 +36,27 @@ Option* Option::group(const std::string& name) {
 Option* Option::in_range(const Setting& setting) {
   const auto refusal = [setting](const std::string& text) -> std::string {
     double value = 0;
-    if (!CLI::detail::lexical_cast(text, value)) return "";  // the reader says so
+    if (!CLI::detail::lexical_cast(text, value)) return "";  // reported when it is converted
     return is_in_range(setting, value) ? "" : "is " + text + ", expected " + range_text(setting);
   };
   option_->check(CLI::Validator(refusal, ""));
   return this;
 }
 
-Option* Option::range(int least, int most) {
-  option_->check(CLI::Range(least, most).description(""));
+Option* Option::basic() {
+  option_->configurable(false);
   return this;
 }
+
+// CLI11 has no such flag. Its `configurable` is free: config_file.cpp reads configurations.
+bool is_basic(const CLI::Option& option) { return !option.get_configurable(); }
+
+Option* Option::range(int min, int max) {
+  option_->check(CLI::Range(min, max).description(""));
+  return this;
+}
+
+bool Option::is_flag() const { return option_->get_items_expected_max() == 0; }
 
 Option* Option::delimiter(char separator) {
   option_->delimiter(separator);
@@ -56,7 +68,18 @@ Option* Option::repeatable() {
   return this;
 }
 
-Option* OptionSet::added(CLI::Option* option) { return &options_.emplace_back(*option); }
+std::string current_name(const std::string& name, const RenamedOptions& renamed,
+                         const std::string& dashes) {
+  const auto found = renamed.find(name);
+  if (found == renamed.end()) return name;
+  print_message("warning: " + dashes + name + " is deprecated; use " + dashes + found->second);
+  return found->second;
+}
+
+Option* OptionSet::added(CLI::Option* option) {
+  if (!heading_.empty()) option->group(heading_);
+  return &options_.emplace_back(*option);
+}
 
 template <class T>
 Option* OptionSet::add_option(const std::string& names, T& target, const std::string& help) {
@@ -80,7 +103,11 @@ Option* OptionSet::add_version_flag(const std::string& names, const std::string&
 }
 
 OptionSet& OptionSet::add_group(const std::string& name, const std::string& description) {
-  return groups_.emplace_back(*app_->add_option_group(name, description));
+  return groups_.emplace_back(*app_, name + ", " + description);
+}
+
+void OptionSet::add_old_name(const std::string& old_name, const std::string& new_name) {
+  renamed_[old_name] = new_name;
 }
 
 bool OptionSet::is_given(const std::string& name) const {
@@ -98,7 +125,7 @@ void refuse_value(const std::string& option, const std::string& message) {
   throw CLI::ValidationError(option, message);
 }
 
-// What options can be; the parser is compiled for these here and nowhere else.
+// The types of options: the parser is compiled for these, in this file only.
 #define ADASPLATS_OPTION_OF(...) \
   template Option* OptionSet::add_option(const std::string&, __VA_ARGS__&, const std::string&);
 ADASPLATS_OPTION_OF(int)

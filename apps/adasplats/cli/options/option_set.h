@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,37 +19,52 @@ class Option;
 
 namespace adasplats::app {
 
-/// One option of a subcommand. The parser owns what it stands for.
+/// One option of a subcommand; a handle of the parser's.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
 
   /// Word for the value in help: "M", "NAME|FILE".
   Option* type_name(const std::string& name);
-  /// Shows the variable's present value as the default in help and reports.
+  /// Shows the current value of the variable as the default in help and reports.
   Option* capture_default_str();
   Option* default_str(const std::string& text);
   /// Heading in help.
   Option* group(const std::string& name);
-  /// Refuses numbers outside of a setting's range.
+  /// Shows the option in the short help, too.
+  Option* basic();
+  /// Rejects numbers outside of a setting's range.
   Option* in_range(const Setting& setting);
-  /// Refuses whole numbers outside of [least, most].
-  Option* range(int least, int most);
+  /// Rejects whole numbers outside of [min, max].
+  Option* range(int min, int max);
   /// One value may hold several with `separator` between them.
   Option* delimiter(char separator);
   /// Takes one value at a time and may be given several times.
   Option* repeatable();
 
+  bool is_flag() const;
   CLI::Option& parser() const { return *option_; }
 
  private:
   CLI::Option* option_;
 };
 
-/// The options of one subcommand, or of a group of them in its help.
+/// Whether the short help shows an option.
+bool is_basic(const CLI::Option& option);
+
+/// Deprecated names of options and the new ones, both without dashes.
+using RenamedOptions = std::map<std::string, std::string>;
+
+/// The current name of an option; warns if `name` is a deprecated one. `dashes`: how both names are
+/// written, "--" or "".
+std::string current_name(const std::string& name, const RenamedOptions& renamed,
+                         const std::string& dashes);
+
+/// The options of one subcommand, or those under one heading of its help.
 class OptionSet {
  public:
-  explicit OptionSet(CLI::App& app) : app_(&app) {}
+  explicit OptionSet(CLI::App& app, std::string heading = "")
+      : app_(&app), heading_(std::move(heading)) {}
   OptionSet(const OptionSet&) = delete;
   OptionSet& operator=(const OptionSet&) = delete;
 
@@ -65,25 +81,30 @@ class OptionSet {
   /// Prints `version` and ends.
   Option* add_version_flag(const std::string& names, const std::string& version,
                            const std::string& help);
-  /// Options under a heading of their own.
+  /// Options under a heading of their own: "NAME, DESCRIPTION".
   OptionSet& add_group(const std::string& name, const std::string& description);
+  /// Accepts a deprecated name of an option for one more release; names without dashes.
+  void add_old_name(const std::string& old_name, const std::string& new_name);
 
   /// Whether the user has given an option, on the command line or in a configuration.
   bool is_given(const std::string& name) const;
   /// The first option of a group that is given; empty: none.
   std::string first_given(const std::string& group) const;
 
+  const RenamedOptions& renamed() const { return renamed_; }
   CLI::App& parser() const { return *app_; }
 
  private:
   Option* added(CLI::Option* option);
 
   CLI::App* app_;
+  std::string heading_;
+  RenamedOptions renamed_;
   std::deque<Option> options_;
   std::deque<OptionSet> groups_;
 };
 
-/// What a value's reader throws: becomes "OPTION: MESSAGE", a usage error.
+/// Rejects the value of an option: "OPTION: MESSAGE", a usage error.
 [[noreturn]] void refuse_value(const std::string& option, const std::string& message);
 
 }  // namespace adasplats::app

@@ -100,6 +100,18 @@ Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path&
       ->default_str(target.string());
 }
 
+Option* add_paths(OptionSet& app, const std::string& name,
+                  std::vector<std::filesystem::path>& target, const std::string& help) {
+  return app
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&target](const std::vector<std::string>& names) {
+            target.assign(names.begin(), names.end());
+          },
+          help)
+      ->type_name("PATH");
+}
+
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
                    const std::string& help) {
   return app
@@ -158,8 +170,7 @@ Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPl
 
 namespace {
 
-/// What a number can end with, and how much one of it is; longer endings before those that they end
-/// with.
+/// Units that a number can end with, and their sizes. "km" comes before "m", which it ends with.
 using Units = std::span<const std::pair<std::string_view, double>>;
 
 /// A number with one of the units, or without.
@@ -226,7 +237,8 @@ Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
 }
 
 Option* add_picture_width(OptionSet& app, int& width) {
-  return app.add_option("--picture-width", width, "Pixels; the height is 9/16 of it")
+  return app
+      .add_option("--picture-width", width, "Picture width, pixels; the height is 9/16 of it")
       ->capture_default_str()
       ->range(64, 8192)
       ->type_name("N");

@@ -22,20 +22,23 @@
 
 namespace adasplats::app {
 
-/// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
+/// Parses "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
 ScanRange parse_scan_range(const std::string& option, const std::string& text);
 
 Option* add_scan_range(OptionSet& app, const std::string& name, ScanRange& target,
                        const std::string& help);
 Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
                  const std::string& help);
+/// Several paths after one another.
+Option* add_paths(OptionSet& app, const std::string& name,
+                  std::vector<std::filesystem::path>& target, const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
                    const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target, const std::string& help);
 /// "XMIN,YMIN,XMAX,YMAX[,ZMIN,ZMAX]".
 Option* add_extent(OptionSet& app, const std::string& name, std::optional<Extent>& target,
                    const std::string& help);
-/// Places "X,Y[,Z[,YAW_DEG]]", Z may be empty; may be given several times.
+/// Positions "X,Y[,Z[,YAW_DEG]]", Z may be empty; may be given several times.
 Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPlace>& target,
                    const std::string& help);
 /// Corners "X,Y;X,Y;...".
@@ -47,7 +50,7 @@ Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
 Option* add_length(OptionSet& app, const Setting& setting, double& target);
 /// Memory in GB (10^9 bytes), or with its unit: "8", "8G", "8GB", "500M", "500MB".
 Option* add_memory(OptionSet& app, const Setting& setting, double& target);
-/// --picture-width, pixels of a picture of 16:9.
+/// --picture-width, pixels of a 16:9 picture.
 Option* add_picture_width(OptionSet& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".
 Option* add_switch(OptionSet& app, const std::string& names, bool& target, const std::string& help);
@@ -60,7 +63,7 @@ Choices<T> choices_of(std::type_identity_t<Words<T>> words) {
   return {words.begin(), words.end()};
 }
 
-/// For a choice that may be left open.
+/// For a choice without a default.
 template <class T, std::size_t N>
 Choices<std::optional<T>> choices_of_optional(const std::pair<std::string_view, T> (&words)[N]) {
   return {std::begin(words), std::end(words)};

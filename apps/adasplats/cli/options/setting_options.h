@@ -43,7 +43,7 @@ class OptionsOfSettings {
  private:
   template <class T>
   void add_number(const Setting& setting, T& value) const;
-  static void finish(const Setting& setting, Option* option);
+  void finish(const Setting& setting, Option* option) const;
 
   OptionSet& app_;
 };

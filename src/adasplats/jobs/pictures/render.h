@@ -53,9 +53,9 @@ void visit_settings(RenderJob& job, Visit&& visit) {
                 .min = 1,
                 .max = 64},
         job.look.samples_per_axis);
-  visit(
-      Setting{.name = "relief", .help = "Darken corners and gaps, and blend splats that intersect"},
-      job.look.relief);
+  visit(Setting{.name = "relief",
+                .help = "Darken corners and gaps, and blend neighbouring splats of a surface"},
+        job.look.relief);
   visit(Setting{.name = "captions", .help = "Draw title, legend, scale and north arrow"},
         job.look.captions);
   visit(
