@@ -19,7 +19,7 @@ def said(*command, **options):
 
 def helps_of(words):
     """The help of a command without its examples, and these."""
-    text, _, examples = run(*words, "--help").stdout.partition("Examples:\n")
+    text, _, examples = run(*words, "--help-all").stdout.partition("Examples:\n")
     return text, examples
 
 
@@ -28,7 +28,8 @@ class About(ProgramTest):
         for words in [[], ["synth"], ["evaluate"], *SUBCOMMANDS, *ABOUT]:
             self.assertEqual(self.run_good("help", *words).stdout,
                              self.run_good(*words, "--help").stdout, words)
-        self.assertIn("REQUIRED", self.run_good("help", "model").stdout)
+        self.assertIn("(required)", self.run_good("help", "model").stdout)
+        self.assertIn("--packet-sensor", self.run_good("help", "input").stdout)
 
     def test_version_is_the_flags(self):
         self.assertEqual(self.run_good("version").stdout, self.run_good("--version").stdout)
@@ -204,8 +205,8 @@ class Manual(ProgramTest):
             for line in examples.splitlines():
                 self.assertIn(line.strip(), text)
         text = self.read(["model"])
-        self.assertRegex(text, r"--neighbors INT\n +K, number of neighbours of a point\.  Default: 40\.")
-        self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile the folder of a city.  Required\.")
+        self.assertRegex(text, r"--neighbors INT\n +Number of neighbours of a point, K.  Default: 40\.")
+        self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile: folder of a city.  Required\.")
 
     def test_mandoc_takes_them(self):
         if not shutil.which("mandoc"):

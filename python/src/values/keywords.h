@@ -26,9 +26,9 @@ namespace adasplats::python {
 
 namespace py = pybind11;
 
-/// The keyword arguments of one call. A function takes them one by one by name; what nobody took
-/// is a TypeError that names the nearest. The same taking, without a call, gives the signature: so
-/// names and defaults are written once.
+/// The keyword arguments of one call. A function takes them one by one by name; one that was not
+/// taken is a TypeError that suggests the nearest name. The same code without a call makes the
+/// signature, so names and defaults are written once.
 class Keywords {
  public:
   /// Of a call.
@@ -66,6 +66,9 @@ class Keywords {
     value = words[take_word(name, chosen, known)].second;
   }
 
+  /// Accepts a deprecated name as `name`, with a DeprecationWarning; before `name` is taken.
+  void accept_old_name(const char* old_name, const char* name);
+
   /// To be called when everything was taken. Errors: TypeError.
   void finish() const;
 
@@ -90,6 +93,7 @@ template <class Settings>
 void take_settings(Keywords& keywords, Settings& settings,
                    const char* Setting::*word = &Setting::name) {
   visit_settings(settings, [&keywords, word]<class T>(const Setting& setting, T& value) {
+    if (*setting.old_name != 0) keywords.accept_old_name(setting.old_name, setting.*word);
     if constexpr (std::is_enum_v<T>) {
       keywords.take<T>(setting.*word, value, words_of(value));
     } else {
