@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/jobs/calibrate_drive.h"
+#include "adasplats/jobs/calibrate/calibrate.h"
 #include "adasplats/jobs/compare/compare.h"
+#include "adasplats/jobs/evaluate/fit_sensor.h"
 #include "adasplats/jobs/export.h"
-#include "adasplats/jobs/make_mesh.h"
-#include "adasplats/jobs/simkitti32.h"
-#include "adasplats/jobs/unit_files.h"
+#include "adasplats/jobs/model/make_mesh.h"
+#include "adasplats/jobs/scans/simkitti32.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "json.h"
@@ -229,13 +229,13 @@ py::object simkitti32(py::handle sequence, py::handle output, const py::kwargs& 
 }
 
 struct FitSensorCall {
-  UnitFilesJob job;
+  FitSensorJob job;
   WorkOptions work;
 
   void take(Keywords& keywords) {
-    take_scan_range(keywords, job.fit.scans);
-    keywords.take("motion", job.fit.motion);
-    keywords.take("trajectory", job.fit.trajectory);
+    take_scan_range(keywords, job.scans);
+    keywords.take("motion", job.motion);
+    keywords.take("trajectory", job.trajectory);
     work.take(keywords);
   }
 };
@@ -246,12 +246,12 @@ py::object fit_one_sensor(py::handle model, py::handle scans, py::handle output,
   FitSensorCall call;
   call.take(keywords);
   keywords.finish();
-  call.job.fit.model = path_of(model, "model");
-  call.job.fit.scans_of = path_of(scans, "scans");
-  call.job.output = path_of(output, "output");
+  call.job.model = path_of(model, "model");
+  call.job.scans_of = path_of(scans, "scans");
+  const std::filesystem::path file = path_of(output, "output");
   Work work(call.work);
   const nlohmann::ordered_json report =
-      work.run([&](Session& session) { return to_json(run_fit_sensor(call.job, session)); });
+      work.run([&](Session& session) { return to_json(run_fit_sensor(call.job, file, session)); });
   return python_of(report);
 }
 

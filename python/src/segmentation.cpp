@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/segment/point_classes.h"
-#include "adasplats/jobs/segment_points.h"
+#include "adasplats/jobs/segment/segment.h"
 #include "arrays.h"
 #include "bindings.h"
 #include "work.h"

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/jobs/scans/synth.h"
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/jobs/synth_street.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "json.h"

@@ -64,7 +64,8 @@ def test_names_say_what_is_written(tmp_path):
     model = adasplats.Model([[0.0, 0, 0]], [[0, 0, 1.0]], [1.0])
     cloud = adasplats.PointCloud(np.zeros((5, 3)))
     for save in (model.save, cloud.save):
-        with pytest.raises(ValueError, match=r"a.txt: its name must end with .ply"):
+        with pytest.raises(ValueError, match=r"a.txt: the output format needs a name that ends "
+                                             r"with .ply"):
             save(tmp_path / "a.txt")
     assert list(tmp_path.iterdir()) == []
 

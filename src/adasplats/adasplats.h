@@ -25,6 +25,6 @@
 #include "adasplats/jobs/scene/drive.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
-#include "adasplats/jobs/session/own_session.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/splat_model.h"

@@ -211,14 +211,14 @@ class CityTasks(ProgramTest):
     def test_other_settings_and_versions(self):
         name = self.tiles()[0]
         self.run_bad(73, *self.command("--only-tile", name, "--cell", "0.07"),
-                     says=["cell", "plan anew"])
+                     says=["cell", "run --plan again"])
         self.run_bad(73, *self.command("--only-tile", name, "--own-body", "1"), says=["load"])
         self.run_bad(64, *self.command("--only-tile", "x77_y3"), says=["--only-tile x77_y3"])
         content = self.unfinished / "adasplats.json"
         text = content.read_text(encoding="utf-8")
         facts = json.loads(text)
         content.write_text(json.dumps({**facts, "version": "0.0.7"}), encoding="utf-8")
-        self.run_bad(73, *self.task(name), says=["version was", "0.0.7", "plan anew"])
+        self.run_bad(73, *self.task(name), says=["version was", "0.0.7", "run --plan again"])
         content.write_text("{", encoding="utf-8")
         self.run_bad(73, *self.task(name), says=["adasplats.json", "damaged"])
         content.write_text(text, encoding="utf-8")

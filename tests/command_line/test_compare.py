@@ -355,7 +355,8 @@ class Street(CompareTest):
         shutil.copytree(self.folder / "street", self.folder / "avenue")
         self.refuse(73, "avenue", "-o", "out", *COARSE, says=["\"street\"", "'avenue'"])
         self.refuse(73, "street", "-o", "no such/out", says=["no such"])
-        self.refuse(64, "street", "-o", "street/mesh.ply", says=["mesh.ply", "lies in the input"])
+        self.refuse(64, "street", "-o", "street/mesh.ply",
+                    says=["mesh.ply", "is inside the input"])
         self.refuse(73, "street", "-o", "own/thesis.txt", says=["thesis.txt"])
         self.assertEqual(self.run_again(before), set())
 

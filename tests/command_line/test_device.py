@@ -62,7 +62,7 @@ class AnyMachine(DeviceTest):
         config = self.folder / "settings.toml"
         config.write_text('[simulate]\ndevice = "cpu"\ngpus = [0, 1]\n')
         self.run_bad(64, *self.simulate_words(self.model()), "--config", config,
-                     says=["exclude each other"])
+                     says=["no effect with --device cpu"])
 
     def test_info_lists_gpus(self):
         gpus = self.gpus()

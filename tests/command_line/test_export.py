@@ -96,7 +96,7 @@ class Export(ProgramTest):
         bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las or laz"])
         bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
         bad(self.cloud, "out.ply", "--format", "gausian-3d", says=["did you mean 'gaussian-3d'"])
-        bad(model, "model.ply", "--format", "gaussian-3d", says=["is an input, too"])
+        bad(model, "model.ply", "--format", "gaussian-3d", says=["is also an input"])
         (self.folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         bad(self.folder / "mesh.obj", "out.glb", says=["triangle mesh"])
         self.run_bad(66, "export", self.folder / "lost.ply", "-o", self.folder / "out.glb",

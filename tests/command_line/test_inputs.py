@@ -135,7 +135,7 @@ class Outputs(ProgramTest):
                      "--overwrite", says=["input"])
         scans = self.simulate(self.model())
         self.run_bad(64, "simulate", self.folder / "model.ply", "--trajectory", scans, "-o",
-                     scans / "again", says=["lies in the input"])
+                     scans / "again", says=["is inside the input"])
         self.run_bad(64, "simulate", self.folder / "model.ply", "--trajectory", scans, "-o",
                      scans, "--overwrite", says=["input"])
         self.assertTrue((scans / "adasplats.json").exists())

@@ -108,7 +108,7 @@ class Places(ProgramTest):
         bad(64, *self.command(), says=["--trajectory, --at or --path"])
         bad(64, *self.command("--at", "4,1", "--trajectory", self.poses),
             says=["--trajectory, --at or --path"])
-        bad(64, *self.command("--at", "4,1", "--path", "3,0;9,0"), says=["one of them"])
+        bad(64, *self.command("--at", "4,1", "--path", "3,0;9,0"), says=["exactly one of"])
         bad(64, *self.command("--at", "4"), says=["--at: expected X,Y", "found '4'"])
         bad(64, *self.command("--at", "4,1,2,3,4"), says=["--at: expected X,Y"])
         bad(64, *self.command("--at", "4,nan"), says=["--at: expected X,Y"])

@@ -119,7 +119,7 @@ class SegmentTest(ProgramTest):
         self.run_bad(64, "segment", scan, "-o", self.folder / "b.txt",
                      says=[".ply, .las, .laz or .label"])
         self.run_bad(64, "segment", self.sequence, "-o", self.sequence / "new",
-                     says=["lies in the input"])
+                     says=["is inside the input"])
 
     def test_class_maps(self):
         out, map_file = self.folder / "out", self.folder / "map.txt"

@@ -353,7 +353,7 @@ class GivenModel(SequenceTest):
 
     def test_how_a_model_is_made_has_no_effect(self):
         for words in [["--method", "basic"], ["--model-every", "2"], ["--keep-model"]]:
-            self.refuse(64, *words, says=[words[0], "has no effect with a model that is given"])
+            self.refuse(64, *words, says=[words[0], "has no effect with a given model"])
         kept = self.made / "model.ply"
         self.run_bad(64, *self.command("--model", kept, "--overwrite", output=self.made),
                      says=["holds the input"])

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/io/point_format.h"
-#include "adasplats/jobs/calibrate_drive.h"
+#include "adasplats/jobs/calibrate/calibrate.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

@@ -4,7 +4,7 @@
 
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
-#include "adasplats/jobs/make_mesh.h"
+#include "adasplats/jobs/model/make_mesh.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
@@ -43,7 +43,7 @@ class MeshCommand final : public Command {
       refuse({option_of(unused.setting).c_str()}, unused.why);
     }
     job_.removal_is_asked = is_given("--remove");
-    const MeshResult result = make_mesh_file(job_, output_, session);
+    const MeshResult result = run_mesh(job_, output_, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});
     for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});

@@ -11,8 +11,8 @@
 #include "adasplats/jobs/city/city_task.h"
 #include "adasplats/jobs/city/make_city.h"
 #include "adasplats/jobs/city/tile_choice.h"
+#include "adasplats/jobs/model/make_model.h"
 #include "adasplats/jobs/model/unused_settings.h"
-#include "adasplats/jobs/model_file.h"
 #include "adasplats/jobs/output/output_check.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/session/inputs.h"
@@ -152,10 +152,10 @@ class ModelCommand final : public Command {
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
       refuse({"--halo", "--overwrite", "--plan", "--only-tile", "--keep-points"}, "without --tile");
-    // run_model rejects anything but a regular file, whatever its name.
+    // If the output exists and is no regular file, run_model reports that instead.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
-    const ModelResult result = run_model({job_, job_.output}, session);
+    const ModelResult result = run_model(job_, job_.output, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});
     for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});

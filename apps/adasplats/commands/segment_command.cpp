@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/io/point_format.h"
-#include "adasplats/jobs/segment_points.h"
+#include "adasplats/jobs/segment/segment.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

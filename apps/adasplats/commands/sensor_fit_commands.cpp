@@ -10,7 +10,6 @@
 #include "adasplats/jobs/evaluate/evaluate_echoes.h"
 #include "adasplats/jobs/evaluate/fit_sensor.h"
 #include "adasplats/jobs/output/output_folder.h"
-#include "adasplats/jobs/unit_files.h"
 #include "cli/options/option_types.h"
 #include "cli/text_table.h"
 #include "commands/result_command.h"

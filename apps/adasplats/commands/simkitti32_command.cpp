@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
+#include "adasplats/jobs/scans/simkitti32.h"
 #include "adasplats/jobs/session/inputs.h"
-#include "adasplats/jobs/simkitti32.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

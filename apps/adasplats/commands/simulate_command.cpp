@@ -6,8 +6,8 @@
 #include <string>
 
 #include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/scans/simulate.h"
 #include "adasplats/jobs/session/scan_range.h"
-#include "adasplats/jobs/simulate_scans.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

@@ -5,9 +5,7 @@
 #include <type_traits>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/jobs/synth_city.h"
-#include "adasplats/jobs/synth_street.h"
-#include "adasplats/jobs/synth_world.h"
+#include "adasplats/jobs/scans/synth.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

@@ -195,7 +195,7 @@ class Loading {
     scene.layers.push_back(
         splats != nullptr
             ? splat_layer(name, *splats, errors_of_splats(*splats), scene.origin, session_.executor)
-            : place_layer(name, view_.model->place(), scene.origin, session_.executor));
+            : place_layer(name, view_.model->model(), scene.origin, session_.executor));
     add_world(scene, session_.executor);
     session_.progress.end_step();
   }

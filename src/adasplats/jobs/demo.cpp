@@ -11,10 +11,9 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 #include "adasplats/jobs/output/output_folder.h"
-#include "adasplats/jobs/pictures/mosaic.h"
 #include "adasplats/jobs/pictures/panel.h"
 #include "adasplats/jobs/pictures/render.h"
-#include "adasplats/jobs/synth_street.h"
+#include "adasplats/jobs/scans/synth.h"
 
 namespace adasplats {
 namespace {
@@ -93,16 +92,16 @@ DemoMethod run_method(const std::string& name, SplatMethod method, const Drive& 
   DemoRow& row = result.row;
   row.method = name;
 
-  ModelFileJob model;
+  const std::filesystem::path model_file = drive.folder / (name + ".ply");
+  ModelJob model;
   model.inputs = {drive.mapping()};
-  model.output = drive.folder / (name + ".ply");
   model.labels = kDemoLabels;
   model.build.recipe = MethodChoice{.method = method}.recipe();
-  row.model = run_model(model, session);
-  result.scene = std::make_shared<const ModelScene>(model.output, "", session);
+  row.model = run_model(model, model_file, session);
+  result.scene = std::make_shared<const ModelScene>(model_file, "", session);
 
   SimulateJob simulation;
-  simulation.model = model.output;
+  simulation.model = model_file;
   simulation.drive.trajectory = drive.sequence();
   simulation.drive.offset_m = kShift_m;
   simulation.output = drive.folder / (name + "-scans");

@@ -9,9 +9,9 @@
 
 #include "adasplats/evaluate/resimulate.h"
 #include "adasplats/jobs/evaluate/evaluate_clouds.h"
-#include "adasplats/jobs/model_file.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/scans/simulate.h"
 #include "adasplats/jobs/session/session.h"
-#include "adasplats/jobs/simulate_scans.h"
 #include "adasplats/synth/street.h"
 
 namespace adasplats {

@@ -131,20 +131,6 @@ std::vector<Rgb> colors_of(PointCloud& cloud, const LabelScheme* labels,
   return {};
 }
 
-/// What the classes of a model mean.
-std::optional<LabelScheme> labels_of(const SplatModel& model, const std::string& labels,
-                                     Session& session) {
-  if (!labels.empty()) return load_label_scheme(labels);
-  if (model.label_scheme.empty()) return std::nullopt;
-  try {
-    return load_label_scheme(model.label_scheme);
-  } catch (const Error& error) {
-    // The scheme's file stayed behind on another machine: the classes remain without colours.
-    session.progress.warn(std::string("labels of the model: ") + error.what());
-    return std::nullopt;
-  }
-}
-
 PointCloud centers_of(SplatModel& model) {
   PointCloud cloud;
   cloud.origin = model.origin;
@@ -158,7 +144,9 @@ PointCloud centers_of(SplatModel& model) {
 
 ExportResult export_model(const ExportJob& job, ExportFormat format, Session& session) {
   SplatModel model = load_splats(job.input);
-  const std::optional<LabelScheme> labels = labels_of(model, job.labels, session);
+  const std::optional<LabelScheme> labels =
+      job.labels.empty() ? load_labels_of_model(model.label_scheme, session.progress)
+                         : load_label_scheme(job.labels);
   PointCloud centers = centers_of(model);
   const std::vector<Rgb> colors = colors_of(centers, labels ? &*labels : nullptr, job.color);
   if (format == ExportFormat::glb) {

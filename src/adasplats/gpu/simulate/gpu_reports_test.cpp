@@ -181,7 +181,7 @@ class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
   }
 
   std::unique_ptr<ScanRules> rules_of_world(ReportCase& setup) {
-    if (setup.drops) setup.options.ray_drop = &setup.ray_drop;
+    if (setup.drops) setup.options.ray_drop = setup.ray_drop;
     PrimitiveAttributes attributes;
     attributes.view = {disks_, nullptr};
     if (setup.has_classes) {

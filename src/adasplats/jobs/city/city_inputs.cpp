@@ -16,8 +16,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/jobs/drive_pieces.h"
-#include "adasplats/jobs/model/calibrate_on_device.h"
+#include "adasplats/jobs/calibrate/calibration.h"
+#include "adasplats/jobs/calibrate/drive_reader.h"
 #include "adasplats/jobs/session/repeated_warnings.h"
 
 namespace adasplats {

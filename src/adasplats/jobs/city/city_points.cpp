@@ -15,7 +15,7 @@
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/city/city_alignment.h"
 #include "adasplats/jobs/city/city_inputs.h"
-#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/rays/measured_rays.h"
 

@@ -12,7 +12,7 @@
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/compare/steps.h"
-#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/jobs/session/own_session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 namespace {

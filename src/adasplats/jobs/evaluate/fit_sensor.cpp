@@ -11,9 +11,11 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/share.h"
 #include "adasplats/evaluate/unit/unit_beams.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 #include "adasplats/jobs/evaluate/json_values.h"
 #include "adasplats/jobs/evaluate/ring_scans.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/sensors/calibrated_sensor.h"
@@ -140,6 +142,14 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   traits.fitted_to = fitted_to;
   result.sensor_toml =
       unit_sensor_toml(result.sensor, {offsets.range_m, offsets.elevation_rad}, traits);
+  return result;
+}
+
+FitSensorResult run_fit_sensor(const FitSensorJob& job, const std::filesystem::path& output,
+                               Session& session) {
+  check_output_file(output);
+  FitSensorResult result = fit_sensor(job, session);
+  write_file(output, result.sensor_toml);
   return result;
 }
 

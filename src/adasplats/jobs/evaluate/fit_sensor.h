@@ -39,6 +39,10 @@ struct FitSensorResult : UnitFit {
 /// the readers.
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
 
+/// Fits a sensor and writes its file (TOML). Errors: also those of writing.
+FitSensorResult run_fit_sensor(const FitSensorJob& job, const std::filesystem::path& output,
+                               Session& session);
+
 /// Scans that a calibrated sensor was not fitted to.
 struct EvaluateUnitJob {
   UnitScansJob scans;

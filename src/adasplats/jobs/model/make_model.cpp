@@ -11,9 +11,9 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/base/engines.h"
-#include "adasplats/jobs/model/calibrate_on_device.h"
-#include "adasplats/jobs/model/calibration_json.h"
-#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/calibrate/calibration.h"
+#include "adasplats/jobs/model/unused_settings.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
@@ -186,6 +186,19 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
+}
+
+ModelResult run_model(const ModelJob& job, const std::filesystem::path& output, Session& session) {
+  check_output_file(output);
+  const Stopwatch total;
+  auto [model, result] = make_model(job, session);
+  session.progress.begin_step("save", 0);
+  const Stopwatch step;
+  save_model(output, model);
+  session.progress.end_step();
+  result.steps.push_back({"save", step.seconds()});
+  result.seconds = total.seconds();
+  return std::move(result);
 }
 
 std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,

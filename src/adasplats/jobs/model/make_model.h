@@ -124,7 +124,10 @@ struct ModelResult {
 /// of load_cloud, PointClassifier and build_model.
 std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& session);
 
-/// Builds of points in memory. Errors: likewise.
+/// Makes a model of point files and saves it. Errors: also those of writing.
+ModelResult run_model(const ModelJob& job, const std::filesystem::path& output, Session& session);
+
+/// Builds of points in memory. Errors: those of build_model and PointClassifier.
 std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,
                                               Session& session);
 /// Builds of what `load` gives, without a copy; it is called again where a GPU fails.

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "adasplats/core/error.h"
+
 namespace adasplats {
 namespace {
 
@@ -71,6 +73,21 @@ List unused_settings(const MethodChoice& choice) {
     }
   });
   return unused;
+}
+
+void check_label_use(const LabelUse& use, const PointCloud& cloud, const LabelScheme* scheme,
+                     ProgressSink& progress) {
+  if (cloud.classes.empty() && !use.labels.empty()) {
+    throw Error(ErrorKind::usage, "`labels` " + use.labels +
+                                      ": the points have no labels; leave it out (`label_field` "
+                                      "names their column)");
+  }
+  const std::string why = why_nothing_is_removed(cloud, scheme, use.removal);
+  if (why.empty()) return;
+  if (use.removal_is_asked) {
+    throw Error(ErrorKind::usage, "`remove` " + std::string(name_of(use.removal)) + ": " + why);
+  }
+  if (!cloud.classes.empty()) progress.warn(why + "; nothing is removed");
 }
 
 }  // namespace adasplats

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/core/progress.h"
 #include "adasplats/splats/method_options.h"
 
 namespace adasplats {
@@ -34,5 +36,17 @@ std::vector<UnusedSetting> all_unused(const Settings& settings, const std::strin
 /// Which settings of making a model the method and the other settings leave without effect. A user
 /// who has given one of them believes something else.
 std::vector<UnusedSetting> unused_settings(const MethodChoice& choice);
+
+/// What the user says about the labels of points that a model or a mesh is made of.
+struct LabelUse {
+  std::string labels;  ///< --labels as given; may be empty
+  DynamicRemoval removal = DynamicRemoval::movable;
+  bool removal_is_asked = false;  ///< else `removal` is the default
+};
+
+/// Labels and removals without any effect: errors (usage) where they are asked for, else a warning
+/// where the points have labels.
+void check_label_use(const LabelUse& use, const PointCloud& cloud, const LabelScheme* scheme,
+                     ProgressSink& progress);
 
 }  // namespace adasplats

@@ -21,16 +21,16 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The content of a folder that was made of the same. Errors: cannot_create.
-Json same_content(const fs::path& folder, const std::string& wanted) {
+/// The content of a folder, which must match `wanted`. Errors: cannot_create.
+Json require_same_content(const fs::path& folder, const std::string& wanted) {
   Json there = Json::parse(read_file(folder / kContentFile), nullptr, false);
   if (!there.is_object())
     throw Error(ErrorKind::cannot_create,
                 folder.string() + ": " + std::string(kContentFile) + " is damaged");
   const std::string differs = difference_of_runs(there, Json::parse(wanted));
   if (!differs.empty())
-    throw Error(ErrorKind::cannot_create,
-                folder.string() + ": planned by another run: " + differs + "; plan anew");
+    throw Error(ErrorKind::cannot_create, folder.string() + ": planned with other settings: " +
+                                              differs + "; run `plan` again with these");
   return there;
 }
 
@@ -55,7 +55,7 @@ void FolderTask::open_unfinished(const std::string& wanted) {
     if (flock(lock_, LOCK_SH | LOCK_NB) != 0)
       throw Error(ErrorKind::cannot_create,
                   folder_.string() + ": another process is writing it (" + path_.string() + ")");
-    same_content(path_, wanted);
+    require_same_content(path_, wanted);
     if (auto journal = read_journal(path_)) recorded_ = std::move(journal->files);
   } catch (...) {
     close(lock_);
@@ -66,10 +66,10 @@ void FolderTask::open_unfinished(const std::string& wanted) {
 void FolderTask::open_finished(const std::string& wanted) {
   std::error_code none;
   if (!fs::exists(folder_ / kContentFile, none))
-    throw Error(ErrorKind::no_input, folder_.string() + ": no tasks are planned (`plan` does it)");
+    throw Error(ErrorKind::no_input, folder_.string() + ": no tasks are planned; run `plan` first");
   path_ = folder_;
   is_finished_ = true;
-  const Json content = same_content(path_, wanted);
+  const Json content = require_same_content(path_, wanted);
   const auto outputs = content.find("outputs");
   if (outputs != content.end() && outputs->is_object())
     for (const auto& [file, digest] : outputs->items())
@@ -97,7 +97,7 @@ void FolderTask::require(std::span<const std::string> files) const {
     if (found == recorded_.end() || !fs::is_regular_file(path_ / file, none) ||
         sha256_of_file(path_ / file) != found->second)
       throw Error(ErrorKind::data,
-                  (path_ / file).string() + ": not as it was written; plan again (`plan`)");
+                  (path_ / file).string() + ": the file has changed; run `plan` again");
   }
 }
 

@@ -127,7 +127,7 @@ TEST(FolderTask, WhatTheRunRecordedIsChecked) {
   EXPECT_FALSE(task.is_recorded("other"));
   expect_error(ErrorKind::data, {"other", "`plan`"}, [&] { task.require(other); });
   folder.write(".o.unfinished/known", "abd");
-  expect_error(ErrorKind::data, {"known", "not as it was written"}, [&] { task.require(known); });
+  expect_error(ErrorKind::data, {"known", "has changed"}, [&] { task.require(known); });
   fs::remove(task.path() / "known");
   expect_error(ErrorKind::data, {"known"}, [&] { task.require(known); });
 }

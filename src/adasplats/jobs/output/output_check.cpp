@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_same(const fs::path& a, const fs::path& b) {
-  std::error_code problem;  // what is not there is nothing's same
+  std::error_code problem;  // missing paths are not equivalent to anything
   return fs::equivalent(a, b, problem) && !problem;
 }
 
-/// The path without links, as far as it is there.
+/// The path without links, as far as it exists.
 fs::path real_path(const fs::path& path) {
   std::error_code problem;
   fs::path real = fs::weakly_canonical(fs::absolute(path, problem), problem);
@@ -27,14 +27,14 @@ fs::path real_path(const fs::path& path) {
   return real.has_filename() ? real : real.parent_path();
 }
 
-bool lies_in(const fs::path& path, const fs::path& folder) {
+bool is_inside(const fs::path& path, const fs::path& folder) {
   const fs::path inner = real_path(path), outer = real_path(folder);
   const auto differ = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
   return differ.first == outer.end();
 }
 
-/// Whether `file` would count in a folder that is read for its files: as one of them, or as
-/// something else that makes the folder unclear.
+/// Whether `file` would be one of the files that are read in a folder, or make the folder
+/// ambiguous.
 bool counts_in(const fs::path& folder, const fs::path& file) {
   const fs::path parent = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!is_same(folder, parent) || !has_extension_of_a_kind(file)) return false;
@@ -42,7 +42,7 @@ bool counts_in(const fs::path& folder, const fs::path& file) {
     return std::ranges::any_of(cloud_inputs(folder, SensorScans::taken),
                                [](const CloudInput& input) { return !input.is_sequence; });
   } catch (const Error&) {
-    return false;  // whoever reads the folder says what is wrong with it
+    return false;  // reported when the folder is read
   }
 }
 
@@ -54,10 +54,10 @@ void require_ending(const fs::path& file, std::span<const std::string> endings) 
   std::string possible;
   for (std::size_t i = 0; i < endings.size(); ++i) {
     possible += i == 0 ? "" : i + 1 < endings.size() ? ", " : " or ";
-    possible += endings[i].empty() ? "have no ending (a folder)" : endings[i];
+    possible += endings[i].empty() ? "nothing (a folder)" : endings[i];
   }
-  throw Error(ErrorKind::usage, file.string() + ": its name must end with " + possible +
-                                    ", as that is what is written");
+  throw Error(ErrorKind::usage,
+              file.string() + ": the output format needs a name that ends with " + possible);
 }
 
 void require_ending(const fs::path& file, const std::string& ending) {
@@ -67,24 +67,26 @@ void require_ending(const fs::path& file, const std::string& ending) {
 void require_no_input(const fs::path& file, std::span<const fs::path> inputs) {
   for (const fs::path& input : inputs) {
     if (is_same(file, input))
-      throw Error(ErrorKind::usage,
-                  file.string() + ": is an input, too (" + input.string() + "); write elsewhere");
+      throw Error(ErrorKind::usage, file.string() + ": the output is also an input (" +
+                                        input.string() + "); choose another name");
     std::error_code ignored;
     if (fs::is_directory(input, ignored) && counts_in(input, file))
-      throw Error(ErrorKind::usage, file.string() + ": would count among the files of the input " +
-                                        input.string() + " from then on; write elsewhere");
+      throw Error(ErrorKind::usage, file.string() +
+                                        ": would become one of the files of the input " +
+                                        input.string() + "; choose another folder");
   }
 }
 
 void require_folder_apart(const fs::path& folder, std::span<const fs::path> inputs) {
   for (const fs::path& input : inputs) {
     std::error_code ignored;
-    if (lies_in(input, folder) || is_same(input, folder))
-      throw Error(ErrorKind::usage, folder.string() + ": is or holds the input " + input.string() +
-                                        "; write elsewhere");
-    if (fs::is_directory(input, ignored) && lies_in(folder, input))
-      throw Error(ErrorKind::usage,
-                  folder.string() + ": lies in the input " + input.string() + "; write elsewhere");
+    if (is_inside(input, folder) || is_same(input, folder))
+      throw Error(ErrorKind::usage, folder.string() +
+                                        ": the output folder is or contains the input " +
+                                        input.string() + "; choose another folder");
+    if (fs::is_directory(input, ignored) && is_inside(folder, input))
+      throw Error(ErrorKind::usage, folder.string() + ": the output folder is inside the input " +
+                                        input.string() + "; choose another folder");
   }
 }
 

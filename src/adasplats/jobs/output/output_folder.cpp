@@ -31,7 +31,7 @@ void check_parent(const fs::path& path) {
   const fs::path parent = parent_of(path);
   std::error_code failure;
   if (!fs::is_directory(parent, failure)) {
-    throw cannot_create(path, "cannot create: there is no folder " + parent.string());
+    throw cannot_create(path, "cannot create: no such folder: " + parent.string());
   }
   if (access(parent.c_str(), W_OK | X_OK) != 0) {
     throw system_error(ErrorKind::cannot_create, path, "cannot create", errno);
@@ -61,12 +61,12 @@ void check_replaceable(const fs::path& folder, bool overwrite, const std::string
   if (!fs::is_directory(status)) throw cannot_create(folder, "exists and is not a folder");
   if (fs::is_empty(folder, failure)) return;
   if (!overwrite) {
-    throw cannot_create(folder, "the folder is not empty; `overwrite` replaces earlier output");
+    throw cannot_create(folder, "the folder is not empty (`overwrite` replaces earlier output)");
   }
-  // Replacing removes all that is there: it must be what this command makes again.
+  // Replacing removes everything in the folder, so it must be output of this command.
   if (writer_of(folder) != command) {
-    throw cannot_create(folder, std::string("not replaced: no ") + kContentFile +
-                                    " in it says that 'adasplats " + command + "' wrote it");
+    throw cannot_create(folder, std::string("not replaced: it has no ") + kContentFile +
+                                    " by 'adasplats " + command + "'");
   }
 }
 
@@ -84,7 +84,7 @@ void check_output_file(const fs::path& file) {
 fs::path checked_output_folder(const fs::path& folder, bool overwrite, const std::string& command) {
   fs::path named = without_slash(folder);
   if (named.empty() || named.filename() == "." || named.filename() == "..") {
-    throw cannot_create(folder, "give the folder a name of its own");
+    throw cannot_create(folder, "the folder needs a name; . and .. are not possible");
   }
   check_parent(named);
   check_replaceable(named, overwrite, command);
@@ -109,7 +109,7 @@ std::string content_text(const std::string& command, const Json& content) {
   json["version"] = ADASPLATS_VERSION;
   json["command"] = command;
   json.update(content);
-  // Names of files need not be UTF-8; JSON must be.
+  // File names need not be UTF-8; JSON must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -8,36 +8,36 @@
 
 namespace adasplats {
 
-/// Of an output folder: says what made it.
+/// The file of an output folder that describes how it was made.
 inline constexpr const char* kContentFile = "adasplats.json";
 
-/// Throws cannot_create where a file of that name could not be written: no such folder, no
-/// permission, a folder or a device in its place. To be called before long work.
+/// Throws cannot_create if a file of that name cannot be written: no such folder, no permission, a
+/// folder or a device of that name. To be called before long work.
 void check_output_file(const std::filesystem::path& file);
 
-/// `folder` without a trailing slash. Throws cannot_create where it must not be written: no such
-/// parent, or something is there that is not, with `overwrite`, earlier output of `command`.
+/// `folder` without a trailing slash. Throws cannot_create if it must not be written: no such
+/// parent, or it exists and is not earlier output of `command` that `overwrite` may replace.
 std::filesystem::path checked_output_folder(const std::filesystem::path& folder, bool overwrite,
                                             const std::string& command);
 
-/// Creates `partial`, where `folder` is filled, and locks it against other processes; gives the
-/// descriptor that holds the lock. Errors: cannot_create.
+/// Creates `partial`, in which `folder` is filled, and locks it against other processes. Returns
+/// the descriptor that holds the lock. Errors: cannot_create.
 int create_and_lock(const std::filesystem::path& partial, const std::filesystem::path& folder);
 
 /// The text of adasplats.json: program, version, command and `content`.
 std::string content_text(const std::string& command, const nlohmann::ordered_json& content);
 
-/// Gives the whole folder `partial` the name `folder`; an older one of that name is removed.
+/// Renames the complete folder `partial` to `folder`, and removes an older folder of that name.
 void put_in_place(const std::filesystem::path& partial, const std::filesystem::path& folder);
 
-/// An output folder that appears whole or not at all: filled beside its place under the name
-/// ".NAME.partial" and renamed by commit(). Without commit() what was written is removed.
+/// An output folder that appears complete or not at all: filled under the name ".NAME.partial" in
+/// the same parent, and renamed by commit(). Without commit() it is removed.
 class OutputFolder {
  public:
-  /// `content` goes into the file adasplats.json of the folder, with the program's version and the
-  /// command; it distinguishes output of ours from other folders. A folder that is not empty is
-  /// refused; with `overwrite` one that the same command wrote is replaced. A folder that another
-  /// process fills now is refused; what a killed process left is removed. Errors: cannot_create.
+  /// `content` is written to the folder's adasplats.json, with the program's version and the
+  /// command; the file distinguishes our output from other folders. With `overwrite` a folder of
+  /// the same command is replaced; what a killed process left is removed. Errors: cannot_create
+  /// (the folder is not empty; another process is filling it).
   OutputFolder(const std::filesystem::path& folder, bool overwrite, const std::string& command,
                const nlohmann::ordered_json& content);
   ~OutputFolder();

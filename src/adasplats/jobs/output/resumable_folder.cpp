@@ -25,12 +25,11 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Error cannot_resume(const fs::path& unfinished, const std::string& reason) {
-  return Error(ErrorKind::cannot_create, unfinished.string() +
-                                             ": cannot go on with what is there: " + reason +
-                                             "; remove it to start anew");
+  return Error(ErrorKind::cannot_create, unfinished.string() + ": cannot be resumed: " + reason +
+                                             "; remove it to start again");
 }
 
-/// Temporary files that a killed process left.
+/// Whether a killed process left a temporary file.
 bool is_temporary(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.starts_with(".adasplats-") && name.ends_with(".tmp");
@@ -57,7 +56,7 @@ ResumableFolder::ResumableFolder(const fs::path& folder, bool overwrite, std::st
       content_(std::make_unique<Json>(content)),
       lock_(create_and_lock(unfinished_, folder_)) {
   try {
-    take_over();
+    resume();
     const fs::path journal = unfinished_ / kJournalFile;
     journal_ = open(journal.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (journal_ < 0) throw system_error(ErrorKind::cannot_create, journal, "cannot create", errno);
@@ -67,7 +66,7 @@ ResumableFolder::ResumableFolder(const fs::path& folder, bool overwrite, std::st
   }
 }
 
-void ResumableFolder::take_over() {
+void ResumableFolder::resume() {
   remove_temporaries(unfinished_);
   const fs::path file = unfinished_ / kContentFile;
   const std::string wanted = content_text(command_, *content_);
@@ -81,11 +80,12 @@ void ResumableFolder::take_over() {
   if (!there.is_object())
     throw cannot_resume(unfinished_, std::string(kContentFile) + " is damaged");
   const std::string differs = difference_of_runs(there, Json::parse(wanted));
-  if (!differs.empty()) throw cannot_resume(unfinished_, "it is of another run: " + differs);
-  take_over_journal();
+  if (!differs.empty())
+    throw cannot_resume(unfinished_, "it was begun with other inputs or settings: " + differs);
+  resume_journal();
 }
 
-void ResumableFolder::take_over_journal() {
+void ResumableFolder::resume_journal() {
   std::optional<Journal> journal;
   try {
     journal = read_journal(unfinished_);
@@ -95,7 +95,7 @@ void ResumableFolder::take_over_journal() {
   }
   if (!journal) return;
   recorded_ = std::move(journal->files);
-  if (journal->is_torn) write_file(unfinished_ / kJournalFile, journal->whole_lines);
+  if (journal->is_torn) write_file(unfinished_ / kJournalFile, journal->complete_lines);
 }
 
 ResumableFolder::~ResumableFolder() {
@@ -144,14 +144,14 @@ bool ResumableFolder::take(const std::string& file) {
   return true;
 }
 
-/// Of all files that are recorded, and what killed tasks left.
+/// Removes the notes of all recorded files and the temporary files of killed tasks.
 void ResumableFolder::remove_notes() {
   for (const auto& [file, digest] : recorded_) fs::remove(note_of(unfinished_ / file));
   remove_temporaries(unfinished_);
 }
 
-void ResumableFolder::commit(const Json& summary, std::span<const std::string> aids) {
-  for (const std::string& aid : aids) fs::remove(unfinished_ / aid);
+void ResumableFolder::commit(const Json& summary, std::span<const std::string> unneeded) {
+  for (const std::string& file : unneeded) fs::remove(unfinished_ / file);
   remove_notes();
   Json content = *content_;
   content.update(summary);
@@ -166,7 +166,7 @@ void ResumableFolder::commit(const Json& summary, std::span<const std::string> a
   }
   content["outputs"] = outputs;
   write_file(unfinished_ / kContentFile, content_text(command_, content));
-  // One call for all files: each by itself would wait for the disk as often as there are files.
+  // One call for all files: flushing each would wait for the disk once per file.
   if (syncfs(lock_) != 0)
     throw system_error(ErrorKind::io, unfinished_, "cannot be flushed to disk", errno);
   close(journal_);

@@ -13,50 +13,50 @@
 
 namespace adasplats {
 
-/// An output folder that appears whole or not at all, whose making can be interrupted at any moment
-/// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
-/// where a journal says which files are whole, with their SHA-256; commit() renames it. So files in
-/// it need neither temporary names nor to be flushed one by one. Tasks of other processes can make
-/// files in it meanwhile (FolderTask), while none has it as a ResumableFolder.
+/// An output folder that appears complete or not at all. A run that fills it can be interrupted at
+/// any moment and resumed. It is filled under the name ".NAME.unfinished" in the same parent; a
+/// journal lists the complete files with their SHA-256; commit() renames the folder. So its files
+/// need no temporary names and are not flushed one by one. While no process has it open as a
+/// ResumableFolder, tasks of other processes can add files (FolderTask).
 class ResumableFolder {
  public:
-  /// `content` says what the folder is made of and how: all that its files depend on. It goes into
-  /// adasplats.json as OutputFolder's does, and the same for `overwrite`. What an earlier process
-  /// left unfinished is taken over if it was made of the same.
-  /// Errors: cannot_create (another process fills the folder; the unfinished one is of another run,
-  /// with the key that differs, or is damaged), io.
+  /// `content`: inputs and settings, everything that the files depend on. It is written to
+  /// adasplats.json; this and `overwrite` are as for OutputFolder. An unfinished folder of an
+  /// earlier process with the same content is resumed. Errors: cannot_create (another process is
+  /// filling the folder; the unfinished one has other content, with the key that differs, or is
+  /// damaged), io.
   ResumableFolder(const std::filesystem::path& folder, bool overwrite, std::string command,
                   const nlohmann::ordered_json& content);
-  /// Leaves what was recorded for another process; nothing, if nothing was.
+  /// Leaves recorded files for another process; if there are none, removes the folder.
   ~ResumableFolder();
   ResumableFolder(const ResumableFolder&) = delete;
   ResumableFolder& operator=(const ResumableFolder&) = delete;
 
   /// Where to write to.
   const std::filesystem::path& path() const { return unfinished_; }
-  /// Whether files, named relative to path(), were recorded and are still as they were then.
+  /// Whether files, named relative to path(), were recorded and are unchanged since.
   bool has(std::span<const std::string> files) const;
   bool has(const std::string& file) const { return has(std::span(&file, 1)); }
-  /// Notes that files are whole, one after another; to be called when they are on disk.
+  /// Records complete files, in order; to be called when they are on disk.
   void record(std::span<const std::string> files);
   void record(const std::string& file) { record(std::span(&file, 1)); }
-  /// The same where their SHA-256 is known.
+  /// The same with known SHA-256.
   void record(std::span<const FileDigest> files);
-  /// Records a file that a task made (FolderTask::record); false where none did, or it is not as
-  /// the task noted.
+  /// Records a file that a task made (FolderTask::record). Returns false if no task made it or it
+  /// has changed since.
   bool take(const std::string& file);
-  /// Leaves nothing for another process: what was made is of no use.
+  /// Leaves nothing for another process.
   void discard() { recorded_.clear(); }
-  /// SHA-256 of what was recorded, by name.
+  /// SHA-256 of the recorded files, by name.
   const std::map<std::string, std::string>& recorded() const { return recorded_; }
 
-  /// Removes the files `aids`, adds `summary` and the SHA-256 of every file, as "outputs", to
-  /// adasplats.json, flushes all of it to the disk and gives the folder its name.
-  void commit(const nlohmann::ordered_json& summary, std::span<const std::string> aids);
+  /// Removes the files `unneeded`, adds `summary` and "outputs", the SHA-256 of every file, to
+  /// adasplats.json, flushes everything to the disk and renames the folder.
+  void commit(const nlohmann::ordered_json& summary, std::span<const std::string> unneeded);
 
  private:
-  void take_over();
-  void take_over_journal();
+  void resume();
+  void resume_journal();
   void remove_notes();
 
   std::filesystem::path folder_;

@@ -26,8 +26,8 @@ bool is_digest_line(const std::string& line) {
 std::string shown(const Json* value) {
   if (value == nullptr) return "nothing";
   std::string text = value->dump(-1, ' ', false, Json::error_handler_t::replace);
-  constexpr std::size_t kLongest = 60;
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  constexpr std::size_t kMaxLength = 60;
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
 const Json* find(const Json& object, const std::string& key) {
@@ -35,16 +35,14 @@ const Json* find(const Json& object, const std::string& key) {
   return found != object.end() ? &*found : nullptr;
 }
 
-/// The first key in which two objects differ, with both values; empty where they are equal.
-/// `there` may have more keys at the top.
-std::string difference(const Json& there, const Json& here, bool more_allowed) {
+std::string difference(const Json& earlier, const Json& now, bool more_allowed) {
   std::set<std::string> keys;
-  for (const auto& [key, value] : here.items()) keys.insert(key);
+  for (const auto& [key, value] : now.items()) keys.insert(key);
   if (!more_allowed)
-    for (const auto& [key, value] : there.items()) keys.insert(key);
+    for (const auto& [key, value] : earlier.items()) keys.insert(key);
   for (const std::string& key : keys) {
-    const Json* const a = find(there, key);
-    const Json* const b = find(here, key);
+    const Json* const a = find(earlier, key);
+    const Json* const b = find(now, key);
     if (a != nullptr && b != nullptr && *a == *b) continue;
     if (a != nullptr && b != nullptr && a->is_object() && b->is_object())
       return key + "." + difference(*a, *b, false);
@@ -59,19 +57,19 @@ fs::path unfinished_of(const fs::path& folder) {
   return folder.parent_path() / ("." + folder.filename().string() + ".unfinished");
 }
 
-std::string difference_of_runs(const Json& there, const Json& here) {
-  return difference(there, here, true);
+std::string difference_of_runs(const Json& earlier, const Json& now) {
+  return difference(earlier, now, true);
 }
 
 std::optional<Journal> read_journal(const fs::path& unfinished) {
   const fs::path file = unfinished / kJournalFile;
   if (!fs::exists(file)) return std::nullopt;
   Journal journal;
-  std::string& text = journal.whole_lines;
+  std::string& text = journal.complete_lines;
   text = read_file(file);
-  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  journal.is_torn = whole != text.size();
-  text.resize(whole);
+  const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  journal.is_torn = complete != text.size();
+  text.resize(complete);
   std::size_t line_number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);

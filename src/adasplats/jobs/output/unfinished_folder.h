@@ -14,12 +14,12 @@
 
 namespace adasplats {
 
-// What ResumableFolder and FolderTask know alike of the folder that an output is made in.
+// The unfinished folder of an output, as ResumableFolder and FolderTask share it.
 
-/// Of an unfinished folder: lines "SHA-256  NAME", as sha256sum writes and checks them.
+/// The journal of an unfinished folder: lines "SHA-256  NAME", as sha256sum writes and checks them.
 inline constexpr const char* kJournalFile = "journal.sha256";
 
-/// Where `folder` is filled: ".NAME.unfinished" beside it.
+/// The folder in which `folder` is filled: ".NAME.unfinished" in the same parent.
 std::filesystem::path unfinished_of(const std::filesystem::path& folder);
 
 /// SHA-256 by file.
@@ -27,28 +27,28 @@ using FileDigests = std::map<std::string, std::string>;
 
 struct Journal {
   FileDigests files;
-  std::string whole_lines;  ///< its text without a last line that was cut short
-  bool is_torn = false;     ///< power may fail within a line
+  std::string complete_lines;  ///< its text without an incomplete last line
+  bool is_torn = false;        ///< the last line is incomplete (the machine may have stopped)
 };
 
-/// Nothing where there is none. Errors: data (line N is damaged), io.
+/// Nothing if there is no journal. Errors: data (line N is damaged), io.
 std::optional<Journal> read_journal(const std::filesystem::path& unfinished);
 
-/// The first key in which two objects differ, with both values; empty where they are equal.
-/// `there` may have more keys at the top.
-std::string difference_of_runs(const nlohmann::ordered_json& there,
-                               const nlohmann::ordered_json& here);
+/// The first key in which two contents differ, with both values; empty if they are equal. `earlier`
+/// may have additional keys at the top level.
+std::string difference_of_runs(const nlohmann::ordered_json& earlier,
+                               const nlohmann::ordered_json& now);
 
-/// What a task notes of a file that it has made, beside the file: "NAME.sha256" with one line, so
-/// that tasks of many machines need not write into one journal.
+/// The note of a task about a file that it has made: "NAME.sha256" next to the file, with one line.
+/// So tasks of many machines need not share a journal.
 std::filesystem::path note_of(const std::filesystem::path& file);
 void write_note(const std::filesystem::path& file, const std::string& sha256);
-/// The SHA-256 that a note says; nothing where there is none, or it is damaged.
+/// The SHA-256 in a note; nothing if there is no note or it is damaged.
 std::optional<std::string> read_note(const std::filesystem::path& file);
 
-/// The same for many files at once, in a file of its own: a line "SHA-256  NAME" each, in order.
+/// The same for many files, in one file: a line "SHA-256  NAME" for each, in order.
 void write_digests(const std::filesystem::path& file, std::span<const FileDigest> digests);
-/// Nothing where there is none, or it is damaged.
+/// Nothing if there is no such file or it is damaged.
 std::optional<std::vector<FileDigest>> read_digests(const std::filesystem::path& file);
 
 }  // namespace adasplats

@@ -75,8 +75,8 @@ Image draw_difference(const ModelScene& first, const ModelScene& second, const C
 
 void require_overlap(const ModelScene& first, const std::filesystem::path& first_file,
                      const ModelScene& second, const std::filesystem::path& second_file) {
-  const auto [first_low, first_high] = world_box_of(first.place());
-  const auto [second_low, second_high] = world_box_of(second.place());
+  const auto [first_low, first_high] = world_box_of(first.model());
+  const auto [second_low, second_high] = world_box_of(second.model());
   const Vec3d apart = max(first_low - second_high, second_low - first_high);
   if (std::max({apart.x, apart.y, apart.z}) <= 0) return;
   throw Error(ErrorKind::data,

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/image/point_image.h"
 
 namespace adasplats {
 
@@ -80,5 +83,17 @@ class Panel {
   ImageColor color_ = ImageColor::shading;
   std::optional<ValueRange> range_;  ///< in the panel's own coordinates
 };
+
+/// A black picture.
+Image blank_image(int width, int height);
+
+/// Copies `part`, which must fit, into `picture` with its top left corner at (left, top).
+void paste(Image& picture, const Image& part, int left, int top);
+
+/// The colours of a picture by class and what they stand for, the commonest first, at most 14, each
+/// of at least one in a thousand; where the scene has no classes, its groups.
+using ClassLegend = std::vector<std::pair<Rgb, std::string>>;
+ClassLegend legend_of(const ImageScene& scene);
+ClassLegend legend_of(std::span<const std::uint16_t> classes, const LabelScheme* labels);
 
 }  // namespace adasplats

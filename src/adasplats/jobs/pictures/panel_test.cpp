@@ -7,8 +7,7 @@
 #include <fstream>
 
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/jobs/pictures/panel_legend.h"
-#include "adasplats/jobs/session/own_session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 namespace {

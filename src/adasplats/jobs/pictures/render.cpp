@@ -17,11 +17,10 @@
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_folder.h"
-#include "adasplats/jobs/pictures/camera_paths.h"
 #include "adasplats/jobs/pictures/difference.h"
 #include "adasplats/jobs/pictures/film_writer.h"
-#include "adasplats/jobs/pictures/mosaic.h"
 #include "adasplats/jobs/pictures/panel.h"
+#include "adasplats/jobs/scene/view_choice.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of the city that a model's path means; empty: none.
+/// The city that the path of a model refers to; empty: none.
 fs::path city_folder(const fs::path& model) {
   if (is_city(model)) return model;
   if (model.extension() != ".toml" || !fs::exists(model)) return {};
@@ -47,7 +47,7 @@ SeenFrom seen_from(const ScanMotion& scan, double reach_m) {
   return seen;
 }
 
-/// What the splats of a city carry. Tiles must carry the same things.
+/// The attributes of a city's splats, the same for all tiles.
 class SplatValues {
  public:
   explicit SplatValues(const SplatModel& some_tile)
@@ -61,8 +61,8 @@ class SplatValues {
   void fill(const SplatModel& model, PrimitiveValues* values, const Executor& executor) const {
     if (model.classes.empty() == has_classes_ || model.intensities.empty() == has_intensities_)
       throw Error(ErrorKind::data,
-                  "the tiles of the city carry different things: some have classes or intensities, "
-                  "others have not");
+                  "the tiles of the city have different attributes: only some have classes or "
+                  "intensities");
     executor.for_chunks(model.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         values[i] = {
@@ -76,7 +76,7 @@ class SplatValues {
   bool has_classes_, has_intensities_;
 };
 
-/// What objects carry behind the splats.
+/// The attributes of objects, which follow those of the splats.
 struct ObjectValues {
   std::vector<PrimitiveValues> values;
   bool has_classes = false, has_instances = false, has_intensities = false;
@@ -96,11 +96,11 @@ struct ObjectValues {
   }
 };
 
-/// Tiles that can be cast in.
+/// Tiles that rays are cast into.
 class CityTiles : public TileHolder {
  public:
   virtual const SceneCaster& caster() const = 0;
-  /// Of all primitives of the city; what those of tiles that are not there carry is not read.
+  /// Of all primitives of the city; the values in tiles that are not loaded are undefined.
   virtual std::span<const PrimitiveValues> values() const = 0;
 };
 
@@ -166,7 +166,7 @@ class GpuTiles final : public CityTiles {
  private:
   const SplatValues& carried_;
   std::unique_ptr<GpuCity> gpus_;
-  SparseArray<PrimitiveValues> numbers_;  ///< says how many there are, and is never written
+  SparseArray<PrimitiveValues> numbers_;  ///< only its size is used
 };
 
 /// The smallest tile with splats.
@@ -194,14 +194,15 @@ struct CityScene::Impl {
   std::optional<World> world;
   std::unique_ptr<CityTiles> tiles;
   std::shared_ptr<PrimitiveTable> table = std::make_shared<PrimitiveTable>();
-  std::unique_ptr<TileStream> stream;  ///< last: it ends before what it fills
+  std::unique_ptr<TileStream> stream;  ///< last, so that it ends before the members it fills
 
   Impl(const fs::path& model, const std::string& scheme, Session& session, std::size_t memory_bytes)
       : folder(city_folder(model)),
         city(load_city_manifest(folder)),
         common(load_model(folder / kCityCommonFile)),
         carried(smallest_tile(folder, city)) {
-    load_labels(scheme, session);
+    labels = scheme.empty() ? load_labels_of_model(common.label_scheme, session.progress)
+                            : load_label_scheme(scheme);
     if (model != folder) add_world(read_world_file(model));
     const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
       tiles = std::make_unique<GpuTiles>(city, carried, objects, session.device.gpu_numbers());
@@ -214,19 +215,6 @@ struct CityScene::Impl {
     table->response = common.response;
     stream = std::make_unique<TileStream>(folder, city, *tiles, memory_bytes,
                                           session.executor.threads());
-  }
-
-  void load_labels(const std::string& scheme, Session& session) {
-    if (!scheme.empty()) {
-      labels = load_label_scheme(scheme);
-    } else if (!common.label_scheme.empty()) {
-      try {
-        labels = load_label_scheme(common.label_scheme);
-      } catch (const Error& error) {
-        // The scheme only names and colours; geometry and class numbers are in the model.
-        session.progress.warn(std::string("labels of the model: ") + error.what());
-      }
-    }
   }
 
   void add_world(const WorldFile& file) {
@@ -278,7 +266,7 @@ std::pair<Vec3d, Vec3d> CityScene::middle_box() const {
 }
 
 std::size_t CityScene::prefetch(std::span<const ScanMotion> scans, double reach_m) const {
-  // As far ahead as TileStream looks.
+  // As far ahead as TileStream loads.
   std::vector<SeenFrom> seen;
   for (const ScanMotion& scan : scans.first(std::min(scans.size(), TileStream::kHorizon)))
     seen.push_back(seen_from(scan, reach_m));

@@ -14,18 +14,18 @@
 
 namespace adasplats {
 
-/// Whether scans can be simulated in a file or folder without all of it in memory: the folder of a
-/// city, or a world file (simulate/world/world_file.h) that names one.
+/// Whether tiles can be loaded on demand: the folder of a city, or a world file
+/// (simulate/world/world_file.h) with a city as its model.
 bool is_streamable(const std::filesystem::path& model);
 
-/// A city of which only the tiles near the sensor are in memory. Scans are those of the whole city
+/// A city with only the tiles near the sensor in memory. The scans are those of the complete city
 /// in memory (ModelScene), byte for byte.
 class CityScene final : public ScanScene {
  public:
-  /// `model`: is_streamable(). `labels` as load_label_scheme takes it names the classes; empty:
-  /// what the city says. `memory_bytes`: that tiles may take. Errors: those of load_city_manifest,
-  /// load_model, load_label_scheme and read_world_file; data (no splats); unavailable (a GPU that
-  /// was asked for cannot).
+  /// `model`: is_streamable(). `labels`: scheme of the classes, as for load_label_scheme; empty:
+  /// the city's. `memory_bytes`: maximum memory for tiles. Errors: those of load_city_manifest,
+  /// load_model, load_label_scheme and read_world_file; data (no splats); unavailable (a requested
+  /// GPU fails).
   CityScene(const std::filesystem::path& model, const std::string& labels, Session& session,
             std::size_t memory_bytes);
   ~CityScene() override;
@@ -41,7 +41,7 @@ class CityScene final : public ScanScene {
   std::pair<Vec3d, Vec3d> middle_box() const override;
   std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const override;
   const CityManifest& manifest() const;
-  /// What was done so far.
+  /// Tiles loaded so far.
   TileStreamCounts counts() const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 void require_effect(bool is_given, bool has_effect, const char* setting, const char* where) {
   if (is_given && !has_effect)
-    throw Error(ErrorKind::usage, std::string("`") + setting + "` is of use with " + where);
+    throw Error(ErrorKind::usage, std::string("`") + setting + "` has no effect without " + where);
 }
 
 void require_finite(const DriveOptions& drive) {
@@ -27,19 +27,20 @@ void require_finite(const DriveOptions& drive) {
            std::isfinite(place.z_m.value_or(0)) && std::isfinite(place.yaw_deg);
   for (const PathCorner& corner : drive.path)
     good = good && std::isfinite(corner.x_m) && std::isfinite(corner.y_m);
-  if (!good) throw Error(ErrorKind::usage, "`at` and `path` take finite numbers");
+  if (!good) throw Error(ErrorKind::usage, "the numbers of `at` and `path` must be finite");
 }
 
-/// The scans at poses that are given or made.
+/// The scans at these poses.
 std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
                                  const Trajectory& all, const Trajectory& motion) {
-  Trajectory taken;
-  for (std::size_t i = 0; i < all.size(); i += drive.every) taken.push_back(all[i]);
-  if (taken.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
-  const Trajectory poses = shifted(mounted(std::move(taken), drive.mount), drive.offset_m);
+  Trajectory chosen;
+  for (std::size_t i = 0; i < all.size(); i += drive.every) chosen.push_back(all[i]);
+  if (chosen.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
+  const Trajectory poses = shifted(mounted(std::move(chosen), drive.mount), drive.offset_m);
   if (!drive.rolling_shutter) return still_scans(poses);
   if (motion.size() < 2)
-    throw Error(ErrorKind::data, "a rolling shutter needs at least two poses to know the motion");
+    throw Error(ErrorKind::data,
+                "a rolling shutter needs at least two poses, which define the motion");
   return moving_scans(poses, mounted(motion, drive.mount), 1 / sensor.rotation_hz);
 }
 
@@ -49,23 +50,23 @@ void check_drive(const DriveOptions& drive) {
   check_settings(drive);
   const bool has_file = !drive.trajectory.empty(), has_path = !drive.path.empty();
   if (has_file + has_path + !drive.at.empty() != 1)
-    throw Error(ErrorKind::usage, "give `trajectory`, `at` or `path`, one of them");
+    throw Error(ErrorKind::usage, "give exactly one of `trajectory`, `at` or `path`");
   if (drive.rate_hz && drive.spacing_m)
-    throw Error(ErrorKind::usage, "`rate` and `spacing` cannot stand together");
+    throw Error(ErrorKind::usage, "give `rate` or `spacing`, not both");
   if (!drive.motion.empty() && !drive.rolling_shutter)
-    throw Error(ErrorKind::usage, "`motion` is of use with `rolling_shutter` alone");
+    throw Error(ErrorKind::usage, "`motion` has no effect without `rolling_shutter`");
   const bool is_recorded = has_file && is_recording(drive.trajectory);
-  require_effect(!drive.topic.empty(), is_recorded, "topic", "a recording as `trajectory` alone");
+  require_effect(!drive.topic.empty(), is_recorded, "topic", "a recording as `trajectory`");
   require_effect(!drive.poses_topic.empty(), is_recorded, "poses_topic",
-                 "a recording as `trajectory` alone");
-  require_effect(!drive.motion.empty(), has_file, "motion", "`trajectory` alone");
-  require_effect(drive.speed_mps.has_value(), has_path, "speed", "`path` alone");
-  require_effect(drive.height_m.has_value(), !has_file, "height", "`at` and `path` alone");
-  require_effect(drive.rate_hz.has_value(), drive.at.empty(), "rate", "`trajectory` and `path`");
+                 "a recording as `trajectory`");
+  require_effect(!drive.motion.empty(), has_file, "motion", "`trajectory`");
+  require_effect(drive.speed_mps.has_value(), has_path, "speed", "`path`");
+  require_effect(drive.height_m.has_value(), !has_file, "height", "`at` or `path`");
+  require_effect(drive.rate_hz.has_value(), drive.at.empty(), "rate", "`trajectory` or `path`");
   require_effect(drive.spacing_m.has_value(), drive.at.empty(), "spacing",
-                 "`trajectory` and `path`");
+                 "`trajectory` or `path`");
   require_effect(drive.rolling_shutter, drive.at.empty(), "rolling_shutter",
-                 "`trajectory` and `path`: at a place the sensor stands");
+                 "`trajectory` or `path`: with `at` the sensor is at rest");
   require_finite(drive);
 }
 
@@ -88,7 +89,7 @@ DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress) {
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
                                     ProgressSink& progress) {
   check_drive(drive);
-  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path without a model");
+  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path needs a model");
   DrivenPoses driven = driven_poses(drive, progress);
   Trajectory all = std::move(driven.poses);
   if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
@@ -101,14 +102,14 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
                                     ProgressSink& progress) {
   if (!drive.trajectory.empty()) return scans_along(drive, sensor, progress);
   check_drive(drive);
-  PathDrive how;
-  how.height_m = drive.height_m.value_or(kRoofHeight_m);
+  PathDrive path_drive;
+  path_drive.height_m = drive.height_m.value_or(kRoofHeight_m);
   if (!drive.at.empty())
-    return scans_at(drive, sensor, poses_at(scene, drive.at, how.height_m, executor), {});
-  how.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
-  how.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
-  how.spacing_m = drive.spacing_m;
-  const Trajectory poses = poses_on_path(scene, drive.path, how, executor);
+    return scans_at(drive, sensor, poses_at(scene, drive.at, path_drive.height_m, executor), {});
+  path_drive.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
+  path_drive.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
+  path_drive.spacing_m = drive.spacing_m;
+  const Trajectory poses = poses_on_path(scene, drive.path, path_drive, executor);
   return scans_at(drive, sensor, poses, poses);
 }
 

@@ -17,25 +17,24 @@
 
 namespace adasplats {
 
-/// Where a sensor drives: by `trajectory`, or without a recording by `at` or `path`.
+/// The poses of a sensor: from `trajectory`, or without a recording from `at` or `path`.
 struct DriveOptions {
   std::filesystem::path trajectory;  ///< pose file, sequence folder or recording
-  std::string topic, poses_topic;    ///< of a recording (trajectory_of_recording()); empty: found
-  std::vector<SensorPlace> at;       ///< places where it stands, one scan each
-  std::vector<PathCorner> path;      ///< along straight lines
-  std::optional<double> speed_mps;   ///< on a path; kTownSpeed_mps
-  std::optional<double> height_m;    ///< above the ground, of places and paths; kRoofHeight_m
-  RigidTransform mount;              ///< of the sensor in the frame of the poses
-  Vec3d offset_m;                    ///< in world axes
-  std::size_t every = 1;             ///< takes every n-th pose
-  std::optional<double> rate_hz;     ///< poses at that rate instead of those of the file or
-                                     ///< kUsualRate_hz of a path
-  std::optional<double> spacing_m;   ///< poses at that distance instead
-  bool rolling_shutter = false;      ///< the sensor moves during a scan
-  std::filesystem::path motion;      ///< how; empty: as `trajectory`
+  std::string topic, poses_topic;  ///< of a recording (trajectory_of_recording()); empty: automatic
+  std::vector<SensorPlace> at;     ///< positions of a sensor at rest, one scan each
+  std::vector<PathCorner> path;    ///< a polyline
+  std::optional<double> speed_mps;  ///< on a path; default kTownSpeed_mps
+  std::optional<double> height_m;  ///< above the ground, for `at` and `path`; default kRoofHeight_m
+  RigidTransform mount;            ///< of the sensor in the frame of the poses
+  Vec3d offset_m;                  ///< in world axes
+  std::size_t every = 1;           ///< use every n-th pose
+  std::optional<double> rate_hz;  ///< resample the poses of a file; on a path default kUsualRate_hz
+  std::optional<double> spacing_m;  ///< resample the poses by distance instead
+  bool rolling_shutter = false;     ///< the sensor moves during a scan
+  std::filesystem::path motion;     ///< poses of that motion; empty: those of `trajectory`
 };
 
-/// All but the trajectory, the places, the path, and the mount, which users give as MountSettings.
+/// Everything but the trajectory, `at`, the path, and the mount, which users give as MountSettings.
 template <class Visit>
 void visit_settings(DriveOptions& drive, Visit&& visit) {
   constexpr const char* kGroup = "Trajectory";
@@ -106,12 +105,12 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
         drive.motion);
 }
 
-/// Throws usage where there is not exactly one of trajectory, places and path, and where a setting
-/// has no effect or is out of range.
+/// Throws usage unless exactly one of `trajectory`, `at` and `path` is given, or if a setting has
+/// no effect or is out of range.
 void check_drive(const DriveOptions& drive);
 
-/// The poses of `trajectory`, and how the sensor moves between and around them: as `motion` says, a
-/// recording with all of its poses, else as the poses do. Errors: those of load_trajectory() and
+/// The poses of `trajectory`, and the motion between and around them: the poses of `motion`, else
+/// all poses of a recording, else the same poses. Errors: those of load_trajectory() and
 /// trajectory_of_recording().
 struct DrivenPoses {
   Trajectory poses, motion;
@@ -122,7 +121,7 @@ DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress);
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
                                     ProgressSink& progress);
 
-/// Likewise of a trajectory, places or a path in a model. Errors: likewise; data (no ground).
+/// The scans of a trajectory, or of `at` or `path` in a model. Errors: also data (no ground).
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
                                     const ModelScene& scene, const Executor& executor,
                                     ProgressSink& progress);

@@ -15,17 +15,18 @@ namespace adasplats {
 
 namespace {
 
-/// A world file that stands in a model's place.
-WorldFile place_with_objects(const std::filesystem::path& file, WorldFiles world_files) {
+/// Errors: usage (not accepted), config (without a model).
+WorldFile read_scene_file(const std::filesystem::path& file, WorldFiles world_files) {
   if (world_files == WorldFiles::refused)
     throw Error(
         ErrorKind::usage,
         file.string() +
-            ": a world file is for 'adasplats simulate' and 'adasplats view' alone; name the "
-            "model that it names");
+            ": only 'adasplats simulate' and 'adasplats view' accept a world file; use the model "
+            "that it names");
   WorldFile world = read_world_file(file);
   if (world.model.empty())
-    throw Error(ErrorKind::config, file.string() + ": names no model (model = \"street.ply\")");
+    throw Error(ErrorKind::config,
+                file.string() + ": has no model (add a line such as model = \"street.ply\")");
   return world;
 }
 
@@ -36,10 +37,10 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
     : executor_(session.executor) {
   require_input(file);
   std::optional<WorldFile> world_file;
-  if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
+  if (file.extension() == ".toml") world_file = read_scene_file(file, world_files);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  place_ = load_any_model_or_city(world_file ? world_file->model : file);
+  model_ = load_any_model_or_city(world_file ? world_file->model : file);
   prepare(file.string(), session);
   if (world_file) {
     add_objects([&](World& world) {
@@ -49,39 +50,30 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   session.progress.end_step();
 }
 
-ModelScene::ModelScene(AnyModel place, std::optional<LabelScheme> labels, Session& session)
-    : executor_(session.executor), place_(std::move(place)), labels_(std::move(labels)) {
+ModelScene::ModelScene(AnyModel model, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor), model_(std::move(model)), labels_(std::move(labels)) {
   prepare(splats() != nullptr ? "the model" : "the mesh", session);
   session.progress.end_step();
 }
 
-/// What every scene needs once its geometry is there.
 void ModelScene::prepare(const std::string& name, Session& session) {
   if (view().primitive_count() == 0)
-    throw Error(ErrorKind::data, name + ": no " + std::string(primitives_of(place_)));
-  const std::string& known = label_scheme_of(place_);
-  if (!labels_ && !known.empty()) {
-    try {
-      labels_ = load_label_scheme(known);
-    } catch (const Error& error) {
-      // The scheme only names and colours; geometry and class numbers are in the model.
-      session.progress.warn(std::string("labels of the model: ") + error.what());
-    }
-  }
+    throw Error(ErrorKind::data, name + ": no " + std::string(primitives_of(model_)));
+  if (!labels_) labels_ = load_labels_of_model(label_scheme_of(model_), session.progress);
   session.progress.begin_step("build the ray index", 0);
   make_engine(session);
-  attributes_ = place_attributes();
+  attributes_ = model_attributes();
 }
 
 void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
   world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin());
   fill(*world_);
-  attributes_ = world_->attributes(place_attributes());
+  attributes_ = world_->attributes(model_attributes());
   primitive_table_.reset();
 }
 
 void ModelScene::move_object(std::size_t object, Trajectory trajectory) {
-  if (!world_) throw std::logic_error("ModelScene: nothing was put into the place");
+  if (!world_) throw std::logic_error("ModelScene: no objects");
   world_->move_object(object, std::move(trajectory));
 }
 
@@ -100,7 +92,7 @@ float ModelScene::highest_intensity() const {
   return highest;
 }
 
-/// All of it is there.
+/// Everything is in memory.
 std::size_t ModelScene::prefetch(std::span<const ScanMotion> scans, double) const {
   return scans.size();
 }
@@ -117,10 +109,10 @@ void ModelScene::make_engine(Session& session) {
   if (!on_gpu) engine_ = make_cpu_scene_engine(view(), origin(), executor_);
 }
 
-PrimitiveAttributes ModelScene::place_attributes() const {
+PrimitiveAttributes ModelScene::model_attributes() const {
   PrimitiveAttributes attributes;
-  attributes.classes = classes_of(place_);
-  attributes.intensities = intensities_of(place_);
+  attributes.classes = classes_of(model_);
+  attributes.intensities = intensities_of(model_);
   attributes.view = view();
   if (const SplatModel* model = splats(); model != nullptr && !model->response.empty())
     attributes.response = &model->response;
@@ -130,7 +122,7 @@ PrimitiveAttributes ModelScene::place_attributes() const {
 ImageScene ModelScene::image_scene() const {
   ImageScene scene;
   scene.view = view();
-  scene.attributes = place_attributes();
+  scene.attributes = model_attributes();
   if (const SplatModel* model = splats()) scene.groups = model->groups;
   scene.labels = labels_ ? &*labels_ : nullptr;
   scene.origin = origin();
@@ -168,19 +160,19 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options,
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
-  if (const auto* mesh = std::get_if<MeshModel>(&place_))
+  if (const auto* mesh = std::get_if<MeshModel>(&model_))
     return adasplats::middle_box(mesh->mesh.vertices, origin());
   return adasplats::middle_box(disk_centers(), origin());
 }
 
 ShownPart ModelScene::shown_part() const {
-  if (const auto* mesh = std::get_if<MeshModel>(&place_))
+  if (const auto* mesh = std::get_if<MeshModel>(&model_))
     return adasplats::shown_part(mesh->mesh.vertices, origin());
   return adasplats::shown_part(disk_centers(), origin());
 }
 
 std::vector<Vec3f> ModelScene::disk_centers() const {
-  const auto& model = std::get<SplatModel>(place_);
+  const auto& model = std::get<SplatModel>(model_);
   std::vector<Vec3f> centers;
   centers.reserve(model.size());
   for (const Disk& disk : model.disks) centers.push_back(disk.center);

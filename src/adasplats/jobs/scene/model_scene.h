@@ -23,77 +23,73 @@
 
 namespace adasplats {
 
-/// Whether a world file (simulate/world/world_file.h) may stand in a model's place.
+/// Whether a world file (simulate/world/world_file.h) is accepted instead of a model.
 enum class WorldFiles : std::uint8_t { refused, taken };
 
-/// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
-/// the session's device. A world file: its place, and what was put there as `world`.
+/// A splat model or a triangle mesh, and what is needed to cast rays into it on the session's
+/// device. For a world file: its model, with its objects in world().
 class ModelScene final : public ScanScene {
  public:
-  /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
-  /// Errors: usage (a world file where they are refused, or that names no model).
+  /// `labels`: scheme of the classes, as for load_label_scheme; empty: the one in the model's file.
+  /// Errors: usage (a world file that is not accepted), config (a world file without a model).
   ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session,
              WorldFiles world_files = WorldFiles::refused);
-  /// A model in memory; `labels`: what its classes mean.
-  ModelScene(AnyModel place, std::optional<LabelScheme> labels, Session& session);
+  /// A model in memory; `labels`: the scheme of its classes.
+  ModelScene(AnyModel model, std::optional<LabelScheme> labels, Session& session);
   ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
   ModelScene& operator=(const ModelScene&) = delete;
 
-  /// Puts objects into the place, which has none yet; `fill` gets a world without any.
+  /// Adds objects to a scene without any; `fill` gets an empty world.
   void add_objects(FunctionRef<void(World&)> fill);
 
   /// Splats or triangles.
-  SceneView view() const { return view_of(place_); }
+  SceneView view() const { return view_of(model_); }
   /// World coordinates of the view's local origin, m.
-  Vec3d origin() const override { return origin_of(place_); }
-  const Crs& crs() const { return crs_of(place_); }
+  Vec3d origin() const override { return origin_of(model_); }
+  const Crs& crs() const { return crs_of(model_); }
   const Tracer& tracer() const { return engine_->tracer(); }
-  /// Of the place without its objects.
+  /// Casts rays into the model, without the objects.
   const SceneCaster& scan_caster() const override { return engine_->scan_caster(); }
-  /// Of the place and, behind it, its objects.
+  /// Of the model, followed by those of the objects.
   const PrimitiveAttributes& attributes() const { return attributes_; }
-  /// The same, made when it is first asked for. It is shared by all sensors in the scene.
+  /// The same, created on first use and shared by all sensors in the scene.
   std::shared_ptr<const PrimitiveTable> primitive_table() const override;
   float highest_intensity() const override;
   std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const override;
-  /// What was put into the place; null where nothing was.
   const World* world() const override { return world_ ? &*world_ : nullptr; }
-  /// Gives an object of the world other poses (World::move_object()). Not while it is cast.
+  /// Gives an object other poses (World::move_object()). Not while rays are cast.
   void move_object(std::size_t object, Trajectory trajectory);
-  const AnyModel& place() const { return place_; }
-  /// Null where it is a mesh.
-  const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
+  const AnyModel& model() const { return model_; }
+  /// Null if the model is a mesh.
+  const SplatModel* splats() const { return std::get_if<SplatModel>(&model_); }
   const Executor& executor() const { return executor_; }
   bool on_gpu() const { return gpu_ != nullptr; }
-  /// Null where it is on the CPU.
+  /// Null if the scene is on the CPU.
   const GpuScene* gpu() const { return gpu_; }
-  /// What the classes mean; null where that is not known.
   const LabelScheme* labels() const override { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
-  /// By class where most of the model has one with a colour, else by intensity, by the paper's
-  /// groups, by height: the first that it has.
+  /// The first that the model has: classes with a colour for most of it, intensities, the paper's
+  /// groups, heights.
   ImageColor default_color() const;
   /// A picture of image_scene().
   Image render(const Camera& camera, const ImageOptions& options) const;
-  /// The same with other values (one a primitive) in the place of intensities.
+  /// The same with other values (one a primitive) instead of intensities.
   Image render(const Camera& camera, const ImageOptions& options,
                std::span<const float> values) const;
-  /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
-  /// decide what a picture shows.
   std::pair<Vec3d, Vec3d> middle_box() const override;
-  /// What a picture of it should show.
+  /// The part that a picture of it should show.
   ShownPart shown_part() const;
 
  private:
   void prepare(const std::string& name, Session& session);
   void make_engine(Session& session);
   std::shared_ptr<ImageRenderer> renderer(const ImageOptions& options) const;
-  PrimitiveAttributes place_attributes() const;
+  PrimitiveAttributes model_attributes() const;
   std::vector<Vec3f> disk_centers() const;
 
   const Executor& executor_;
-  AnyModel place_;
+  AnyModel model_;
   std::optional<LabelScheme> labels_;
   std::unique_ptr<SceneEngine> engine_;
   const GpuScene* gpu_ = nullptr;                    ///< `engine_`, if it is on a GPU

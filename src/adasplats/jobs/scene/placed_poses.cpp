@@ -17,7 +17,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kPeriod_s = 0.1;  // as read_trajectory has it for poses without times
+constexpr double kPeriod_s = 0.1;  // as in read_trajectory for poses without times
 constexpr std::array<double, 4> kGroundRadii_m = {0.5, 1, 2, 4};
 constexpr int kGridSteps = 3;          // of rays from the middle to the radius: 29 in all
 constexpr int kGroundHits = 32;        // of a ray, from below: roofs are farther up
@@ -38,13 +38,13 @@ bool is_level(const SceneView& view, std::uint32_t primitive) {
   return std::abs(normal.z) >= kMinLevel * length(normal);
 }
 
-/// A level thing above a place of the grid.
+/// A hit on a level primitive.
 struct LevelHit {
   double z_m;  ///< world
   std::size_t ray;
 };
 
-/// Rays upwards from below the model, `radius_m` about a place; gives their number.
+/// Casts rays upwards from below the model, within `radius_m` of a position; returns their number.
 std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double radius_m,
                          const std::pair<Vec3d, Vec3d>& box, const Executor& executor,
                          std::vector<LevelHit>& found) {
@@ -70,7 +70,8 @@ std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double
   return rays.size();
 }
 
-/// The median of the lowest level that enough rays meet within `thickness_m`, each counted once.
+/// The median height of the lowest layer, `thickness_m` thick, that enough rays hit. A ray counts
+/// once.
 std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t min_rays,
                                    double thickness_m) {
   std::ranges::sort(hits, {}, &LevelHit::z_m);
@@ -86,7 +87,7 @@ std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t min_r
 }
 
 /// "12.50,-3.00".
-std::string place_text(double x_m, double y_m) {
+std::string xy_text(double x_m, double y_m) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), "%.2f,%.2f", x_m, y_m);
   return text.data();
@@ -96,18 +97,17 @@ double required_ground(const ModelScene& scene, double x_m, double y_m, const Ex
   if (const std::optional<double> z_m = ground_height(scene, x_m, y_m, executor)) return *z_m;
   const auto [low, high] = scene.middle_box();
   throw Error(ErrorKind::data,
-              "no ground at " + place_text(x_m, y_m) + ": within " +
+              "no ground at " + xy_text(x_m, y_m) + ": within " +
                   std::to_string(static_cast<int>(kGroundRadii_m.back())) +
-                  " m the model has nothing level that most rays from below meet; most of it lies "
-                  "between " +
-                  place_text(low.x, low.y) + " and " + place_text(high.x, high.y));
+                  " m the model has no level surface; most of the model is between " +
+                  xy_text(low.x, low.y) + " and " + xy_text(high.x, high.y));
 }
 
-RigidTransform level_pose(double yaw_rad, Vec3d place) {
-  return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), place};
+RigidTransform level_pose(double yaw_rad, Vec3d position) {
+  return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), position};
 }
 
-/// Straight lines, by the way along them.
+/// A polyline, parametrised by the distance along it.
 class PathLine {
  public:
   explicit PathLine(std::span<const PathCorner> corners) {
@@ -120,7 +120,7 @@ class PathLine {
       corners_.push_back(corner);
     }
     if (corners_.size() < 2)
-      throw Error(ErrorKind::usage, "`path` needs at least two corners that differ");
+      throw Error(ErrorKind::usage, "`path` needs at least two corners at different positions");
   }
 
   double length_m() const { return ways_m_.back(); }
@@ -135,11 +135,11 @@ class PathLine {
     return {a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m)};
   }
 
-  /// From a metre before to a metre behind: vehicles do not turn on the spot.
+  /// From a metre before to a metre after the position: vehicles do not turn on the spot.
   double yaw_rad(double way_m) const {
     constexpr double kTurn_m = 1;
     PathCorner back = at(way_m - kTurn_m), front = at(way_m + kTurn_m);
-    if (back.x_m == front.x_m && back.y_m == front.y_m) {  // at the tip of a way there and back
+    if (back.x_m == front.x_m && back.y_m == front.y_m) {  // where the path turns back
       back = at(way_m);
       front = at(way_m + kTurn_m / 2);
     }
@@ -159,24 +159,24 @@ std::optional<double> ground_height(const ModelScene& scene, double x_m, double 
   for (const double radius_m : kGroundRadii_m) {
     std::vector<LevelHit> hits;
     const std::size_t rays = cast_upwards(scene, x_m, y_m, radius_m, box, executor, hits);
-    const auto least =
+    const auto min_rays =
         static_cast<std::size_t>(std::ceil(kMinShareOfRays * static_cast<double>(rays)));
     // Streets rise by up to a fifth of the way.
     const double thickness_m = 0.2 + 2 * 0.2 * radius_m;
-    if (const auto z_m = lowest_level(std::move(hits), least, thickness_m)) return z_m;
+    if (const auto z_m = lowest_level(std::move(hits), min_rays, thickness_m)) return z_m;
   }
   return std::nullopt;
 }
 
-Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> places, double height_m,
-                    const Executor& executor) {
+Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> positions,
+                    double height_m, const Executor& executor) {
   Trajectory trajectory;
-  for (const SensorPlace& place : places) {
+  for (const SensorPlace& at : positions) {
     const double z_m =
-        place.z_m ? *place.z_m : required_ground(scene, place.x_m, place.y_m, executor) + height_m;
+        at.z_m ? *at.z_m : required_ground(scene, at.x_m, at.y_m, executor) + height_m;
     const double time_s = kPeriod_s * static_cast<double>(trajectory.size());
     trajectory.push_back(
-        {time_s, level_pose(place.yaw_deg * std::numbers::pi / 180, {place.x_m, place.y_m, z_m})});
+        {time_s, level_pose(at.yaw_deg * std::numbers::pi / 180, {at.x_m, at.y_m, z_m})});
   }
   return trajectory;
 }
@@ -185,7 +185,7 @@ Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> co
                          const PathDrive& drive, const Executor& executor) {
   const PathLine line(corners);
   const double step_m = drive.spacing_m ? *drive.spacing_m : drive.speed_mps / drive.rate_hz;
-  // The last pose may miss the last corner by rounding alone.
+  // Rounding must not lose a pose at the last corner.
   const double steps = std::floor(line.length_m() / step_m * (1 + 1e-12));
   if (!(steps < kMaxPoses))
     throw Error(ErrorKind::usage, "`path` would have more than ten million poses");
@@ -193,11 +193,11 @@ Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> co
   for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {
     executor.check_interruption();
     const double way_m = static_cast<double>(k) * step_m;
-    const PathCorner place = line.at(way_m);
-    const double ground_m = required_ground(scene, place.x_m, place.y_m, executor);
+    const PathCorner at = line.at(way_m);
+    const double ground_m = required_ground(scene, at.x_m, at.y_m, executor);
     trajectory.push_back(
         {way_m / drive.speed_mps,
-         level_pose(line.yaw_rad(way_m), {place.x_m, place.y_m, ground_m + drive.height_m})});
+         level_pose(line.yaw_rad(way_m), {at.x_m, at.y_m, ground_m + drive.height_m})});
   }
   return trajectory;
 }

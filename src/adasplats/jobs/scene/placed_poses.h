@@ -11,17 +11,17 @@
 
 namespace adasplats {
 
-// Poses of a sensor without any recording of one: places in a model, level, above its ground.
+// Poses of a sensor without a recording: level, above the ground of a model.
 
-/// Of the LiDAR of KITTI's car above the road (Geiger et al., "Vision meets Robotics: The KITTI
-/// Dataset", 2013, figure 3), which is about that of any mounted on a car's roof.
+/// Height above the road of the LiDAR on KITTI's car (Geiger et al., "Vision meets Robotics: The
+/// KITTI Dataset", 2013, figure 3), typical of a car's roof.
 inline constexpr double kRoofHeight_m = 1.73;
 /// 36 km/h.
 inline constexpr double kTownSpeed_mps = 10;
-/// Of most LiDARs that turn.
+/// Of most rotating LiDARs.
 inline constexpr double kUsualRate_hz = 10;
 
-/// A place in world coordinates.
+/// A position in world coordinates.
 struct SensorPlace {
   double x_m = 0;
   double y_m = 0;
@@ -43,20 +43,20 @@ struct PathDrive {
   std::optional<double> spacing_m;    ///< poses so far apart instead; more than 0
 };
 
-/// World height of the ground below or above a place, m: the lowest level thing that most of the
-/// model's beams from below meet around it, within half a metre or else up to 4 m (where the
-/// vehicle itself stood, models have holes); the median of what they meet. Of a place with several
-/// storeys that is the lowest one, of a bridge what is below it. Nothing where there is none.
+/// World height of the ground below or above a position, m: the lowest level surface that enough
+/// rays from below hit, within half a metre of the position or else up to 4 m (models have holes
+/// below the recording vehicle); the median of the hits. In a building it is the lowest storey, on
+/// a bridge the ground below. Nothing if there is no such surface.
 std::optional<double> ground_height(const ModelScene& scene, double x_m, double y_m,
                                     const Executor& executor);
 
-/// A pose at each place, level, 0.1 s apart. Errors: data (no ground at a place without a height).
-Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> places, double height_m,
-                    const Executor& executor);
+/// A level pose at each position, 0.1 s apart. Errors: data (no ground at a position without z).
+Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> positions,
+                    double height_m, const Executor& executor);
 
-/// Poses along straight lines between corners, from the first corner on, level, the x axis along
-/// the path (turning within a metre of a corner). Errors: usage (fewer than two corners, no length,
-/// more than ten million poses), data (no ground).
+/// Level poses along a polyline from its first corner, with the x axis along the path (turning
+/// within a metre of a corner). Errors: usage (fewer than two different corners, more than ten
+/// million poses), data (no ground).
 Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> corners,
                          const PathDrive& drive, const Executor& executor);
 

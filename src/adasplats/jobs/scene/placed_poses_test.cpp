@@ -9,7 +9,7 @@
 
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/jobs/scene/drive.h"
-#include "adasplats/jobs/session/own_session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 namespace {
@@ -126,7 +126,7 @@ TEST_F(PlacedPoses, WaysThereAndBackTurnAtTheTip) {
 
 TEST_F(PlacedPoses, OneSourceOfPoses) {
   DriveOptions drive;
-  expect_error(ErrorKind::usage, {"trajectory", "at", "path", "one of them"},
+  expect_error(ErrorKind::usage, {"trajectory", "at", "path", "exactly one of"},
                [&] { check_drive(drive); });
   drive.at = {{kOrigin.x, kOrigin.y, 113, 0}};
   check_drive(drive);
@@ -137,10 +137,10 @@ TEST_F(PlacedPoses, OneSourceOfPoses) {
   expect_error(ErrorKind::usage, {"rolling_shutter"}, [&] { check_drive(drive); });
   drive.rolling_shutter = false;
   drive.path = {{0, 0}, {1, 0}};
-  expect_error(ErrorKind::usage, {"one of them"}, [&] { check_drive(drive); });
+  expect_error(ErrorKind::usage, {"exactly one of"}, [&] { check_drive(drive); });
   drive.path.clear();
   drive.trajectory = "poses.csv";
-  expect_error(ErrorKind::usage, {"one of them"}, [&] { check_drive(drive); });
+  expect_error(ErrorKind::usage, {"exactly one of"}, [&] { check_drive(drive); });
   drive.at.clear();
   drive.height_m = 2;
   expect_error(ErrorKind::usage, {"height"}, [&] { check_drive(drive); });

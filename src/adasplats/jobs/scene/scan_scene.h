@@ -14,30 +14,30 @@
 
 namespace adasplats {
 
-/// Where scans are simulated: a model or a mesh in memory (ModelScene), or a city whose tiles come
-/// and go (CityScene), with what was put there.
+/// A scene that scans are simulated in: a model or a mesh in memory (ModelScene), or a city whose
+/// tiles are loaded on demand (CityScene), with the objects that were added.
 class ScanScene {
  public:
   virtual ~ScanScene() = default;
 
   /// World coordinates of the local origin, m.
   virtual Vec3d origin() const = 0;
-  /// Of the place without its objects.
+  /// Casts rays into the model or mesh, without the objects.
   virtual const SceneCaster& scan_caster() const = 0;
-  /// What was put into the place; null where nothing was.
+  /// The objects; null if there are none.
   virtual const World* world() const = 0;
-  /// What the classes mean; null where that is not known.
+  /// The scheme of the classes; null if there is none.
   virtual const LabelScheme* labels() const = 0;
-  /// What primitives carry; shared by all sensors in the place.
+  /// The attributes of primitives, shared by all sensors.
   virtual std::shared_ptr<const PrimitiveTable> primitive_table() const = 0;
-  /// Of place and objects; 0 where there is none.
+  /// Of model and objects; 0 if there are no intensities.
   virtual float highest_intensity() const = 0;
   /// World box of the middle 98 % of the splats or vertices along each axis, or a larger one.
   virtual std::pair<Vec3d, Vec3d> middle_box() const = 0;
 
-  /// Makes ready what the first of some scans meet whose rays are `reach_m` long, and gives how
-  /// many of them, at least one where there is one. To be called before they are cast, while
-  /// nothing is.
+  /// Loads what the rays of the first of these scans, `reach_m` long, can hit, and returns for how
+  /// many scans: at least one unless `scans` is empty. To be called before they are cast, while no
+  /// rays are cast.
   virtual std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const = 0;
 };
 

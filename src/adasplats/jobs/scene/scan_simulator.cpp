@@ -11,20 +11,6 @@
 namespace adasplats {
 namespace {
 
-SimulateOptions options_of(const ScanSettings& settings) {
-  SimulateOptions options;
-  options.seed = settings.seed;
-  options.noise = settings.noise;
-  options.unit_offsets = settings.unit_offsets;
-  options.beam = settings.beam;
-  options.ray_drop = settings.ray_drop ? &*settings.ray_drop : nullptr;
-  options.vehicle_body = settings.vehicle_body;
-  options.frame = settings.frame;
-  options.weather = settings.weather;
-  options.fields = settings.fields;
-  return options;
-}
-
 ScanSettings checked(ScanSettings settings) {
   check(settings);
   return settings;
@@ -32,45 +18,15 @@ ScanSettings checked(ScanSettings settings) {
 
 }  // namespace
 
-bool is_ray_drop_file(const std::filesystem::path& choice) {
-  return !choice.empty() && choice != "none";
-}
-
-std::optional<RayDropModel> chosen_ray_drop(const std::filesystem::path& choice,
-                                            const LidarModel& sensor) {
-  if (is_ray_drop_file(choice)) return load_ray_drop(choice);
-  return choice.empty() ? sensor.drop : std::nullopt;
-}
-
-ScanSettings ScanChoice::settings(std::uint64_t seed) const {
-  return settings_of(load_lidar_model(sensor), seed);
-}
-
-ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const {
-  ScanSettings settings;
-  settings.sensor = std::move(model);
-  overrides.apply(settings.sensor);
-  settings.beam = beam;
-  settings.noise = noise;
-  settings.unit_offsets = unit_offsets;
-  settings.vehicle_body = vehicle_body;
-  settings.frame = frame;
-  settings.weather = weather;
-  settings.seed = seed;
-  check(settings);
-  settings.ray_drop = chosen_ray_drop(ray_drop, settings.sensor);
-  return settings;
-}
-
 ScanSimulator::ScanSimulator(const ScanScene& scene, ScanSettings settings,
                              const Executor& executor)
     : scene_(scene),
       settings_(checked(std::move(settings))),
       executor_(executor),
-      rules_(settings_.sensor, firings_of(settings_.sensor, 0), options_of(settings_),
+      rules_(settings_.sensor, firings_of(settings_.sensor, 0), settings_,
              scene.primitive_table()) {}
 
-/// How far from the sensor's pose something may be that it sees.
+/// Maximum distance of a hit from the sensor's pose.
 double ScanSimulator::reach_m() const {
   float offset = 0;
   for (const Firing& firing : rules_.cast_firings())
@@ -79,7 +35,7 @@ double ScanSimulator::reach_m() const {
   return settings_.sensor.max_range_m + static_cast<double>(offset) + kRounding_m;
 }
 
-/// Casts scans as many at once as the place has ready: cast(scans, number of the first).
+/// Casts as many scans at once as the scene has loaded: cast(scans, number of the first).
 ReportTimes ScanSimulator::by_spans(std::span<const ScanMotion> scans, Span cast) {
   ReportTimes sum;
   for (std::size_t first = 0; first < scans.size();) {
@@ -106,7 +62,7 @@ ReportTimes ScanSimulator::run(std::span<const ScanMotion> scans, std::uint64_t 
   });
 }
 
-/// Casts into the place and, object by object, what is in the world.
+/// Casts into the model and, object by object, into the world.
 ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
                                          std::uint64_t first_number, Sink sink) {
   return scene_.scan_caster().report_world(rules_, scans, first_number, scene_.world(), executor_,
@@ -143,9 +99,9 @@ ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
 }
 
 Scan ScanSimulator::scan(const ScanMotion& motion, std::uint64_t number) {
-  Scan taken;
-  run(std::span(&motion, 1), number, [&](std::size_t, Scan&& scan) { taken = std::move(scan); });
-  return taken;
+  Scan result;
+  run(std::span(&motion, 1), number, [&](std::size_t, Scan&& scan) { result = std::move(scan); });
+  return result;
 }
 
 }  // namespace adasplats

@@ -14,7 +14,7 @@ namespace {
 constexpr double kShareShown = 0.90;
 constexpr int kColumnsAcross = 96;  // of the longer side of the middle box
 constexpr std::size_t kMaxPoints = 20'000;
-constexpr double kRim = 0.94;  // of the picture is for the part
+constexpr double kRim = 0.94;  // share of the picture's width and height for the part
 constexpr int kDirections = 24;
 
 /// Columns of ground over a box.
@@ -52,7 +52,7 @@ std::vector<bool> full_columns(const std::vector<std::size_t>& counts, std::size
   return full;
 }
 
-/// Every n-th of them, so that few enough are left.
+/// Keeps every n-th point, at most kMaxPoints.
 void thin(std::vector<Vec3d>& points) {
   const std::size_t step = points.size() / kMaxPoints + 1;
   std::size_t kept = 0;
@@ -60,7 +60,7 @@ void thin(std::vector<Vec3d>& points) {
   points.resize(kept);
 }
 
-/// Leaves out what is lower or higher than all but a percent.
+/// Removes the lowest and the highest percent.
 void cut_heights(std::vector<Vec3d>& points) {
   std::vector<double> heights;
   heights.reserve(points.size());
@@ -71,34 +71,33 @@ void cut_heights(std::vector<Vec3d>& points) {
   std::erase_if(points, [&](const Vec3d& p) { return p.z < low || p.z > high; });
 }
 
-/// Of all points the farthest to one side of the view, less what the camera's opening allows at its
-/// depth.
+/// The farthest point to one side of the view, relative to the edge of the picture at its depth.
 struct Reach {
-  double most = -std::numeric_limits<double>::infinity();
-  void take(double value) { most = std::max(most, value); }
+  double max = -std::numeric_limits<double>::infinity();
+  void add(double value) { max = std::max(max, value); }
 };
 
-/// The nearest place from which a camera with these axes has all points within its opening: each
-/// side of the picture is a plane that all points must lie behind.
+/// The nearest position from which a camera with these axes sees all points: each side of the
+/// picture is a plane that bounds them.
 Vec3d place_camera(const std::vector<Vec3d>& points, const Mat3d& axes, double tan_x,
                    double tan_y) {
   Reach right, left, up, down;
   for (const Vec3d& p : points) {
     const Vec3d q = {dot(axes.rows[0], p), dot(axes.rows[1], p), dot(axes.rows[2], p)};
-    left.take(q.y - tan_x * q.x);
-    right.take(-q.y - tan_x * q.x);
-    up.take(q.z - tan_y * q.x);
-    down.take(-q.z - tan_y * q.x);
+    left.add(q.y - tan_x * q.x);
+    right.add(-q.y - tan_x * q.x);
+    up.add(q.z - tan_y * q.x);
+    down.add(-q.z - tan_y * q.x);
   }
   const double forward =
-      std::min(-(left.most + right.most) / (2 * tan_x), -(up.most + down.most) / (2 * tan_y));
-  // Where one pair of sides asks for more distance, the other leaves room: it is shared.
-  const double leftwards = 0.5 * (left.most - right.most), upwards = 0.5 * (up.most - down.most);
+      std::min(-(left.max + right.max) / (2 * tan_x), -(up.max + down.max) / (2 * tan_y));
+  // If one pair of sides needs more distance, the points are centred between the other pair.
+  const double leftwards = 0.5 * (left.max - right.max), upwards = 0.5 * (up.max - down.max);
   return axes.transposed() * Vec3d{forward, leftwards, upwards};
 }
 
-/// How much of the part a camera shows, and how large: the sum over the points that nothing nearer
-/// hides of what they measure in the picture.
+/// How much of the part a camera shows, and how large: the sum of the sizes in the picture of the
+/// points that are not hidden by nearer ones.
 class Showing {
  public:
   double of(const std::vector<Vec3d>& points, const Camera& camera) {
@@ -123,7 +122,7 @@ class Showing {
 
  private:
   static constexpr std::int64_t kAcross = 128;  // cells; some points fall into each
-  static constexpr double kHides = 0.03;        // of the depth: what lies farther behind is hidden
+  static constexpr double kHides = 0.03;        // of the depth: points farther behind are hidden
   std::vector<double> depths_;
   std::vector<std::pair<std::size_t, double>> seen_;
 };
@@ -186,25 +185,25 @@ Camera overview_from(const ShownPart& part, int width, int height, double horizo
   camera.horizontal_fov_rad = horizontal_fov_rad;
   const double tan_x = std::tan(0.5 * horizontal_fov_rad);
   const Mat3d axes = camera.world_from_camera.rotation.transposed();
-  constexpr double kLeast_m = 1.0;  // before a part that is a point
+  constexpr double kMinDistance_m = 1.0;  // to a part that is a single point
   camera.world_from_camera.translation =
       place_camera(part.points, axes, kRim * tan_x, kRim * tan_x * height / width) -
-      kLeast_m * axes.rows[0];
+      kMinDistance_m * axes.rows[0];
   return camera;
 }
 
 Camera overview(const ShownPart& part, int width, int height, double horizontal_fov_rad) {
   constexpr double kPitches_rad[] = {0.50, 0.70, 0.95};  // below the horizon
   Camera best;
-  double most = -1;
+  double max_size = -1;
   Showing showing;
   for (const double pitch : kPitches_rad)
     for (int k = 0; k < kDirections; ++k) {
       const double azimuth = 2 * std::numbers::pi * k / kDirections;
       const Camera camera = overview_from(part, width, height, horizontal_fov_rad, pitch, azimuth);
       const double size = showing.of(part.points, camera);
-      if (size > most) {
-        most = size;
+      if (size > max_size) {
+        max_size = size;
         best = camera;
       }
     }

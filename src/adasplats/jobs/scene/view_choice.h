@@ -5,34 +5,45 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/sensors/camera.h"
 
 namespace adasplats {
 
-/// Where a picture is seen from: one of the places below, or from above, from the side from which
-/// what it shows appears largest (overview()).
+/// The camera of a picture: one of the positions below, or from above, from the side from which the
+/// scene appears largest (overview()).
 struct ViewChoice {
   int width = 2560;
   int height = 1440;
-  /// Else 45 from afar, 70 from `eye` and from a pose.
+  /// Default 45 from afar, 70 from `eye` and from a pose.
   std::optional<double> horizontal_fov_deg;
   std::optional<Vec3d> eye;
-  std::optional<Vec3d> target;  ///< with `eye`; else the middle of what the picture shows
+  std::optional<Vec3d> target;  ///< with `eye`; default: the middle of the shown part
   bool birds_eye = false;
-  std::filesystem::path trajectory;  ///< ahead from a pose of it
+  std::filesystem::path trajectory;  ///< look ahead from a pose of it
   std::size_t pose = 0;
 };
 
-/// Errors: usage (sizes and angles out of range, several places).
+/// Errors: usage (sizes and angles out of range, several positions).
 void check(const ViewChoice& view);
 
 /// The camera at a pose, looking ahead.
 Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera);
 
-/// The camera for a part of a place. Errors: those of the trajectory's file; usage (a pose that it
+/// The camera for a part of a scene. Errors: those of the trajectory's file; usage (a pose that it
 /// does not have).
 Camera camera_of(const ViewChoice& view, const ShownPart& part);
+
+/// Cameras of a film, one a picture.
+
+/// Once around the part, from the height of overview() and far enough away that all of it is always
+/// in the picture.
+std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std::size_t frames);
+
+/// Along the view's trajectory from its first pose to its last, at the driven speed. Errors: those
+/// of the trajectory's file.
+std::vector<Camera> along_drive(const ViewChoice& view, std::size_t frames);
 
 }  // namespace adasplats

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/jobs/segment/segment_on_device.h"
+#include "adasplats/gpu/base/engines.h"
 #include "adasplats/segment/network/run_network.h"
 
 namespace adasplats {
@@ -65,6 +65,16 @@ PointClasses PointClassifier::classes_of(const PointCloud& cloud, const SegmentO
 
 nlohmann::ordered_json to_json(const NetworkFacts& facts) {
   return {{"name", facts.name}, {"sha256", facts.sha256}, {"card", facts.card}};
+}
+
+Segmentation segment_on_device(const PointCloud& cloud, const Network& network,
+                               const SegmentOptions& options, Session& session) {
+  Segmentation result;
+  const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
+    const auto engine = make_cuda_segment_engine(session.device.gpu_numbers().front());
+    result = segment_cloud(cloud, network, options, *engine, session.executor);
+  });
+  return on_gpu ? result : segment_cloud(cloud, network, options, session.executor);
 }
 
 }  // namespace adasplats

@@ -69,4 +69,9 @@ class PointClassifier {
 /// {"name", "sha256", "card"}.
 nlohmann::ordered_json to_json(const NetworkFacts& facts);
 
+/// segment_cloud() on the session's device; where a GPU that nobody asked for fails, warns and goes
+/// on with the CPU.
+Segmentation segment_on_device(const PointCloud& cloud, const Network& network,
+                               const SegmentOptions& options, Session& session);
+
 }  // namespace adasplats

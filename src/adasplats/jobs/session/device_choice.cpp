@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// Whether the user wants a GPU and nothing else.
+/// Whether the user requests a GPU.
 bool asks_for_gpu(const DeviceOptions& options) {
   return options.kind == DeviceKind::cuda || options.kind == DeviceKind::optix ||
          !options.gpus.empty();
@@ -29,8 +29,8 @@ GpuDevice gpu_of_number(const std::vector<GpuDevice>& found, int number) {
   const auto gpu = std::find_if(found.begin(), found.end(),
                                 [number](const GpuDevice& g) { return g.index == number; });
   if (gpu == found.end()) {
-    throw Error(ErrorKind::usage,
-                "there is no GPU " + std::to_string(number) + "; usable are " + numbers_of(found));
+    throw Error(ErrorKind::usage, "there is no GPU " + std::to_string(number) +
+                                      "; the usable GPUs are " + numbers_of(found));
   }
   return *gpu;
 }
@@ -79,7 +79,7 @@ DeviceChoice choose_device(const DeviceOptions& options) {
   DeviceChoice choice;
   if (options.kind == DeviceKind::cpu) {
     if (options.all_gpus || !options.gpus.empty()) {
-      throw Error(ErrorKind::usage, "gpus and device cpu exclude each other");
+      throw Error(ErrorKind::usage, "`gpus` has no effect with `device` cpu; give one of them");
     }
     return choice;
   }
@@ -107,7 +107,7 @@ bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()
     device = DeviceChoice();
     device.is_automatic = true;
     device.reason = error.what();
-    progress.warn("the CPU does the work of the GPU: " + device.reason);
+    progress.warn("the GPU failed and the CPU is used instead: " + device.reason);
     return false;
   }
 }

@@ -15,52 +15,51 @@
 
 namespace adasplats {
 
-/// Who computes.
+/// The device that computes.
 enum class DeviceKind : std::uint8_t {
-  automatic,  ///< cuda where there is a GPU, else cpu
+  automatic,  ///< cuda if there is a GPU, else cpu
   cpu,
   cuda,
-  optix,  ///< rays are cast with OptiX; all else as cuda
+  optix,  ///< casts rays with OptiX; everything else as cuda
 };
 
 /// auto, cpu, cuda and optix.
 std::span<const std::pair<std::string_view, DeviceKind>> device_words();
 std::string device_word(DeviceKind kind);
 
-/// What a user says of the device.
+/// The device as users choose it.
 struct DeviceOptions {
   DeviceKind kind = DeviceKind::automatic;
-  std::vector<int> gpus;  ///< CUDA's numbers; empty: the first one
+  std::vector<int> gpus;  ///< by CUDA's numbers; empty: the first one
   bool all_gpus = false;
 };
 
-/// What a run computes on.
+/// The device of a run.
 struct DeviceChoice {
   DeviceKind kind = DeviceKind::cpu;  ///< never automatic
-  bool is_automatic = false;          ///< nobody asked for it: the CPU will do as well
-  std::vector<GpuDevice> gpus;        ///< at least one where it is not the CPU
-  std::string driver;                 ///< CUDA version that the driver supports; empty: none
-  std::string reason;                 ///< where auto came to the CPU: why
+  bool is_automatic = false;          ///< not requested by the user: the CPU may replace it
+  std::vector<GpuDevice> gpus;        ///< at least one unless `kind` is cpu
+  std::string driver;                 ///< CUDA version that the driver supports; empty: no driver
+  std::string reason;                 ///< why automatic chose the CPU; else empty
 
   bool on_gpu() const { return kind != DeviceKind::cpu; }
-  /// CUDA's numbers of the GPUs.
+  /// The GPUs by CUDA's numbers.
   std::vector<int> gpu_numbers() const;
 };
 
-/// Looks for what the options name. Errors: usage (GPUs by number with the CPU, or a number that no
-/// GPU has), unavailable (cuda, optix or GPUs by number are asked for and there is no GPU), with
-/// what helps.
+/// Finds the devices that the options name. Errors: usage (GPU numbers together with the CPU, or a
+/// number that no GPU has), unavailable (cuda, optix or GPU numbers without a GPU), with a remedy.
 DeviceChoice choose_device(const DeviceOptions& options);
 
-/// Does `work` where a GPU is chosen, and says whether it was done; false: it is the CPU's. Where a
-/// GPU that nobody asked for fails (not enough memory, say), warns and chooses the CPU from then
-/// on; the failure of one that was asked for is the caller's.
+/// Runs `work` if a GPU is chosen. Returns whether it was done; if not, the CPU has to do it. If a
+/// GPU that the user did not request fails (out of memory, for example), warns and chooses the CPU
+/// from then on; the failure of a requested GPU is thrown.
 bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()> work);
 
-/// Names of the GPUs with commas between them.
+/// Names of the GPUs, separated by commas.
 std::string names_of(const std::vector<GpuDevice>& gpus);
 
-/// One key a choice, for what was computed on another one.
+/// A key for each choice; different devices have different keys.
 std::string device_key(const DeviceChoice& device);
 
 }  // namespace adasplats

@@ -38,6 +38,16 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
   return std::nullopt;
 }
 
+std::optional<LabelScheme> load_labels_of_model(const std::string& scheme, ProgressSink& progress) {
+  if (scheme.empty()) return std::nullopt;
+  try {
+    return load_label_scheme(scheme);
+  } catch (const Error& error) {
+    progress.warn(std::string("labels of the model: ") + error.what());
+    return std::nullopt;
+  }
+}
+
 std::string scheme_reference(const std::string& labels, const LabelScheme& scheme) {
   std::error_code failure;
   return fs::is_regular_file(labels, failure) ? fs::absolute(labels).string() : scheme.name();
@@ -56,9 +66,9 @@ std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
 fs::path resolve_cloud_input(const fs::path& input) {
   const std::vector<fs::path> inputs = resolve_cloud_inputs(input);
   if (inputs.size() == 1) return inputs.front();
-  throw Error(ErrorKind::usage, input.string() + ": holds " + std::to_string(inputs.size()) +
-                                    " sequences; name one of them, " + inputs.front().string() +
-                                    " say");
+  throw Error(ErrorKind::usage, input.string() + ": contains " + std::to_string(inputs.size()) +
+                                    " sequences; name one of them, for example " +
+                                    inputs.front().string());
 }
 
 bool is_splat_model(const fs::path& file) {

@@ -10,28 +10,34 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/progress.h"
 
 namespace adasplats {
 
-/// What `labels` names; for an empty one that of the first input with labels, SemanticKITTI of a
-/// sequence folder, labels_of_tree() of a tree of a data set; else nothing. Errors: those of
-/// require_labels_of_tree.
+/// The scheme that `labels` names. If it is empty, the scheme of the first input with labels:
+/// SemanticKITTI for a sequence folder, labels_of_tree() for the tree of a data set; nothing if
+/// there is none. Errors: those of require_labels_of_tree.
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const std::filesystem::path> inputs);
 
-/// How a model or a mesh names its scheme, so that it can be loaded again from another folder.
+/// The scheme that a model's file names; nothing if it names none or, with a warning, if that
+/// cannot be loaded: geometry and class numbers do not depend on it.
+std::optional<LabelScheme> load_labels_of_model(const std::string& scheme, ProgressSink& progress);
+
+/// The name of the scheme in the file of a model or mesh; it can be loaded from any folder.
 std::string scheme_reference(const std::string& labels, const LabelScheme& scheme);
 
-/// A point cloud input as given, or the sequences of a tree (cloud_inputs, and its errors).
+/// A point cloud input as given, or the sequences of a tree. Errors: no_input, those of
+/// cloud_inputs.
 std::vector<std::filesystem::path> resolve_cloud_inputs(const std::filesystem::path& input);
 
-/// Likewise, where one is wanted. Errors: usage (several sequences).
+/// The same for exactly one. Errors: also usage (several sequences).
 std::filesystem::path resolve_cloud_input(const std::filesystem::path& input);
 
 /// Whether a path is a splat model: a PLY with a radius and a normal, or the folder of a city.
 bool is_splat_model(const std::filesystem::path& file);
 
-/// The trajectory of a pose file or of a sequence folder; of a recording all of its poses
+/// The trajectory of a pose file or a sequence folder, or all poses of a recording
 /// (trajectory_of_recording()).
 Trajectory load_trajectory(const std::filesystem::path& path);
 
@@ -39,7 +45,7 @@ Trajectory load_trajectory(const std::filesystem::path& path);
 /// (no poses).
 Trajectory poses_along(const std::filesystem::path& path, Vec3d offset_m, std::size_t every);
 
-/// Throws no_input where there is nothing of that name, so that it is said before long work.
+/// Throws no_input if the path does not exist. To be called before long work.
 void require_input(const std::filesystem::path& path);
 
 }  // namespace adasplats

@@ -20,8 +20,8 @@ struct ScanRange {
 /// "FIRST:COUNT[:STRIDE]"; empty for all scans.
 std::string text_of(const ScanRange& range);
 
-/// Numbers of the scans that a range takes of `scans`, of the sequence in `folder`.
-/// Errors: usage (none).
+/// Numbers of the scans in a range, for a sequence in `folder` with `scans` scans. Errors: usage
+/// (the range is empty).
 std::vector<std::size_t> chosen_scans(const ScanRange& range, std::size_t scans,
                                       const std::filesystem::path& folder);
 

@@ -10,12 +10,30 @@
 
 namespace adasplats {
 
-/// What one piece of work is done with, by the command line, Python and the viewer alike.
+/// What a job runs with, for the command line, Python and the viewer.
 struct Session {
   const Executor& executor;
   ProgressSink& progress;
   std::uint64_t seed;
   DeviceChoice& device;  ///< of scenes and models
+};
+
+/// What an OwnSession refers to.
+struct SessionParts {
+  Executor own_executor;
+  ProgressSink silence;
+  DeviceChoice own_device;
+};
+
+/// A session without progress reports: it owns its executor and device. A program that shows
+/// progress or warnings builds a Session itself.
+class OwnSession : private SessionParts, public Session {
+ public:
+  /// `threads`: as for Executor. Errors: those of choose_device().
+  explicit OwnSession(const DeviceOptions& options = {}, int threads = 0,
+                      std::uint64_t with_seed = 1)
+      : SessionParts{Executor(threads), {}, choose_device(options)},
+        Session{own_executor, silence, with_seed, own_device} {}
 };
 
 }  // namespace adasplats

@@ -5,45 +5,22 @@
 #include <nlohmann/json.hpp>
 
 namespace adasplats {
+namespace {
 
-void JsonOfSettings::operator()(const Setting& setting, bool value) const {
-  json_[setting.key] = value;
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json json_of_value(const T& value) {
+  return value;
 }
+Json json_of_value(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+Json json_of_value(const Vec3d& value) { return {value.x, value.y, value.z}; }
+Json json_of_value(const GroupScale& value) { return {value.neighbors, value.radius, value.error}; }
 
-void JsonOfSettings::operator()(const Setting& setting, int value) const {
-  json_[setting.key] = value;
-}
+}  // namespace
 
-void JsonOfSettings::operator()(const Setting& setting, std::uint32_t value) const {
-  json_[setting.key] = value;
-}
-
-void JsonOfSettings::operator()(const Setting& setting, std::size_t value) const {
-  json_[setting.key] = value;
-}
-
-void JsonOfSettings::operator()(const Setting& setting, const Vec3d& value) const {
-  json_[setting.key] = {value.x, value.y, value.z};
-}
-
-void JsonOfSettings::operator()(const Setting& setting, float value) const {
-  json_[setting.key] = value;
-}
-
-void JsonOfSettings::operator()(const Setting& setting, double value) const {
-  json_[setting.key] = value;
-}
-
-void JsonOfSettings::operator()(const Setting& setting, const std::optional<double>& value) const {
-  json_[setting.key] = value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-}
-
-void JsonOfSettings::operator()(const Setting& setting, const GroupScale& value) const {
-  json_[setting.key] = {value.neighbors, value.radius, value.error};
-}
-
-void JsonOfSettings::operator()(const Setting& setting, std::string_view word) const {
-  json_[setting.key] = word;
+void JsonOfSettings::put(const Setting& setting, const Value& value) const {
+  json_[setting.key] = std::visit([](const auto& held) { return json_of_value(held); }, value);
 }
 
 }  // namespace adasplats

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <variant>
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
@@ -15,32 +16,28 @@
 
 namespace adasplats {
 
-/// Puts settings into a JSON object, by their keys. What is not finite is written as null.
+/// Puts settings into a JSON object by their keys. Values that are not finite become null.
 class JsonOfSettings {
  public:
   explicit JsonOfSettings(nlohmann::ordered_json& json) : json_(json) {}
 
-  void operator()(const Setting& setting, bool value) const;
-  void operator()(const Setting& setting, int value) const;
-  void operator()(const Setting& setting, std::uint32_t value) const;
-  void operator()(const Setting& setting, std::size_t value) const;
-  void operator()(const Setting& setting, float value) const;
-  void operator()(const Setting& setting, double value) const;
-  void operator()(const Setting& setting, const std::optional<double>& value) const;
-  void operator()(const Setting& setting, const Vec3d& value) const;
-  void operator()(const Setting& setting, const GroupScale& value) const;
-  void operator()(const Setting& setting, std::string_view word) const;
   template <class T>
-  requires std::is_enum_v<T>
-  void operator()(const Setting& setting, T value) const {
-    (*this)(setting, word_of(value, words_of(value)));
+  void operator()(const Setting& setting, const T& value) const {
+    if constexpr (std::is_enum_v<T>)
+      put(setting, word_of(value, words_of(value)));
+    else
+      put(setting, value);
   }
 
  private:
+  using Value = std::variant<bool, int, std::uint32_t, std::size_t, float, double,
+                             std::optional<double>, Vec3d, GroupScale, std::string_view>;
+  void put(const Setting& setting, const Value& value) const;
+
   nlohmann::ordered_json& json_;
 };
 
-/// Adds the settings of a subject to `json`.
+/// Adds all settings of a struct to `json`.
 template <class Settings>
 void put_settings(const Settings& settings, nlohmann::ordered_json& json) {
   Settings copy = settings;

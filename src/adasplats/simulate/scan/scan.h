@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -123,16 +124,17 @@ ScanFields scan_fields(std::span<const std::string> names);
 /// The points that keep[i] says, of every attribute.
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
 
+/// How a sensor measures.
 struct SimulateOptions {
-  std::uint64_t seed = 0;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
+  std::uint64_t seed = 1;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
   bool noise = true;          ///< apply the sensor's noise, and what its unit does to intensities
   bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
-  const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported
-  bool vehicle_body = true;                ///< returns from LidarModel::body
+  std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
+  bool vehicle_body = true;              ///< returns from LidarModel::body
   PointFrame frame = PointFrame::raw;
   Weather weather;
-  ScanFields fields;
+  ScanFields fields;  ///< attributes that are wanted
 };
 
 /// Where rays of a sensor start and end as floats, one a firing, and when.

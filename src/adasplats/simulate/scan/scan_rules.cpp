@@ -62,8 +62,6 @@ ScanRules::ScanRules(const LidarModel& sensor, std::vector<Firing> firings,
                      const SimulateOptions& options, std::shared_ptr<const PrimitiveTable> table)
     : sensor_(sensor), options_(options), table_(std::move(table)) {
   check_beam(options.beam, sensor);
-  if (options.ray_drop != nullptr) ray_drop_ = *options.ray_drop;
-  options_.ray_drop = nullptr;
   weights_ = sub_ray_weights(options_.beam);
   if (!options.weather.is_clear()) air_ = air_rules(options.weather, sensor, expected_);
   set_firings(std::move(firings));
@@ -74,9 +72,9 @@ void ScanRules::set_firings(std::vector<Firing> firings) {
   firings_ = std::move(firings);
   if (options_.beam.sub_rays > 1) cast_firings_ = sub_firings(sensor_, firings_, options_.beam);
   blocked_.clear();
-  if (ray_drop_ && !ray_drop_->blocked.empty())
+  if (options_.ray_drop && !options_.ray_drop->blocked.empty())
     for (const Firing& firing : firings_)
-      blocked_.push_back(ray_drop_->blocks(firing.direction) ? 1 : 0);
+      blocked_.push_back(options_.ray_drop->blocks(firing.direction) ? 1 : 0);
   body_cells_.clear();
   if (body().empty()) return;
   for (const Firing& firing : firings_) {
@@ -106,7 +104,8 @@ const UnitIntensity* ScanRules::intensity() const {
 }
 
 const UnitFields* ScanRules::unit_fields() const {
-  const bool asks = ray_drop_ || intensity() != nullptr || (options_.noise && has_field_noise());
+  const bool asks =
+      options_.ray_drop || intensity() != nullptr || (options_.noise && has_field_noise());
   return asks && sensor_.fields ? &*sensor_.fields : nullptr;
 }
 
@@ -144,7 +143,7 @@ FiringRules ScanRules::view() const {
   }
   rules.beam = options_.beam;
   rules.weights = weights_.data();
-  if (ray_drop_) rules.drop = drop_rules(*ray_drop_);
+  if (options_.ray_drop) rules.drop = drop_rules(*options_.ray_drop);
   rules.blocked = blocked_.empty() ? nullptr : blocked_.data();
   rules.body_cells = body_cells_.empty() ? nullptr : body_cells_.data();
   rules.body = body().data();

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,7 +72,6 @@ class ScanRules {
 
   LidarModel sensor_;
   SimulateOptions options_;
-  std::optional<RayDropModel> ray_drop_;
   std::shared_ptr<const PrimitiveTable> table_;
   std::vector<Firing> firings_;
   std::vector<Firing> cast_firings_;
