@@ -102,7 +102,7 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
   const std::string of_ending =
       ending.empty() ? "a name without an ending" : "the ending ." + ending;
   throw Error(ErrorKind::usage, can_be + "; " + of_ending +
-                                    (meant.empty() ? " is none of them" : " says not which") +
+                                    (meant.empty() ? " is none of them" : " is ambiguous") +
                                     ": give the format");
 }
 
@@ -219,7 +219,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
   if (job.color && !has_colors(format)) {
     throw Error(ErrorKind::usage,
                 "color has no effect on " + std::string(name_of(format)) +
-                    ", which tells classes and intensities themselves; it is for gaussian-3d, "
+                    ", which stores classes and intensities; it is for gaussian-3d, "
                     "gaussian-2d and glb");
   }
   if (!job.labels.empty() && !has_colors(format)) {

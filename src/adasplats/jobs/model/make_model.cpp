@@ -158,10 +158,11 @@ std::optional<PointClassifier> classifier_for(const ModelOptions& options) {
                 "`labels` has no effect with `segment`: the points get classes "
                 "of SemanticKITTI from a network");
   std::optional<PointClassifier> classifier(options.segment.network);
-  if (options.build.remove == DynamicRemoval::moving && !classifier->tells(options.build.remove))
+  if (options.build.remove == DynamicRemoval::moving &&
+      !classifier->has_class_of(options.build.remove))
     throw Error(ErrorKind::usage,
-                "`remove` moving: the network does not tell what moves from "
-                "what could (`remove` movable)");
+                "`remove` moving: the network does not distinguish moving from "
+                "movable objects (use `remove` movable)");
   return classifier;
 }
 

@@ -23,7 +23,7 @@ namespace adasplats {
 
 /// How the panels of a picture are drawn.
 struct PanelLook {
-  std::optional<ImageColor> color;  ///< else what tells most of each panel
+  std::optional<ImageColor> color;  ///< default: chosen for each panel
   int samples_per_axis = 2;
   bool relief = true;    ///< as ImageOptions has it
   bool captions = true;  ///< title, legend, scale and north

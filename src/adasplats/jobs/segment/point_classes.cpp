@@ -39,7 +39,7 @@ PointClassifier::PointClassifier(const std::filesystem::path& file) {
   ids_ = semantickitti_ids(network_, file.string());
 }
 
-bool PointClassifier::tells(DynamicRemoval removal) const {
+bool PointClassifier::has_class_of(DynamicRemoval removal) const {
   return std::ranges::any_of(ids_, [removal](std::uint16_t id) {
     return is_removed(*semantickitti_labels().find(id), removal);
   });

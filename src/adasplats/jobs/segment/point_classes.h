@@ -55,7 +55,7 @@ class PointClassifier {
   const std::vector<std::string>& names() const { return network_.classes; }
   const std::vector<std::uint16_t>& ids() const { return ids_; }
   /// Whether the network has a class of what `removal` removes.
-  bool tells(DynamicRemoval removal) const;
+  bool has_class_of(DynamicRemoval removal) const;
 
   PointClasses classes_of(const PointCloud& cloud, const SegmentOptions& options,
                           Session& session) const;
@@ -69,8 +69,8 @@ class PointClassifier {
 /// {"name", "sha256", "card"}.
 nlohmann::ordered_json to_json(const NetworkFacts& facts);
 
-/// segment_cloud() on the session's device; where a GPU that nobody asked for fails, warns and goes
-/// on with the CPU.
+/// segment_cloud() on the session's device. If a GPU that the user did not request fails, warns and
+/// continues on the CPU.
 Segmentation segment_on_device(const PointCloud& cloud, const Network& network,
                                const SegmentOptions& options, Session& session);
 

@@ -74,9 +74,9 @@ TEST(PointClasses, AreTheNetworksAndCounted) {
 TEST(PointClasses, TheNetworkTellsWhatIsMovableButNotWhatMoves) {
   if (!can_segment()) GTEST_SKIP() << "built without OpenBLAS";
   const PointClassifier classifier("");
-  EXPECT_TRUE(classifier.tells(DynamicRemoval::movable));
-  EXPECT_FALSE(classifier.tells(DynamicRemoval::moving));
-  EXPECT_FALSE(classifier.tells(DynamicRemoval::none));
+  EXPECT_TRUE(classifier.has_class_of(DynamicRemoval::movable));
+  EXPECT_FALSE(classifier.has_class_of(DynamicRemoval::moving));
+  EXPECT_FALSE(classifier.has_class_of(DynamicRemoval::none));
 }
 
 }  // namespace
