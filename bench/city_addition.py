@@ -8,7 +8,7 @@
 
 With a recording: its even scans are the city, its odd ones are added, as they are and with all
 their poses shifted to the side by each `shift`: laid on the city, and left where they are (which is
-an error unless --most-shift allows it). Beside them the first city and that of all scans at once;
+an error unless --max-shift allows it). Beside them the first city and that of all scans at once;
 `evaluate resimulate` says how well each predicts the beams of another pass. With `points`: a
 procedural city of so many, the first four fifths of whose scans are the city, the rest is added;
 the seconds of both and of all at once. On a GPU a small model comes before, unmeasured. Writes
@@ -102,7 +102,7 @@ class Bench:
                      self.given.work / f"refused_{100 * shift:.0f}", "--device",
                      self.given.device, "--no-calibrate"]),
                 "laid_on": self.judged(f"laid_{100 * shift:.0f}", *add)[1],
-                "left_where_it_is": self.judged(f"left_{100 * shift:.0f}", *add, "--no-calibrate", "--most-shift",
+                "left_where_it_is": self.judged(f"left_{100 * shift:.0f}", *add, "--no-calibrate", "--max-shift",
                                                 "100")[1]}
         return found
 

@@ -32,7 +32,7 @@ def fit_options(unit):
 
 def unit_options(unit):
     """What `simulate` takes to measure as the unit of a folder does."""
-    return ["--sensor", unit / "unit.toml", "--unit-offsets"]
+    return ["--sensor", unit / "unit.toml", "--sensor-offsets"]
 
 
 # ---- drives --------------------------------------------------------------------------------

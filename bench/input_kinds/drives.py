@@ -59,7 +59,7 @@ class Drives:
         yield "KITTI raw drive", "simulated", lambda: self.simulated("kitti-raw", "*/*_sync"), []
         capture = out / "pcap"
         yield ("PCAP", "simulated", lambda: self.simulated("pcap", "drive.pcap"),
-               ["--packets-of", capture / "calibration-s3.yaml", "--trajectory", capture / "poses.csv"])
+               ["--packet-sensor", capture / "calibration-s3.yaml", "--trajectory", capture / "poses.csv"])
 
     def scans(self, form):
         return recordings.write_scans_and_trajectory(self.kitti, SCANS, self.out / form, form) / "scans"

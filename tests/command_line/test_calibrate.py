@@ -49,7 +49,7 @@ class Calibrate(ProgramTest):
         poses.write_text("\n".join(["time,x,y,z,qw,qx,qy,qz"] + [line_of(k) for k in range(scans)]))
         unit = self.folder / "unit.toml"
         unit.write_text(f'like = "{KITTI}"\nrange_noise_m = 0.005\nrange_offsets_m = {offsets}\n')
-        self.run_good("simulate", self.folder / "hall.obj", "--sensor", unit, "--unit-offsets",
+        self.run_good("simulate", self.folder / "hall.obj", "--sensor", unit, "--sensor-offsets",
                       "--trajectory", poses, "-o", self.folder / "scans", "--overwrite")
         sequence = self.folder / "scans" / "sequences" / "00"
         lines = (sequence / "poses.txt").read_text().splitlines()
@@ -89,7 +89,7 @@ class Calibrate(ProgramTest):
         words = ["simulate", self.folder / "hall.obj", "--sensor", out / "sensor.toml",
                  "--trajectory", out / "trajectory.csv"]
         plain = self.report(*words, "-o", self.folder / "plain")
-        unit = self.report(*words, "-o", self.folder / "as_unit", "--unit-offsets")
+        unit = self.report(*words, "-o", self.folder / "as_unit", "--sensor-offsets")
         self.assertEqual(plain["rays"], unit["rays"])
         name = "velodyne/000000.bin"
         self.assertNotEqual((self.folder / "plain/sequences/00" / name).read_bytes(),
@@ -171,8 +171,8 @@ class Calibrate(ProgramTest):
 
     def test_offsets_that_a_sensor_lacks(self):
         self.run_bad(64, "simulate", self.model(), "--sensor", self.sensor, "--trajectory",
-                     self.poses, "-o", self.folder / "scans", "--unit-offsets",
-                     says=["--unit-offsets has no effect", "tiny", "range_offsets_m"])
+                     self.poses, "-o", self.folder / "scans", "--sensor-offsets",
+                     says=["--sensor-offsets has no effect", "tiny", "range_offsets_m"])
 
 
 if __name__ == "__main__":

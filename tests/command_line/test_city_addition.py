@@ -147,7 +147,7 @@ class CityAddition(ProgramTest):
         for name, shift in [("high", {"z": 0.3}), ("aside", {"y": -0.4})]:
             cloud = self.folder / f"{name}.ply"
             write_cloud(cloud, moved(self.new_points, **shift))
-            self.run_bad(65, *self.addition(new=cloud), says=["first", "--most-shift", "0.1 m"])
+            self.run_bad(65, *self.addition(new=cloud), says=["first", "--max-shift", "0.1 m"])
             self.assertFalse(self.both.exists())
             self.assertFalse(self.unfinished.exists())
         # The same command takes what was mended, and not what it read before.
@@ -155,7 +155,7 @@ class CityAddition(ProgramTest):
         self.run_good(*self.addition(new=self.folder / "aside.ply"))
         shutil.rmtree(self.both)
         high = self.folder / "high.ply"
-        report = self.report(*self.addition("--most-shift", "0.5", new=high))
+        report = self.report(*self.addition("--max-shift", "0.5", new=high))
         self.assertAlmostEqual(report["fit"]["shift_m"][2], -0.3, delta=0.01)
 
     def test_points_far_away_are_said_to_have_nothing_in_common(self):
@@ -177,8 +177,8 @@ class CityAddition(ProgramTest):
                 (64, self.addition(to=without), ["without", "--keep-points"]),
                 (64, self.addition("--tile", "7"), ["first", "tile_m", "7"]),
                 (64, self.addition("--tile", "0"), ["--add-to", "--tile 0"]),
-                (64, self.model(self.new, self.both, "--tile", TILE, "--most-shift", "1"),
-                 ["--most-shift", "--add-to"]),
+                (64, self.model(self.new, self.both, "--tile", TILE, "--max-shift", "1"),
+                 ["--max-shift", "--add-to"]),
                 (64, self.addition("--cell", "0.07"), ["first", "cell_m", "0.07"]),
                 (64, self.addition("--remove", "none"), ["first", "remove"]),
                 (64, self.addition("--no-reflectance"), ["first", "reflectances"]),

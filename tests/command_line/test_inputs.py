@@ -46,7 +46,7 @@ class Folders(ProgramTest):
     def test_poses_in_other_units_than_metres(self):
         street = self.folder / "street"
         self.run_good("synth", "street", "-o", street, "--points", "2000", "--driving-spacing",
-                      "1", "--most-driving-scans", "24")
+                      "1", "--max-driving-scans", "24")
         sequence = street / "sequences" / "00"
         poses = (sequence / "poses.txt").read_text()
         for factor, says in ((10, "times 0.1"), (0.1, "times 10"), (1000, "times 0.001")):

@@ -79,7 +79,7 @@ class Manifest(ProgramTest):
             "--motion": (["--rolling-shutter"], ["--rolling-shutter", "--motion", more]),
             "--points": (["--rolling-shutter"], ["--rolling-shutter", "--points", "deskewed"]),
             "--noise": ([], ["--no-noise"]),
-            "--unit-offsets": (["--sensor", unit], ["--sensor", unit, "--unit-offsets"]),
+            "--sensor-offsets": (["--sensor", unit], ["--sensor", unit, "--sensor-offsets"]),
             "--range-noise": ([], ["--range-noise", "0.02"]),
             "--min-range": ([], ["--min-range", "3"]),
             "--max-range": ([], ["--max-range", "20"]),

@@ -141,8 +141,8 @@ class OptionsTest(ProgramTest):
                     "--no-moving", "--moving-radius", "0.2")
         self.refuse("--model-every", "simkitti32", sequence, "-o", self.folder / "out", "--model",
                     model, "--model-every", "2")
-        self.refuse("--most-driving-scans", "synth", "street", "-o", self.folder / "out",
-                    "--driving-spacing", "0", "--most-driving-scans", "3")
+        self.refuse("--max-driving-scans", "synth", "street", "-o", self.folder / "out",
+                    "--driving-spacing", "0", "--max-driving-scans", "3")
 
     def unlabelled(self):
         path = self.folder / "unlabelled.ply"

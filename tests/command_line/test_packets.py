@@ -282,14 +282,14 @@ class Captures(ProgramTest):
         alone = self.folder / "alone.pcap"
         alone.write_bytes(capture.read_bytes())
         self.run_bad(64, "model", alone, "--trajectory", self.poses, "-o", output,
-                     says=["--packets-of"])
+                     says=["--packet-sensor"])
         self.run_bad(65, "model", capture, "--trajectory", self.poses, "-o", output,
-                     "--packets-of", "velodyne-hdl-32e", says=["0x22", "192.168.1.201:2368"])
-        self.run_bad(64, "model", self.cloud, "-o", output, "--packets-of", "velodyne-vlp-16",
-                     says=["--packets-of"])
+                     "--packet-sensor", "velodyne-hdl-32e", says=["0x22", "192.168.1.201:2368"])
+        self.run_bad(64, "model", self.cloud, "-o", output, "--packet-sensor", "velodyne-vlp-16",
+                     says=["--packet-sensor"])
         alone.write_bytes(capture.read_bytes()[:-5])
         self.run_bad(65, "model", alone, "--trajectory", self.poses, "-o", output,
-                     "--packets-of", "velodyne-vlp-16", says=["alone.pcap", "cut off"])
+                     "--packet-sensor", "velodyne-vlp-16", says=["alone.pcap", "cut off"])
         self.assertFalse(output.exists())
 
     def test_info(self):

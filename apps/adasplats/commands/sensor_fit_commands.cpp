@@ -147,21 +147,21 @@ class FitSensorCommand final : public ResultCommand {
                       "unit.toml \\\n"
                       "    --unit-offsets -o scans\n") {
     OptionSet& app = options();
-    for (Option* option : add_unit_scans(app, job_.fit)) require(option);
-    require(writes(add_path(app, "-o,--output", job_.output, "Calibrated sensor to write, TOML"),
+    for (Option* option : add_unit_scans(app, job_)) require(option);
+    require(writes(add_path(app, "-o,--output", output_, "Calibrated sensor to write, TOML"),
                    {".toml"}));
-    add_scan_range(app, "--scans", job_.fit.scans, "Scans to use; keep others for a test");
+    add_scan_range(app, "--scans", job_.scans, "Scans to use; keep others for a test");
     add_device_options();
   }
 
  private:
   std::string make_result(Session& session) override {
-    const FitSensorResult result = run_fit_sensor(job_, session);
+    const FitSensorResult result = run_fit_sensor(job_, output_, session);
     session.report.update(to_json(result));
     std::string text = table_of(result).text();
     for (const std::string& reason : result.not_estimated)
       text += "not estimated: " + reason + "\n";
-    text += "\n" + job_.output.string() + ": simulate --sensor " + job_.output.string();
+    text += "\n" + output_.string() + ": simulate --sensor " + output_.string();
     if (result.has_offsets) text += " --unit-offsets";
     return text + "; evaluate it on scans that it was not fitted to\n";
   }
@@ -196,7 +196,8 @@ class FitSensorCommand final : public ResultCommand {
     return table;
   }
 
-  UnitFilesJob job_;
+  FitSensorJob job_;
+  std::filesystem::path output_;
 };
 
 class EvaluateUnitCommand final : public ResultCommand {

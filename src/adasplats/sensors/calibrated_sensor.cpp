@@ -185,7 +185,7 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
   std::string text =
       "# One unit of " + library_name +
       ":\n# elevations_deg are corrected; range_offsets_m is to be added to what each laser "
-      "reports\n# (simulated where --unit-offsets asks for it).\n";
+      "reports\n# (simulated where --sensor-offsets asks for it).\n";
   for (SensorEntry& entry : entries_of(found->toml)) {
     if (entry.key == "name") entry.value = toml_text(toml::value(library_name + "-unit"));
     if (entry.key == "source")

@@ -111,7 +111,7 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
     throw usage("`scene` needs a nuScenes data root; no input is one");
   const auto is_of_packets = [](const OpenInput& input) { return is_capture(input.input.path); };
   if (!options.packets_of.empty() && std::ranges::none_of(inputs, is_of_packets))
-    throw usage("`packets_of` needs a packet capture (.pcap, .pcapng); no input is one");
+    throw usage("`packet_sensor` needs a packet capture (.pcap, .pcapng); no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage(

@@ -192,7 +192,7 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
   std::ranges::sort(found);
   if (found.size() > 1)
     throw Error(ErrorKind::usage, capture.string() + ": its folder contains " + found[0] + " and " +
-                                      found[1] + "; choose one with `packets_of`");
+                                      found[1] + "; choose one with `packet_sensor`");
   return found.empty() ? "" : found.front();
 }
 
@@ -404,7 +404,7 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   if (!survey.decoder)
     throw Error(ErrorKind::usage,
                 survey.path.string() +
-                    ": the sensor of its packets is unknown; give `packets_of`, a sensor of the "
+                    ": the sensor of its packets is unknown; give `packet_sensor`, a sensor of the "
                     "library or the maker's file (its folder contains none)");
   require_options_of_captures(drive);
   const auto& [name, source] = source_of(survey, drive.topic);

@@ -118,7 +118,7 @@ PointFit require_fit(const CityToExtend& before, const CityWork& work, Resumable
                                      metres(fit.shift_m.x) + ", " + metres(fit.shift_m.y) + ", " +
                                      metres(fit.shift_m.z) + ", tiles alone by " +
                                      metres(fit.part_shift_m) + " (median of " +
-                                     std::to_string(fit.parts) + "), and `most_shift` is " +
+                                     std::to_string(fit.parts) + "), and `max_shift` is " +
                                      metres(work.job.addition.max_shift_m) +
                                      ": both would be modelled side by side; correct their poses");
   }

@@ -112,7 +112,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   if (!is_drive && !scans.scene.empty())
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
   if (!is_capture(scans.sequence) && !scans.packets_of.empty())
-    throw Error(ErrorKind::usage, "`packets_of` is for a capture of packets (.pcap, .pcapng)");
+    throw Error(ErrorKind::usage, "`packet_sensor` is for a capture of packets (.pcap, .pcapng)");
   if (!is_drive && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` need scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||

@@ -24,7 +24,7 @@ void check(const ScanSettings& settings) {
   if (!(sensor.min_range_m < sensor.max_range_m))
     throw Error(ErrorKind::usage, "min_range must be less than max_range");
   if (settings.unit_offsets && sensor.range_offsets_m.empty())
-    throw Error(ErrorKind::usage, "`unit_offsets` has no effect: the sensor '" + sensor.name +
+    throw Error(ErrorKind::usage, "`sensor_offsets` has no effect: the sensor '" + sensor.name +
                                       "' has no range_offsets_m");
   check_beam(settings.beam, settings.sensor);
   check_weather(settings.weather, settings.sensor);
