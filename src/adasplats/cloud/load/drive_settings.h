@@ -85,15 +85,7 @@ void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit
                         "points in world coordinates need none",
                 .key = "mount_rotation_deg",
                 .group = group},
-        drive.mount);
-  visit(
-      Setting{.name = "mount_rotation",
-              .help =
-                  "Boresight: yaw, pitch and roll of the sensor in that frame, degrees. Not needed "
-                  "for points in world coordinates, where it only turns the poses of scans",
-              .key = "mount_rotation_deg",
-              .group = group},
-      drive.mount_rotation_deg);
+        drive.mount_rotation_deg);
   visit(Setting{.name = "time_offset",
                 .help = "Seconds to add to the times of points to get times of the trajectory "
                         "(default: inferred from GPS, UTC and PTP clocks)",
