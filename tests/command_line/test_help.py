@@ -15,7 +15,7 @@ class Help(ProgramTest):
     def test_subcommands(self):
         for words in SUBCOMMANDS:
             short = self.run_good(*words, "--help").stdout
-            self.assertLessEqual(len(short.splitlines()), 45, words)
+            self.assertLessEqual(len(short.splitlines()), 40, words)
             text = self.run_good(*words, "--help-all").stdout
             self.assertIn("Examples:\n  adasplats " + " ".join(words), text)
             for flag in ["--threads", "--seed", "--report", "--config", "--version"]:

@@ -52,9 +52,7 @@ class SimulateCommand final : public Command {
     add_drive_options(app);
     add_settings(app, job_.scan);
     add_choice<ScanFormat>(app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
-                           "Format of the scans; semantickitti writes OUTPUT/sequences/00, mcap "
-                           "OUTPUT/scans.mcap, pcap OUTPUT/drive.pcap (the sensor's packets); "
-                           "kitti-raw, pandaset and nuscenes write the trees of those data sets")
+                           "Format of the scans, or the data set whose folders and files to write")
         ->basic();
     add_choice<PointOrder>(
         app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
@@ -154,14 +152,13 @@ class SimulateCommand final : public Command {
         ->basic();
     add_places(
         app, "--at", job_.drive.at,
-        "Instead of --trajectory: position of a stationary sensor; without Z: above the ground. "
-        "One scan each, may be given several times")
+        "Instead of --trajectory: position of a stationary sensor (without Z: above the ground); "
+        "may be repeated")
         ->group(kGroup)
         ->basic();
     add_corners(app, "--path", job_.drive.path,
                 "Instead of --trajectory: a polyline above the ground")
-        ->group(kGroup)
-        ->basic();
+        ->group(kGroup);
     add_settings(app, job_.drive);
     add_settings(app, mount_);
   }

@@ -37,8 +37,7 @@ void visit_settings(SensorOverrides& sensor, Visit&& visit) {
                 .key = "range_noise_m",
                 .group = kGroup,
                 .min = 0,
-                .max = 1000,
-                .basic = true},
+                .max = 1000},
         sensor.range_noise_m);
   visit(Setting{.name = "min_range",
                 .help = "Minimum range, m (default: the sensor's)",

@@ -12,7 +12,7 @@ constexpr std::size_t kColumns = 100;
 constexpr std::size_t kIndent = 30;
 /// A command with so few options of its own shows all of them in the short help.
 constexpr std::size_t kFewOptions = 12;
-constexpr int kShortExamples = 4;
+constexpr int kShortExamples = 3;
 
 /// "  NAME TYPE       description", wrapped to the right of the names.
 std::string line_of(const std::string& left, const std::string& right) {
@@ -31,8 +31,9 @@ std::string names_and_type(const OptionEntry& option) {
 
 std::string description_of(const OptionEntry& option) {
   std::string text = option.description;
-  if (!option.initial.empty()) text += " (default: " + option.initial + ")";
-  return option.is_required ? text + " (required)" : text;
+  if (option.takes_value && !option.initial.empty()) text += " (default: " + option.initial + ")";
+  if (!option.takes_value && option.initial == "true") text += " (default: on)";
+  return option.is_required && !option.is_positional ? text + " (required)" : text;
 }
 
 std::string usage_of(const CommandEntry& command) {
@@ -62,8 +63,13 @@ std::vector<OptionEntry> basic_options(const CommandEntry& command) {
   std::vector<OptionEntry> options;
   for (const OptionEntry& option : command.options) {
     if (!option.is_basic && !(has_few && is_own(option))) continue;
+    const std::string& name = option.names.back();
+    if (name == "--help-all" || (name == "--version" && !command.path.empty())) continue;
     options.push_back(option);
     if (!option.is_positional) options.back().heading = kOptionsHeading;
+    if (name != "--help") continue;
+    options.back().names.push_back("--help-all");
+    options.back().description = "Print these options, or all, and exit";
   }
   return options;
 }
@@ -110,7 +116,8 @@ std::string last_line(const CommandEntry& command) {
     return "Help on a command: " + name + "COMMAND --help" +
            (command.path.empty() ? "; on options of input data: adasplats help input\n" : "\n");
   const auto options = std::ranges::count_if(command.options, std::not_fn(asks_for_help));
-  if (std::ssize(basic_options(command)) == options) return "";
+  const auto basic = basic_options(command);
+  if (std::ranges::count_if(basic, std::not_fn(asks_for_help)) == options) return "";
   return "More options: " + name + "--help-all" +
          (has_input_options(command) ? "; input options: adasplats help input\n" : "\n");
 }

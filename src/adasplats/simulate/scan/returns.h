@@ -89,8 +89,7 @@ void visit_settings(BeamOptions& beam, Visit&& visit) {
                 .value = "N",
                 .group = kGroup,
                 .min = 1,
-                .max = kMaxSubRays,
-                .basic = true},
+                .max = kMaxSubRays},
         beam.returns);
   visit(
       Setting{
