@@ -72,7 +72,7 @@ class Examples(ProgramTest):
     def options_of(self, subcommand):
         key = " ".join(subcommand)
         if key not in self.options:
-            self.options[key] = options_of_help(self.run_good(*subcommand, "--help").stdout)
+            self.options[key] = options_of_help(self.run_good(*subcommand, "--help-all").stdout)
         return self.options[key]
 
     def check_sensor(self, name, where):
@@ -116,7 +116,7 @@ class Examples(ProgramTest):
     def test_of_every_help_text(self):
         checked = 0
         for subcommand in SUBCOMMANDS + ABOUT:
-            text = self.run_good(*subcommand, "--help").stdout
+            text = self.run_good(*subcommand, "--help-all").stdout
             for command in commands_of_help(text):
                 self.check_command(command, " ".join(subcommand) + " --help")
                 checked += 1

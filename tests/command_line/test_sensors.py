@@ -57,8 +57,8 @@ class Sensors(ProgramTest):
 
     def test_faults(self):
         self.run_bad(64, "sensors", "velodyne-vlp-17", says=["did you mean 'velodyne-vlp-16'"])
-        self.run_bad(64, "sensors", "--show", says=["--show needs the name of a sensor"])
-        self.run_bad(64, "sensors", "-o", self.folder / "p.png", says=["needs the name"])
+        self.run_bad(64, "sensors", "--show", says=["--show requires the name of a sensor"])
+        self.run_bad(64, "sensors", "-o", self.folder / "p.png", says=["requires the name"])
         self.run_bad(64, "sensors", "--show", self.sensor, says=["like = "])
         self.run_bad(66, "sensors", self.folder / "none.json", says=["none.json"])
         self.run_bad(73, "sensors", "velodyne-vlp-16", "-o", self.folder / "no such" / "p.png")

@@ -25,8 +25,7 @@ constexpr double kBytesPerMegabyte = 1e6;
 class ExportCommand final : public Command {
  public:
   explicit ExportCommand(CLI::App& program)
-      : Command(program, "export",
-                "Write splats as Gaussians or glTF, points as glTF, PLY, LAS or LAZ, scans as MCAP",
+      : Command(program, "export", "Export models, points and scans to formats of other tools",
                 kExportExamples) {
     OptionSet& app = options();
     require(add_path(app, "INPUT", job_.input,

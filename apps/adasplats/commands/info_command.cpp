@@ -75,8 +75,7 @@ std::string table_of(const std::filesystem::path& input, const FileFacts& facts)
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
-      : Command(program, "info",
-                "Describe point clouds, models, meshes, sequences and recordings, or list the GPUs",
+      : Command(program, "info", "Describe a file or a recording, or list the GPUs",
                 kInfoExamples) {
     OptionSet& app = options();
     add_paths(app, "FILE", inputs_,

@@ -23,8 +23,7 @@ constexpr const char* kMeshExamples =
 class MeshCommand final : public Command {
  public:
   explicit MeshCommand(CLI::App& program)
-      : Command(program, "mesh",
-                "Turn point clouds into a triangle mesh, for comparison with splat models",
+      : Command(program, "mesh", "Turn point clouds into a triangle mesh, for comparison",
                 kMeshExamples) {
     OptionSet& app = options();
     require(add_paths(app, "INPUT", job_.inputs,

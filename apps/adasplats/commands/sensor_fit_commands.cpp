@@ -145,7 +145,7 @@ class FitSensorCommand final : public ResultCommand {
                       "    --scans 0:80:2\n"
                       "  adasplats simulate place.ply --trajectory sequences/01_raw --sensor "
                       "unit.toml \\\n"
-                      "    --unit-offsets -o scans\n") {
+                      "    --sensor-offsets -o scans\n") {
     OptionSet& app = options();
     for (Option* option : add_unit_scans(app, job_)) require(option);
     require(writes(add_path(app, "-o,--output", output_, "Calibrated sensor to write, TOML"),
@@ -162,7 +162,7 @@ class FitSensorCommand final : public ResultCommand {
     for (const std::string& reason : result.not_estimated)
       text += "not estimated: " + reason + "\n";
     text += "\n" + output_.string() + ": simulate --sensor " + output_.string();
-    if (result.has_offsets) text += " --unit-offsets";
+    if (result.has_offsets) text += " --sensor-offsets";
     return text + "; evaluate it on scans that it was not fitted to\n";
   }
 

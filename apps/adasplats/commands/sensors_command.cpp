@@ -352,8 +352,7 @@ Image draw_pattern(const LidarModel& sensor) {
 class SensorsCommand final : public Command {
  public:
   explicit SensorsCommand(CLI::App& program)
-      : Command(program, "sensors",
-                "List the LiDAR sensors of the library, describe one, or draw its scan pattern",
+      : Command(program, "sensors", "List LiDAR sensors, describe one, or draw its pattern",
                 kSensorsExamples) {
     OptionSet& app = options();
     app.add_option("SENSOR", sensor_,

@@ -26,8 +26,7 @@ constexpr const char* kSimkitti32Examples =
 class SimKitti32Command final : public Command {
  public:
   explicit SimKitti32Command(CLI::App& program)
-      : Command(program, "simkitti32",
-                "Turn a SemanticKITTI sequence into a labelled data set of another LiDAR",
+      : Command(program, "simkitti32", "Turn a SemanticKITTI sequence into that of another LiDAR",
                 kSimkitti32Examples) {
     OptionSet& app = options();
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));

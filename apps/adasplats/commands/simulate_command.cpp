@@ -41,10 +41,8 @@ class SimulateCommand final : public Command {
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, city, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option(
-           "--sensor", job_.scan.sensor,
-           "Sensor: a name from 'adasplats sensors', or a file (TOML, Ouster JSON, Velodyne "
-           "YAML, CSV of rays)")
+    app.add_option("--sensor", job_.scan.sensor,
+                   "Sensor: a name from 'adasplats sensors', or a file")
         ->capture_default_str()
         ->type_name("NAME|FILE")
         ->basic();
@@ -150,10 +148,8 @@ class SimulateCommand final : public Command {
              "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording")
         ->group(kGroup)
         ->basic();
-    add_places(
-        app, "--at", job_.drive.at,
-        "Instead of --trajectory: position of a stationary sensor (without Z: above the ground); "
-        "may be repeated")
+    add_places(app, "--at", job_.drive.at,
+               "Instead of --trajectory: a stationary sensor (without Z: above the ground)")
         ->group(kGroup)
         ->basic();
     add_corners(app, "--path", job_.drive.path,

@@ -67,8 +67,7 @@ void add_common_options(OptionSet& app, CommonOptions& options) {
 void add_device_options(OptionSet& app, DeviceOptions& options, GpuCount count) {
   constexpr const char* kGroup = "Device options";
   add_choice<DeviceKind>(app, "--device", options.kind, choices_of_devices(),
-                         "Where to compute: cuda and optix need an NVIDIA GPU; auto uses cuda if "
-                         "available, else cpu")
+                         "Where to compute; auto: on an NVIDIA GPU with cuda, else on the CPU")
       ->group(kGroup)
       ->basic();
   if (count == GpuCount::one) return;

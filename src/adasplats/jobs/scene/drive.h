@@ -82,7 +82,7 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
                 .exclusive_min = true},
         drive.spacing_m);
   visit(Setting{.name = "rolling_shutter",
-                .help = "Move the sensor while it turns; a pose is that of the middle of its scan",
+                .help = "Move the sensor while it turns; poses are of mid-scan",
                 .group = kGroup,
                 .basic = true},
         drive.rolling_shutter);
