@@ -123,7 +123,7 @@ def test_simkitti32_takes_a_model(street, tmp_path):
     made = make("made", keep_model=True)
     model = tmp_path / "made" / "model.ply"
     assert make("given", model=model)["points"] == made["points"]
-    with pytest.raises(ValueError, match="holds the input"):
+    with pytest.raises(ValueError, match="contains the input"):
         make("made", model=model, overwrite=True)
     with pytest.raises(ValueError, match="model_every has no effect with a given model"):
         make("no", model=model, model_every=2)

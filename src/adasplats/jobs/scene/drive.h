@@ -58,13 +58,10 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
                 .group = kGroup,
                 .basic = true},
         drive.offset_m);
-  visit(Setting{.name = "every",
-                .help = "Use every n-th pose",
-                .value = "N",
-                .group = kGroup,
-                .min = 1,
-                .basic = true},
-        drive.every);
+  visit(
+      Setting{
+          .name = "every", .help = "Use every n-th pose", .value = "N", .group = kGroup, .min = 1},
+      drive.every);
   visit(Setting{.name = "rate",
                 .help = "Interpolate poses at this rate, Hz (default: the poses of the trajectory; "
                         "10 on a path)",
