@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""From a point cloud of one's own in NumPy to simulated scans, in ten lines.
+"""Turn your own NumPy point cloud into simulated scans, in ten lines.
 
     python3 numpy_cloud_to_scans.py [FOLDER]
 
-Writes the scans as files NNNNNN.npy where a folder is given.
+With a folder, the scans are saved there as NNNNNN.npy.
 """
-# %% A cloud: here a road between two walls, as a mapping car at 2 m above it would measure it.
+# %% A cloud: a road between two walls, measured by a LiDAR 2 m above it.
 import sys
 
 import numpy as np
@@ -19,10 +19,10 @@ along, across, up = draw.uniform([0, -6, 0], [40, 6, 5], size=(60_000, 3)).T
 side = np.arange(60_000) % 3  # road, left wall, right wall
 points = np.stack([along, np.choose(side, [across, 6 + 0 * across, -6 + 0 * across]),
                    np.choose(side, [0 * up, up, up])], axis=1)
-points += draw.normal(0, 0.01, points.shape)  # the noise of the LiDAR, m
+points += draw.normal(0, 0.01, points.shape)  # noise of the LiDAR, m
 sensor_positions = np.stack([along, 0 * along, 2 + 0 * along], axis=1)
 
-# %% A model of splats, a scene, and a drive at 1 m a scan.
+# %% A splat model, a scene, and a drive with a scan every metre.
 cloud = adasplats.PointCloud(points, sensor_positions=sensor_positions)
 model = adasplats.model(cloud)
 scene = adasplats.Scene(model)
@@ -30,7 +30,7 @@ poses = np.tile(np.eye(4), (20, 1, 1))
 poses[:, :3, 3] = [[10 + k, 0, 1.8] for k in range(20)]
 scans = scene.simulate("velodyne-vlp-16", poses)
 
-# %% Everything is NumPy arrays.
+# %% All results are NumPy arrays.
 print(f"{len(cloud)} points -> {len(model)} splats -> {len(scans)} scans")
 for scan in scans[:3]:
     world = scan.positions @ scan.pose[:3, :3].T + scan.pose[:3, 3]

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A new sensor from a CSV of rays, tried in a procedural street.
+"""Make a sensor from a CSV of rays and try it in a procedural street.
 
     python3 sensor_from_csv.py [RAYS.csv]
 
-A CSV has the columns azimuth_deg, elevation_deg and, where they are known, time_s and ring; azimuth
-counter-clockwise from ahead, elevation up. Without one this script writes its own: a rosette.
+The CSV has the columns azimuth_deg, elevation_deg and optionally time_s and ring; azimuth is
+counter-clockwise from straight ahead, elevation up. Without a CSV the script writes a rosette.
 """
-# %% The file: four petals within 35 degrees of ahead, 20,000 rays in 0.1 s.
+# %% The file: four petals within 35 degrees of straight ahead, 20,000 rays in 0.1 s.
 import sys
 import tempfile
 from pathlib import Path
@@ -29,17 +29,17 @@ else:
     np.savetxt(csv, rays, delimiter=",", header="azimuth_deg,elevation_deg,time_s", comments="",
                fmt="%.9g")
 
-# %% The sensor: the file has its rays, the rest is told here.
+# %% The sensor: rays from the file, range and noise from here.
 sensor = adasplats.Sensor(csv).replaced(max_range_m=80, range_noise_m=0.02)
 firings = sensor.firings()
 print(f"{sensor!r}: {len(firings)} rays in {firings.times.max():.3f} s")
 
-# %% A street to try it in, and a model of it.
+# %% A street and its model.
 street = Path(folder.name) / "street"
 adasplats.synth_street(street, points=40_000, driving_spacing=10)
 scene = adasplats.Scene(adasplats.model(street / "mapping.ply", labels="semantickitti"))
 
-# %% What it measures from a car that drives there.
+# %% Scans from a car that drives through it.
 poses = adasplats.Trajectory.read(street / "sequences" / "00")
 names = dict(zip(scene.labels.ids, scene.labels.names))
 for scan in scene.iter_scans(sensor, poses, rolling_shutter=True):

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A PyTorch dataset that simulates its scans on the fly: every epoch sees other poses and noise.
+"""A PyTorch dataset that simulates its scans: every epoch has new poses and noise.
 
     python3 torch_dataset.py [MODEL.ply POSES]
 
-Without arguments a procedural street is made and modelled. Needs PyTorch (python3-torch or pip).
+Without arguments the script models a procedural street. Needs PyTorch (python3-torch or pip).
 """
 import sys
 import tempfile
@@ -21,13 +21,13 @@ try:
 except ImportError:
     sys.exit("this example needs PyTorch: apt-get install python3-torch, or pip install torch")
 
-POINTS = 16_384  # of every scan, so that scans make a batch
+POINTS = 16_384  # per scan, so that scans can be batched
 
 
 class SimulatedScans(IterableDataset):
-    """Scans of a LiDAR at poses beside a trajectory, with classes: (points (N, 4), classes (N,)).
+    """Scans near a trajectory: points (N, 4) of x, y, z and range, and classes (N,).
 
-    A worker makes its scene when it first needs it: after the processes were split.
+    Each worker makes its own scene, after the fork.
     """
 
     def __init__(self, model, trajectory, sensor="hdl-64-paper", scans=32, seed=1):
@@ -38,7 +38,7 @@ class SimulatedScans(IterableDataset):
         return self.scans
 
     def poses(self, draw, count):
-        """Poses of the trajectory, moved sideways by up to a metre and turned."""
+        """Random poses of the trajectory, shifted sideways by up to a metre and rotated."""
         drive = adasplats.Trajectory.read(self.trajectory).poses
         poses = drive[draw.integers(len(drive), size=count)]
         yaw = draw.uniform(-0.3, 0.3, count)

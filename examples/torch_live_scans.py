@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A small network that learns the classes of points from scans while they are simulated.
+"""Train a small point classifier on scans while they are simulated.
 
     python3 torch_live_scans.py [MODEL.ply POSES]
 
-Batches of Scene.scan_batches() come without a copy: on a GPU they stay in its memory and PyTorch reads
-them there. Without arguments a procedural street is made and modelled. Needs PyTorch (python3-torch
-or pip).
+On a GPU the batches of Scene.scan_batches() stay in its memory, and PyTorch reads them there without
+a copy. Without arguments the script models a procedural street. Needs PyTorch (python3-torch or
+pip).
 """
 import sys
 import tempfile
@@ -28,7 +28,7 @@ FIELDS = ["positions", "ranges", "intensities", "classes"]
 
 
 class LiveScans(IterableDataset):
-    """Batches of returns of new scans, without end: (features (N, 4), classes (N,))."""
+    """Endless batches of returns: (features (N, 4), classes (N,))."""
 
     def __init__(self, scene, poses, sensor="hdl-64-paper", seed=1):
         self.scene, self.poses, self.sensor, self.seed = scene, poses, sensor, seed
@@ -46,7 +46,7 @@ class LiveScans(IterableDataset):
                 positions, ranges = as_tensor(batch.positions), as_tensor(batch.ranges)
                 intensities = (as_tensor(batch.intensities) if batch.intensities is not None
                                else torch.zeros_like(ranges))
-                # Older PyTorch has no 16-bit unsigned numbers.
+                # Older versions of PyTorch have no uint16.
                 classes = (torch.from_dlpack(batch.classes).long() if on_device
                            else torch.from_numpy(batch.classes.astype(np.int64)))
                 height_m = positions[:, 2]
@@ -56,7 +56,7 @@ class LiveScans(IterableDataset):
 
 
 def train(scans, classes, steps=60):
-    """Shares of points whose class was right, step by step."""
+    """Train and return the share of correctly classified points per step."""
     network, optimizer, right = None, None, []
     for step, (features, truth) in zip(range(steps), scans):
         if network is None:

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// From a cloud to what a LiDAR measures in it: cloud_to_scan CLOUD POSES MODEL.ply SCAN.ply
+// Models a point cloud and simulates one scan in it: cloud_to_scan CLOUD POSES MODEL.ply SCAN.ply
 #include "adasplats/adasplats.h"
 
 using namespace adasplats;
 
 int main(int, char** argv) {
-  OwnSession session;  // all cores, and a GPU where there is one
+  OwnSession session;  // all cores, and a GPU if available
   const std::vector<std::filesystem::path> files = {argv[1]};
   const auto [cloud, loaded] = load_cloud(files, {}, session.executor, session.progress);
   const auto [model, built] = make_model(cloud, {}, session);

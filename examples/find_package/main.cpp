@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Models a piece of road from points in memory and measures it with one laser pulse.
+// Models a piece of road from points in memory and casts one ray at it.
 
 #include <cmath>
 #include <cstddef>
@@ -25,7 +25,7 @@ using adasplats::Vec3f;
 
 constexpr Vec3f kSensor = {0.0F, 0.0F, 2.0F};
 
-/// A flat road of 8 m x 8 m, a point every 5 cm, seen from 2 m above its middle.
+/// A flat road of 8 m x 8 m with a point every 5 cm, measured from 2 m above its center.
 adasplats::PointCloud road_points(const adasplats::SemanticClass& road) {
   adasplats::PointCloud cloud;
   for (int row = -80; row <= 80; ++row) {
@@ -52,7 +52,7 @@ int run() {
       adasplats::build_model(road_points(*road), &labels, options, executor, silent);
   std::cout << report.points_in << " points became " << model.size() << " splats\n";
 
-  // 30 degrees below the horizon from 2 m above the road: the pulse travels 4 m.
+  // 30 degrees below the horizon from 2 m above the road: the range is 4 m.
   const adasplats::Vec3d sensor_local = adasplats::vec_cast<double>(kSensor) - model.origin;
   adasplats::Ray ray;
   ray.origin = adasplats::vec_cast<float>(sensor_local);
@@ -62,10 +62,10 @@ int run() {
       adasplats::make_cpu_tracer(model.view(), executor);
   tracer->nearest({&ray, 1}, {&hit, 1}, executor);
   if (!hit.valid()) {
-    std::cerr << "the pulse met nothing\n";
+    std::cerr << "the ray hit nothing\n";
     return EXIT_FAILURE;
   }
-  std::cout << "the pulse met '" << labels.find(model.classes[hit.primitive])->name << "' at "
+  std::cout << "the ray hit '" << labels.find(model.classes[hit.primitive])->name << "' at "
             << hit.t << " m\n";
   return std::fabs(hit.t - 4.0F) < 0.01F ? EXIT_SUCCESS : EXIT_FAILURE;
 }
