@@ -245,8 +245,8 @@ def test_scans_as_a_sequence(street, scene, poses, tmp_path):
 
 def test_every_format_of_the_program_can_be_saved(street, scene, poses, tmp_path):
     """Oracle: the command line's files, and the words of its help text."""
-    text = run_program("simulate", "--help").stdout
-    formats = re.search(r"--format (\S+) ", text).group(1).split("|")
+    text = run_program("simulate", "--help-all").stdout
+    formats = re.search(r"--format (\S+)", text).group(1).split("|")
     assert {"semantickitti", "range-image", "mcap"} < set(formats)
     poses[:2].save(tmp_path / "poses.csv")
     scans = scene.simulate(street.sensor, adasplats.Trajectory.read(tmp_path / "poses.csv"))

@@ -129,7 +129,7 @@ class Calibrate(ProgramTest):
         text = self.run_warned(warning, *words, "--no-poses", "--no-ranges",
                                "--no-elevations").stdout
         self.assertIn("Mount corrected by 5.0", text)
-        self.assertIn("left as given: lever arm along z", text)
+        self.assertIn("not observed and unchanged: lever arm along z", text)
         poses = (self.folder / "out" / "poses.txt").read_text()
         shutil.copy(self.folder / "out" / "poses.txt", sequence / "poses.txt")
         self.run_bad(65, *words, "--no-poses", "--no-ranges", "--no-elevations",

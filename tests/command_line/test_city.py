@@ -196,7 +196,7 @@ class City(ProgramTest):
         memory = ["--memory", f"{600 * needed_gb:.3f}MB"]
         self.run_bad(64, *command, *memory, "-o", self.folder / "city.ply",
                      says=["of --memory", "name a folder", "--tile 0"])
-        self.run_warned("modelled in tiles of 64 m", *command, *memory, "-o", self.city)
+        self.run_warned("modelling in tiles of 64 m", *command, *memory, "-o", self.city)
         facts = json.loads((self.city / "city.json").read_text())
         self.assertEqual(facts["tile_m"], 64)
         self.assertGreater(len(facts["tiles"]), 6)

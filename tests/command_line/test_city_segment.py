@@ -71,7 +71,7 @@ class SegmentedCity(ProgramTest):
                    *self.options())
         self.assertEqual((said.returncode, said.stderr), (0, REPLACED))
         self.assertIn("network height.network", said.stdout)
-        self.assertIn("in place of the points' labels", said.stdout)
+        self.assertIn("labels in the input were replaced", said.stdout)
         labelled = {path.name: path.read_bytes() for path in (self.city / "tiles").iterdir()}
         self.run_good(*self.command("--overwrite"))
         bare = {path.name: path.read_bytes() for path in (self.city / "tiles").iterdir()}
@@ -140,7 +140,7 @@ class SegmentedCity(ProgramTest):
         self.run_bad(66, *self.command("--only-tile", names[0]), says=["classes.json", "--plan"])
         journal.write_text("".join(lines))
         for name in names:
-            self.assertIn("made", self.run_good(*self.command("--only-tile", name)).stdout)
+            self.assertIn(".ply done", self.run_good(*self.command("--only-tile", name)).stdout)
         hidden.rename(self.network)
         report = self.report(*self.command())
         self.assertEqual(report["tiles_resumed"], report["tiles"])

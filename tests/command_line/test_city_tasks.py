@@ -90,26 +90,26 @@ class CityTasks(ProgramTest):
         random.Random(3).shuffle(order)
         for number in order:
             said = self.in_shell(["sh", "-c", f'sed -n {number}p "$1" | sh', "sh", str(file)])
-            self.assertRegex(said, r"^.*: tiles/x-?\d+_y-?\d+\.ply made\n$")
+            self.assertRegex(said, r"^.*: tiles/x-?\d+_y-?\d+\.ply done\n$")
         self.finish()
 
     def test_whole_plan_at_once(self):
         """With the comment at its end, by xargs, four at a time."""
         plan = self.run_good(*self.command("--plan")).stdout
         said = self.in_shell(["xargs", "-d", "\\n", "-P", "4", "-I{}", "sh", "-c", "{}"], plan)
-        self.assertEqual(said.count("made\n"), plan.count("--only-tile"))
+        self.assertEqual(said.count(".ply done\n"), plan.count("--only-tile"))
         self.finish()
 
     @unittest.skipUnless(has_gnu_parallel(), "GNU parallel is not installed")
     def test_gnu_parallel(self):
         plan = self.run_good(*self.command("--plan")).stdout
         said = self.in_shell(["parallel", "--will-cite", "-j", "4"], plan)
-        self.assertEqual(said.count("made\n"), plan.count("--only-tile"))
+        self.assertEqual(said.count(".ply done\n"), plan.count("--only-tile"))
         self.finish()
 
     def test_what_is_done_is_not_done_again(self):
         first, *others = self.tiles()
-        self.assertIn("made", self.run_good(*self.task(first)).stdout)
+        self.assertIn(".ply done", self.run_good(*self.task(first)).stdout)
         tile = self.unfinished / "tiles" / f"{first}.ply"
         before = tile.stat().st_mtime_ns
         self.assertIn("was done", self.run_good(*self.task(first)).stdout)
@@ -177,12 +177,12 @@ class CityTasks(ProgramTest):
         content = [path.read_bytes() for path in damaged]
         for path, was in zip(damaged, content):
             path.write_bytes(was[:-1] + bytes([was[-1] ^ 1]))
-        self.assertIn("made", self.run_good(*self.task(tiles[0])).stdout)
+        self.assertIn(".ply done", self.run_good(*self.task(tiles[0])).stdout)
         self.assertEqual(damaged[0].read_bytes(), content[0])
         note = Path(f"{damaged[1]}.sha256")
         note.write_text("what?\n")
         damaged[1].write_bytes(content[1])
-        self.assertIn("made", self.run_good(*self.task(tiles[1])).stdout)
+        self.assertIn(".ply done", self.run_good(*self.task(tiles[1])).stdout)
         # The third one by the run that finishes.
         report = self.report(*self.command())
         self.assertEqual(report["tiles_resumed"], report["tiles"] - 1)
@@ -201,7 +201,7 @@ class CityTasks(ProgramTest):
             found[0].unlink()
             self.run_bad(65, *self.task(name), says=[found[0].name])
             found[0].write_bytes(content)
-        self.assertIn("made", self.run_good(*self.task(name)).stdout)
+        self.assertIn(".ply done", self.run_good(*self.task(name)).stdout)
         tile = self.unfinished / "tiles" / f"{name}.ply"
         self.run_good(*self.command())
         tile = self.city / "tiles" / f"{name}.ply"
@@ -225,7 +225,7 @@ class CityTasks(ProgramTest):
         self.run_bad(66, *self.command("--only-tile", name, output=self.folder / "other"),
                      says=["other", "--plan"])
         # Nothing was done to the folder.
-        self.assertIn("made", self.run_good(*self.task(name)).stdout)
+        self.assertIn(".ply done", self.run_good(*self.task(name)).stdout)
 
     def test_a_plan_that_was_not_finished(self):
         name = self.tiles()[0]

@@ -36,7 +36,7 @@ class DeviceTest(ProgramTest):
 class AnyMachine(DeviceTest):
     def test_help(self):
         for words in SUBCOMMANDS:
-            text = self.run_good(*words, "--help").stdout
+            text = self.run_good(*words, "--help-all").stdout
             self.assertEqual("--device auto|cpu|cuda|optix" in text, words in WITH_DEVICE, words)
             self.assertEqual("--gpus" in text, words in (["simulate"], ["simkitti32"]), words)
 

@@ -106,7 +106,7 @@ class Manifest(ProgramTest):
     def options_of_help(self):
         """The first long name of every option of the command."""
         names = set()
-        for line in self.run_good("simulate", "--help").stdout.splitlines():
+        for line in self.run_good("simulate", "--help-all").stdout.splitlines():
             words = [word.strip(",") for word in line.split()]
             if line.startswith(("  -", "    -")):
                 names.add(next(word for word in words if word.startswith("--")))

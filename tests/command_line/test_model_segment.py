@@ -79,7 +79,7 @@ class ModelSegmentTest(ProgramTest):
         self.assertEqual(said.returncode, 0, said.stderr)
         self.assertIn("warning: the labels of the points are replaced", said.stderr)
         self.assertIn("--segment", said.stderr)
-        self.assertIn("in place of the points' labels", said.stdout)
+        self.assertIn("labels in the input were replaced", said.stdout)
         self.assertTrue(json.loads(report.read_text())["segmentation"]["replaced_labels"])
         # The model is that of the points without labels.
         self.run_good("model", self.bare, "-o", self.folder / "bare_model.ply", *words)
