@@ -162,16 +162,12 @@ built=true
 if ! scripts/setup.sh --for test; then
   count_failure setup
 else
-  check skips-self-test tools/check_skips.py --self-test
   wanted names && check names tools/check_names.sh
   wanted names && check figures tools/make_figures.py --check
   if wanted layers; then
-    check layers-self-test tools/check_layers.py --self-test
     check layers tools/check_layers.py
     check paths tools/check_paths.py
-    check shared-maths-self-test tools/check_shared_maths.py --self-test
     check shared-maths tools/check_shared_maths.py
-    check fuzzers-self-test tools/check_fuzzers.py --self-test
     check fuzzers tools/check_fuzzers.py
   fi
   wanted scripts && check scripts check_scripts
@@ -187,7 +183,6 @@ else
     wanted install && check install build_example
   fi
   if wanted asan && check asan-build build_asan; then
-    check one-definition-self-test tools/check_one_definition.py --self-test
     check one-definition tools/check_one_definition.py build/asan
     UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
   fi

@@ -14,7 +14,7 @@ adasplats_stage(NAME ROOMS ... DEPENDS ...):
 5. Headers that another stage, the program or an example includes, directly or through other headers, do
    not include heavy third-party headers, which slow down every build that uses them.
 
-usage: tools/check_layers.py [ROOT]      tools/check_layers.py --self-test
+usage: tools/check_layers.py
 """
 
 import pathlib
@@ -231,15 +231,8 @@ def self_test():
     return failures
 
 
-def main(arguments):
-    if len(arguments) > 1 or (arguments and arguments[0] in ("-h", "--help")):
-        print(__doc__, file=sys.stderr)
-        return 64
-    if arguments == ["--self-test"]:
-        errors = self_test()
-    else:
-        root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent)
-        errors = check_tree(root.resolve())
+def main():
+    errors = self_test() or check_tree(pathlib.Path(__file__).resolve().parent.parent)
     for error in errors:
         print(error, file=sys.stderr)
     print(f"check_layers: {len(errors)} errors")
@@ -247,4 +240,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())
