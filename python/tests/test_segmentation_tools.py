@@ -181,5 +181,5 @@ def test_fine_tuning_in_one_command(tmp_path, world):
     told = json.loads((labelled / "adasplats.json").read_text())
     assert [c["id"] for c in told["classes"]] == [40, 50]
     tool("prepare.py", tmp_path / "b.npz", world)
-    assert "other classes in" in tool("train.py", tmp_path / "no", tmp_path / "a.npz",
+    assert "different classes in" in tool("train.py", tmp_path / "no", tmp_path / "a.npz",
                                       tmp_path / "b.npz", code=1)
