@@ -13,8 +13,8 @@ namespace {
 
 // The 20 bytes that formats 0 to 5 share ("LAS specification 1.4 - R15", table 7).
 constexpr std::size_t kPoint10Bytes = 20;
-constexpr std::size_t kYByte = 4, kZByte = 8, kIntensityByte = 12, kReturnsByte = 14, kClassByte = 15,
-                      kAngleByte = 16, kUserDataByte = 17, kSourceByte = 18;
+constexpr std::size_t kYByte = 4, kZByte = 8, kIntensityByte = 12, kReturnsByte = 14,
+                      kClassByte = 15, kAngleByte = 16, kUserDataByte = 17, kSourceByte = 18;
 
 using Point10Bytes = std::array<std::byte, kPoint10Bytes>;
 
