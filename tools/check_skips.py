@@ -77,8 +77,8 @@ def torch_without_cuda():
 CONDITIONS = {
     "always": lambda: True,
     "gpu": has_gpu,
-    "no-gpu": lambda: not has_gpu(),
-    "no-nvcc": lambda: not (shutil.which("nvcc") or os.path.exists("/usr/local/cuda/bin/nvcc")),
+    "no-cuda": lambda: not has_gpu() or not (shutil.which("nvcc") or
+                                             os.path.exists("/usr/local/cuda/bin/nvcc")),
     "no-recordings": lambda: not recordings_folder(),
     "no-library:": lambda name: name not in output_of("ldconfig", "-p"),
     "no-cpu-flag:": lambda flag: flag not in pathlib.Path("/proc/cpuinfo").read_text("utf-8").split(),
