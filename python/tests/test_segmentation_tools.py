@@ -105,7 +105,7 @@ def test_a_check_that_fails_says_so(tmp_path, monkeypatch):
     import export
     file = saved(random_network(["road"]), ["road"], tmp_path / "a.pt")
     monkeypatch.setattr(sys, "argv", ["export.py", str(file), str(tmp_path / "a.network")])
-    monkeypatch.setattr(export, "MOST_APART", -1.0)
+    monkeypatch.setattr(export, "MAX_DIFFERENCE", -1.0)
     with pytest.raises(SystemExit, match="from PyTorch's"):
         export.main()
 
