@@ -81,9 +81,13 @@ set(CMAKE_CUDA_STANDARD 20)
 set(CMAKE_CUDA_STANDARD_REQUIRED ON)
 set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
 
+# CUDA files that a unity build joins; larger ones would keep one core busy for minutes.
+set(ADASPLATS_CUDA_BATCH_SIZE 12)
+
 # Options for a target with *.cu files. Device code does not contract a * b + c either, so that the maths
 # of one element gives the same bits as on the CPU. Kernels call fmaf where only speed matters.
 function(adasplats_use_cuda target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${ADASPLATS_CUDA_BATCH_SIZE})
   target_compile_definitions(${target} PRIVATE ADASPLATS_HAVE_CUDA)
   target_link_libraries(${target} PRIVATE CUDA::cudart_static)
   target_compile_options(
@@ -99,12 +103,7 @@ endfunction()
 function(adasplats_cuda_unity result name)
   set(sources ${ARGN})
   if(CMAKE_UNITY_BUILD AND CMAKE_VERSION VERSION_LESS 3.31)
-    list(LENGTH sources size)  # as in CMake: 8 by default, 0 for all
-    if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
-      set(size 8)
-    elseif(CMAKE_UNITY_BUILD_BATCH_SIZE GREATER 0)
-      set(size ${CMAKE_UNITY_BUILD_BATCH_SIZE})
-    endif()
+    set(size ${ADASPLATS_CUDA_BATCH_SIZE})
     set(together "")
     set(batch 0)
     while(sources)
