@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Compile through ccache where it is installed. Only when this is the top project: a project that
-# includes us chooses its own launcher.
+# Compile through ccache if it is installed and this is the top project: a parent project chooses its own
+# launcher.
 if(PROJECT_IS_TOP_LEVEL)
   find_program(ADASPLATS_CCACHE ccache)
   mark_as_advanced(ADASPLATS_CCACHE)
   if(ADASPLATS_CCACHE)
-    # What ccache has to know, unless the environment says it: paths below the sources count as
-    # relative, so that another clone finds the same objects; where there is debug information, which
-    # holds the folder, only where that is the same.
+    # Unless the environment sets CCACHE_BASEDIR, make paths below the sources relative, so that clones
+    # share objects. Objects with debug information contain the folder and are shared only within it.
     set(launcher ${ADASPLATS_CCACHE})
     if(NOT DEFINED ENV{CCACHE_BASEDIR})
       set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR})

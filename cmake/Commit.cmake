@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The commit that reports name. Every build asks git (some milliseconds); the source is written, and
-# the programs are linked again, only where the answer changed. Outside of a clone the environment
-# variable or cache entry ADASPLATS_COMMIT tells the commit, or a file COMMIT beside the sources.
+# The commit that reports name. Every build queries git (a few milliseconds) and rewrites the source
+# only if the answer changed. Outside a clone the commit is the environment variable or cache entry
+# ADASPLATS_COMMIT, or the content of the file COMMIT in the source folder.
 #
-# Included by the project it adds the source to the stage "jobs"; as a script (cmake -D... -P) it
-# writes the source.
+# Included by the project, this file adds the source to the stage "jobs"; run as a script
+# (cmake -D... -P), it writes the source.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
-  set(ADASPLATS_COMMIT "" CACHE STRING "The commit, where the sources are no clone")
+  set(ADASPLATS_COMMIT "" CACHE STRING "The commit, if the sources are not a git clone")
   find_program(ADASPLATS_GIT git)
   mark_as_advanced(ADASPLATS_GIT ADASPLATS_COMMIT)
   set(commit_source ${PROJECT_BINARY_DIR}/commit/build_commit.cpp)
@@ -24,15 +24,15 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-# git NAME ARGUMENTS...: what git says of the sources; an empty NAME where it fails.
+# git NAME ARGUMENTS...: sets NAME to git's output for the source folder, empty on failure.
 function(git name)
   set(${name} "" PARENT_SCOPE)
   if(GIT)
-    # Without the lock: a build must not hinder somebody who commits.
-    execute_process(COMMAND ${GIT} --no-optional-locks -C ${SOURCE} ${ARGN} OUTPUT_VARIABLE said
+    # Without the lock: a build must not block a commit.
+    execute_process(COMMAND ${GIT} --no-optional-locks -C ${SOURCE} ${ARGN} OUTPUT_VARIABLE output
                     RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
     if(failed EQUAL 0)
-      set(${name} "${said}" PARENT_SCOPE)
+      set(${name} "${output}" PARENT_SCOPE)
     endif()
   endif()
 endfunction()
@@ -41,15 +41,15 @@ set(commit "$ENV{ADASPLATS_COMMIT}")
 if(NOT commit)
   set(commit "${GIVEN}")
 endif()
-if(NOT commit AND EXISTS ${SOURCE}/COMMIT)  # sources that packaging/make_sdist.py packed
+if(NOT commit AND EXISTS ${SOURCE}/COMMIT)  # written by packaging/make_sdist.py
   file(STRINGS ${SOURCE}/COMMIT commit LIMIT_COUNT 1)
 endif()
 set(state unknown)
 git(top rev-parse --show-toplevel)
 file(REAL_PATH "${SOURCE}" source)
-if(top STREQUAL source)  # a clone of its own, not a folder in somebody else's
+if(top STREQUAL source)  # not a folder within another project's clone
   git(commit rev-parse HEAD)
-  # Documents and results are no part of the program.
+  # Documents and results do not change the program.
   git(changes status --porcelain -- . ":!docs" ":!bench/results" ":!*.md")
   if(changes)
     set(state dirty)
@@ -61,7 +61,7 @@ if(NOT commit)
   set(commit unknown)
 endif()
 if(NOT commit MATCHES "^[0-9A-Za-z._-]+$")
-  message(FATAL_ERROR "ADASPLATS_COMMIT: '${commit}' is no commit: letters, digits, '.', '_', '-'")
+  message(FATAL_ERROR "ADASPLATS_COMMIT: '${commit}' is not a commit: use letters, digits, '.', '_' and '-'")
 endif()
 set(text "// Written by cmake/Commit.cmake.
 #include \"adasplats/jobs/provenance/build_commit.h\"

@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# CUDA is used where nvcc is found (on PATH, CUDACXX or in its usual folder), and needed nowhere.
+# CUDA is optional: it is used if nvcc is found (CUDACXX, PATH or its usual folder).
 
-# What device code is made for where CMAKE_CUDA_ARCHITECTURES does not say it: the GPUs of this
-# machine, and any newer one (whose driver compiles what is there when it is first used); without
-# one, Turing and anything newer. Every architecture more is compiled on its own.
+# The default of CMAKE_CUDA_ARCHITECTURES: the GPUs of this machine; without one, Turing (7.5). Newer GPUs
+# work, too: their driver compiles the PTX on first use. Compile time grows with each architecture.
 function(adasplats_cuda_architectures result)
   set(found "")
   find_program(smi nvidia-smi NO_CACHE)
@@ -19,7 +18,7 @@ function(adasplats_cuda_architectures result)
   string(REGEX MATCHALL "[0-9]+\\.[0-9]+" found "${found}")
   list(TRANSFORM found REPLACE "\\." "")
   list(REMOVE_DUPLICATES found)
-  # Those that this nvcc knows, and that are not too old for us.
+  # Drop architectures that are too old or that this nvcc does not support.
   execute_process(COMMAND ${ADASPLATS_NVCC} --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
   foreach(architecture IN LISTS found)
     if(architecture LESS 75 OR NOT known MATCHES "compute_${architecture}\n")
@@ -27,7 +26,7 @@ function(adasplats_cuda_architectures result)
     endif()
   endforeach()
   if(NOT found)
-    set(found 75)  # assembled, too, so that a build shows whether that can be
+    set(found 75)  # machine code as well as PTX, so that the build runs the assembler
   endif()
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
@@ -58,13 +57,13 @@ endif()
 string(REPLACE ";" ", " architectures "${CMAKE_CUDA_ARCHITECTURES}")
 adasplats_part(ADASPLATS_USE_CUDA "CUDA" "${missing}"
                "${CMAKE_CUDA_COMPILER_VERSION}, code for ${architectures}" ADASPLATS_CUDA)
-# The oldest GPU that the code runs on, as 75 for 7.5; the library tells it to older ones.
+# The oldest supported GPU (75 means 7.5), which the library names when it rejects an older one.
 if(ADASPLATS_CUDA)
   set(oldest_gpu ${CMAKE_CUDA_ARCHITECTURES})
   list(TRANSFORM oldest_gpu REPLACE "[^0-9].*" "")
   list(SORT oldest_gpu COMPARE NATURAL)
   list(GET oldest_gpu 0 oldest_gpu)
-  if(NOT oldest_gpu)  # "native" and "all" are no numbers
+  if(NOT oldest_gpu)  # "native" and "all" are not numbers
     set(oldest_gpu 75)
   endif()
   set_source_files_properties(
@@ -72,7 +71,7 @@ if(ADASPLATS_CUDA)
     PROPERTIES COMPILE_DEFINITIONS ADASPLATS_OLDEST_GPU=${oldest_gpu})
 endif()
 
-# CMake up to 3.25 does not know how newer compilers spell it.
+# CMake up to 3.25 does not know this option of newer compilers.
 foreach(kind STANDARD EXTENSION)
   if(ADASPLATS_CUDA AND NOT CMAKE_CUDA20_${kind}_COMPILE_OPTION)
     set(CMAKE_CUDA20_${kind}_COMPILE_OPTION -std=c++20)
@@ -82,9 +81,13 @@ set(CMAKE_CUDA_STANDARD 20)
 set(CMAKE_CUDA_STANDARD_REQUIRED ON)
 set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
 
-# What a target with *.cu needs. No contraction of a * b + c in device code either: the maths of one
-# element gives the same bits as on the CPU; where only speed matters kernels say fmaf themselves.
+# CUDA files that a unity build joins; larger ones would keep one core busy for minutes.
+set(ADASPLATS_CUDA_BATCH_SIZE 12)
+
+# Options for a target with *.cu files. Device code does not contract a * b + c either, so that the maths
+# of one element gives the same bits as on the CPU. Kernels call fmaf where only speed matters.
 function(adasplats_use_cuda target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${ADASPLATS_CUDA_BATCH_SIZE})
   target_compile_definitions(${target} PRIVATE ADASPLATS_HAVE_CUDA)
   target_link_libraries(${target} PRIVATE CUDA::cudart_static)
   target_compile_options(
@@ -95,17 +98,12 @@ function(adasplats_use_cuda target)
             $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off,-Wall,-Wextra,-Wno-psabi>)
 endfunction()
 
-# What of the `sources` *.cu of the stage NAME is compiled: where CMAKE_UNITY_BUILD is on, several in one
-# go, because reading CUDA's headers takes longer than compiling a file (CMake does it from 3.31 on).
+# The files to compile for the *.cu files of stage NAME. With CMAKE_UNITY_BUILD, several are joined into
+# one, because parsing CUDA's headers takes longer than compiling a file (CMake 3.31 does this itself).
 function(adasplats_cuda_unity result name)
   set(sources ${ARGN})
   if(CMAKE_UNITY_BUILD AND CMAKE_VERSION VERSION_LESS 3.31)
-    list(LENGTH sources size)  # CMake's own meaning: 8 where nothing is said, 0 all
-    if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
-      set(size 8)
-    elseif(CMAKE_UNITY_BUILD_BATCH_SIZE GREATER 0)
-      set(size ${CMAKE_UNITY_BUILD_BATCH_SIZE})
-    endif()
+    set(size ${ADASPLATS_CUDA_BATCH_SIZE})
     set(together "")
     set(batch 0)
     while(sources)

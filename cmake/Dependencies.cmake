@@ -12,14 +12,14 @@ find_package(pugixml REQUIRED)
 
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
-# Networks that tell classes apart (stage segment): products of matrices.
+# Matrix products of segmentation networks (stage segment).
 find_package(OpenBLAS QUIET MODULE)
 if(OpenBLAS_FOUND)
   set(ADASPLATS_OPENBLAS_TARGET OpenBLAS::OpenBLAS)
   set(ADASPLATS_OPENBLAS_DEFINE ADASPLATS_OPENBLAS)
 endif()
 
-# Recordings of robots (stage io): how their chunks are packed, and the files of ROS 2 bags.
+# Compression of chunks in MCAP files and ROS bags, and SQLite files of ROS 2 bags (stage io).
 find_package(ZSTD QUIET MODULE)
 find_package(LZ4 QUIET MODULE)
 find_package(BZip2 QUIET MODULE)
@@ -37,41 +37,42 @@ foreach(library ZSTD LZ4 BZip2 SQLite3)
   endif()
 endforeach()
 
-# Films (stage jobs).
+# Animations (stage jobs).
 find_package(WebP QUIET MODULE)
 set(missing "")
 if(WebP_FOUND)
   set(ADASPLATS_WEBP_TARGET WebP::mux)
   set(ADASPLATS_WEBP_DEFINE ADASPLATS_HAVE_WEBP)
 else()
-  set(missing "no libwebp (libwebp-dev), .mp4 needs a program ffmpeg")
+  set(missing "no libwebp (libwebp-dev); .mp4 needs the program ffmpeg")
 endif()
 adasplats_part(- "films as WebP" "${missing}" "libwebp" ADASPLATS_WEBP)
 
-# Meshes of the comparison. OpenVDB: grid and surface of IMLS. Open3D: screened Poisson, only in a
-# program of its own (apps/poisson), as it brings hundreds of libraries.
+# Baseline meshes. OpenVDB: grid and surface extraction of IMLS. Open3D: screened Poisson, in a separate
+# program (apps/poisson), because it links hundreds of libraries.
 find_package(OpenVDB 9 QUIET MODULE)
 if(OpenVDB_FOUND)
   set(ADASPLATS_OPENVDB_TARGET OpenVDB::openvdb)
   set(ADASPLATS_OPENVDB_DEFINE ADASPLATS_HAVE_OPENVDB)
+  # OpenVDB's templates take half of -O3's time to compile with -O1. With sanitizers they take five
+  # minutes, or one like this: addresses are checked, undefined behaviour is not.
+  set(imls_options $<$<CONFIG:Release>:-O1>)
   if(ADASPLATS_SANITIZE)
-    # With every check and debug information OpenVDB's templates compile for five minutes, like
-    # this for one: addresses are checked, undefined behaviour is not.
-    set_source_files_properties(
-      ${PROJECT_SOURCE_DIR}/src/adasplats/baselines/imls.cpp
-      PROPERTIES COMPILE_OPTIONS "-O1;-g0;-fno-sanitize=undefined")
+    set(imls_options -O1 -g0 -fno-sanitize=undefined)
   endif()
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/adasplats/baselines/imls.cpp
+                              PROPERTIES COMPILE_OPTIONS "${imls_options}")
 endif()
 find_package(Open3D QUIET CONFIG)
 
-# The viewer's server: Boost.Beast and Asio, headers alone.
+# The viewer's server: Boost.Beast and Asio, which are header-only.
 find_package(Boost 1.74 QUIET)
 if(Boost_FOUND)
   set(ADASPLATS_BOOST_TARGET Boost::headers)
   set(ADASPLATS_BOOST_DEFINE ADASPLATS_HAVE_BOOST)
 endif()
 
-# Embree 4 where it is, else 3. trace/embree.h hides the difference.
+# Embree 4 if available, else 3; trace/embree.h hides the difference.
 find_package(embree 4 QUIET CONFIG)
 if(NOT embree_FOUND)
   find_package(embree 3 QUIET CONFIG)
@@ -80,7 +81,7 @@ if(NOT embree_FOUND)
   message(FATAL_ERROR "Embree 3 or 4 is needed: apt-get install libembree-dev")
 endif()
 
-# What these are for is named where one of them is missing.
+# Print which features the missing packages disable.
 set(missing "")
 if(NOT OpenBLAS_FOUND)
   set(missing "no OpenBLAS (libopenblas-dev)")
@@ -102,7 +103,7 @@ adasplats_part(- "IMLS meshes" "${missing}" "OpenVDB ${OpenVDB_VERSION}" ADASPLA
 
 set(missing "")
 if(NOT Open3D_FOUND)
-  set(missing "no Open3D (libopen3d-dev), 'mesh' takes a program PoissonRecon where there is one")
+  set(missing "no Open3D (libopen3d-dev); 'mesh' uses the program PoissonRecon if it is installed")
 endif()
 adasplats_part(- "Poisson meshes" "${missing}" "Open3D ${Open3D_VERSION}" ADASPLATS_POISSON)
 

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Fuzz targets (tests/fuzz) want the whole library compiled for them: with sanitizers and libFuzzer's
-# counters, or with those that llvm-cov reads.
+# Fuzz targets (tests/fuzz) need the whole library instrumented: with sanitizers and libFuzzer's counters,
+# or with the counters of llvm-cov.
 if(NOT ADASPLATS_BUILD_FUZZERS)
   return()
 endif()
@@ -16,7 +16,7 @@ if(ADASPLATS_FUZZ_COVERAGE)
   add_link_options(-fprofile-instr-generate)
 elseif(NOT ADASPLATS_SANITIZE)
   set(ADASPLATS_SANITIZE address,undefined,fuzzer-no-link)
-  # Indices of vectors, also within what they have reserved.
+  # Check vector indices against the size, not only the capacity.
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
 endif()
 include(CheckCXXSourceCompiles)

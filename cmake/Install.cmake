@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 include(CMakePackageConfigHelpers)
 
-# Installed beside the program, and built where Open3D is.
+# Needs Open3D; installed in the folder of the program.
 if(ADASPLATS_BUILD_APP AND Open3D_FOUND)
   add_subdirectory(apps/poisson)
 endif()

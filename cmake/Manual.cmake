@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Manual pages and completions, which the program writes of itself as soon as it is linked: so they
-# never tell of other options than it has. A build for another machine cannot run it, and has none.
+# Manual pages and completions. The program writes them after linking, so they always match its options.
+# Cross-compiled builds cannot run the program and have none.
 set(ADASPLATS_ZSH_DIR ${CMAKE_INSTALL_DATADIR}/zsh/site-functions
-    CACHE STRING "Where zsh's completion is installed; Debian's own packages use vendor-completions")
+    CACHE STRING "Install folder of zsh's completion; Debian's own packages use vendor-completions")
 mark_as_advanced(ADASPLATS_ZSH_DIR)
 if(CMAKE_CROSSCOMPILING)
   return()
@@ -14,7 +14,7 @@ set(manual ${PROJECT_BINARY_DIR}/manual)
 file(MAKE_DIRECTORY ${manual})
 add_custom_command(
   TARGET adasplats_program POST_BUILD
-  COMMAND ${CMAKE_COMMAND} -E rm -rf ${manual}/man1  # pages of commands that are no more
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${manual}/man1  # pages of removed commands
   COMMAND adasplats_program man -o ${manual}/man1
   COMMAND adasplats_program completion bash -o ${manual}/adasplats
   COMMAND adasplats_program completion zsh -o ${manual}/_adasplats

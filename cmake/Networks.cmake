@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The network that 'segment' takes by default becomes part of the library: there is one wherever the
-# program is.
+# The library contains the default network of 'segment'.
 set(network ${PROJECT_SOURCE_DIR}/networks/default.network)
 set_source_files_properties(
   ${PROJECT_SOURCE_DIR}/src/adasplats/segment/network/default_network.cpp

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The programs that OptiX runs (src/adasplats/gpu/optix/optix_programs.cu) are no kernels: nvcc makes
-# intermediate code of them for any card from Turing on, the library carries that as an array of
-# bytes, and the driver compiles it. Nothing of the OptiX SDK is needed.
+# OptiX programs (src/adasplats/gpu/optix/optix_programs.cu) are not kernels: nvcc compiles them to
+# PTX for Turing and newer, the library contains that as an array of bytes, and the driver compiles it.
+# The OptiX SDK is not needed.
 if(NOT ADASPLATS_CUDA)
   return()
 endif()

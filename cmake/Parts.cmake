@@ -1,27 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Parts that a build may lack. What was found out is kept nowhere: every configure looks again, so a
-# package that was installed since is used, and what the build has is printed each time.
+# Optional parts of a build. Every configure searches again, so that newly installed packages are found,
+# and prints the parts.
 
-# adasplats_part_option(NAME HELP DEFAULT): a cache variable of three values: ON (what is missing is
-# an error), OFF, and AUTO (where all it needs is found).
+# adasplats_part_option(NAME HELP DEFAULT): a cache variable: ON (missing packages are an error), OFF, or
+# AUTO (built if its packages are found).
 function(adasplats_part_option name help default)
-  # Up to version 0.1 these were Booleans, and an OFF that nobody had asked for stayed.
+  # Before version 0.1 these were Booleans, and a default OFF stayed in the cache.
   get_property(type CACHE ${name} PROPERTY TYPE)
   get_property(kept_help CACHE ${name} PROPERTY HELPSTRING)
   if(type STREQUAL "BOOL" AND NOT kept_help MATCHES "command line")
-    message(STATUS "adasplats: forgetting ${name}=${${name}}, which an earlier version kept here; "
-                   "say -D${name}=${${name}} again if it was meant")
+    message(STATUS "adasplats: ignoring the cached ${name}=${${name}} of an earlier version "
+                   "(to keep it: -D${name}=${${name}})")
     unset(${name} CACHE)
   endif()
-  set(${name} ${default} CACHE STRING "${help}: AUTO (where all it needs is found), ON or OFF")
+  set(${name} ${default} CACHE STRING "${help}: AUTO (if its packages are found), ON or OFF")
   set_property(CACHE ${name} PROPERTY STRINGS AUTO ON OFF)
 endfunction()
 
-# adasplats_part(NAME LABEL MISSING DETAIL RESULT): decides about a part, notes it for the summary and
-# sets RESULT to ON or OFF. MISSING: what it lacks, empty for nothing; DETAIL: with what it is built.
-# NAME: its option, or - for a part that is taken wherever it is found.
+# adasplats_part(NAME LABEL MISSING DETAIL RESULT): sets RESULT to ON or OFF and adds the part to the
+# summary. NAME: its option, or - for a part that is built whenever possible. MISSING: the missing
+# packages, empty if none; DETAIL: the versions it is built with.
 function(adasplats_part name label missing detail result)
   set(wanted AUTO)
   if(NOT name STREQUAL "-")
@@ -36,7 +36,7 @@ function(adasplats_part name label missing detail result)
     endif()
   endif()
   if(wanted STREQUAL "ON" AND missing)
-    message(FATAL_ERROR "${name} is ON, but there is ${missing}")
+    message(FATAL_ERROR "${name} is ON, but cannot be built: ${missing}")
   endif()
   if(missing)
     set(${result} OFF PARENT_SCOPE)
@@ -50,7 +50,7 @@ function(adasplats_part name label missing detail result)
 endfunction()
 
 function(adasplats_print_parts)
-  message(STATUS "adasplats ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}, is built")
+  message(STATUS "adasplats ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}, will be built")
   get_property(parts GLOBAL PROPERTY ADASPLATS_PARTS)
   foreach(part IN LISTS parts)
     message(STATUS "${part}")

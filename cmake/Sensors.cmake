@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The sensors of the library (sensors/*.toml) are built into it as texts, so that the program needs
-# no folder of data where it is installed.
+# The library contains the sensor files (sensors/*.toml) as text, so that an installed program needs no
+# data folder.
 file(GLOB sensor_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/sensors/*.toml)
 list(SORT sensor_files)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${sensor_files})
@@ -16,9 +16,9 @@ endforeach()
 
 set(folder ${PROJECT_BINARY_DIR}/sensors)
 file(MAKE_DIRECTORY ${folder})
-# Only when it differs, so that configuring again compiles nothing.
+# Rewritten only if it changed, so that configuring again compiles nothing.
 file(WRITE ${folder}/lidar_library_data.cpp.new
-     "// Made by cmake/Sensors.cmake from sensors/*.toml.\n"
+     "// Written by cmake/Sensors.cmake from sensors/*.toml.\n"
      "#include \"adasplats/sensors/lidar_library.h\"\n\n"
      "namespace adasplats {\n\n"
      "std::span<const LibraryLidar> lidar_library() {\n"

@@ -1,45 +1,45 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# What every target of ours is compiled with.
+# Compile options of all our targets.
 add_library(adasplats_options INTERFACE)
-# Of host code: nvcc has options of its own (cmake/Cuda.cmake).
+# Options for host code only; cmake/Cuda.cmake has those of nvcc.
 function(adasplats_host_options)
   foreach(option ${ARGN})
     target_compile_options(adasplats_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${option}>)
   endforeach()
 endfunction()
 adasplats_host_options(
-  # The same bits on every machine and backend: no fused multiply-add behind our back.
+  # No fused multiply-add: the same bits on every machine and backend.
   -ffp-contract=off
-  # Neither changes a value; both let loops with sqrt and divisions be vectorised.
+  # Do not change results; allow vectorising loops with sqrt and divisions.
   -fno-math-errno -fno-trapping-math
   -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
   -Woverloaded-virtual -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   adasplats_host_options(-Wno-psabi)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-    # gcc 13 and 14 see writes past the end in std::vector::insert, and vectors of more than all
-    # memory, for sizes that cannot occur.
+    # False positives of gcc 13 and 14: writes past the end in std::vector::insert, and vectors larger
+    # than the address space.
     adasplats_host_options(-Wno-stringop-overflow -Wno-alloc-size-larger-than)
   else()
-    # gcc 12 sees overlaps in "text" + std::string (its bug 105651).
+    # False positive of gcc 12 for "text" + std::string (gcc bug 105651).
     adasplats_host_options(-Wno-restrict)
   endif()
 endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # A source that others are compiled with is taken for a header: its own types may be in no other.
+  # gcc treats sources included in a unity source as headers and warns about their local types.
   adasplats_host_options(-Wno-subobject-linkage)
 elseif(CMAKE_UNITY_BUILD)
-  # A constant that another source keeps to itself is seen, too.
+  # Constants of other sources in the same unity source are visible, too.
   adasplats_host_options(-Wno-shadow)
 endif()
 if(ADASPLATS_WERROR)
   adasplats_host_options(-Werror)
 endif()
 if(ADASPLATS_SANITIZE)
-  # Compiles in a third of the time of -O2 -g, and finds the same; asserts are on. Where the
-  # sanitizers' code confuses GCC, the release build judges warnings.
+  # Compiles in a third of the time of -O2 -g and finds the same errors; asserts are on. Sanitizer code
+  # causes false -Wmaybe-uninitialized warnings in GCC; the release build has that check.
   adasplats_host_options(-Og -g1 -UNDEBUG)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     adasplats_host_options(-Wno-maybe-uninitialized)
@@ -50,21 +50,21 @@ if(ADASPLATS_SANITIZE)
   target_compile_definitions(adasplats_options INTERFACE ADASPLATS_SANITIZED)
 endif()
 
-# adasplats_cold(TARGET): its code runs once a command or once an option. It compiles in half the
-# time with -O1, and gives the same values: no option of ours lets a level change them.
+# adasplats_cold(TARGET): for code that runs once per command or option. -O1 halves its compile time and
+# gives the same values, because our options do not let the level change results.
 function(adasplats_cold target)
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)
   endif()
 endfunction()
 
-# adasplats_compiled_alone(files...): not with others in one go where CMAKE_UNITY_BUILD is on: they
-# have the same names for another instruction set, or take a core for a minute. Files of the folder this is called in.
+# adasplats_compiled_alone(files...): files of the calling folder that CMAKE_UNITY_BUILD must not join:
+# they define the same names for different instruction sets, or take very long to compile.
 function(adasplats_compiled_alone)
   set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# adasplats_embed(TARGET FILE NAME): sources of TARGET can include the bytes of FILE as NAME.
+# adasplats_embed(TARGET FILE NAME): lets sources of TARGET include the bytes of FILE as NAME.
 function(adasplats_embed target file name)
   set(script ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake)
   set(output ${PROJECT_BINARY_DIR}/embedded/${target}/${name})
@@ -82,13 +82,12 @@ set(ADASPLATS_STAGES "")
 
 # adasplats_stage(NAME [COLD] [ROOMS rooms...] [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...]
 #                 [DEFINE macros...] [ALONE sources...] [CUDA])
+# The library of src/adasplats/NAME: its *.cpp files without *_test.cpp, which become its test program.
 # COLD: adasplats_cold. ALONE: adasplats_compiled_alone, names without ".cpp".
-# LINK takes imported targets of packages only, which adasplatsConfig.cmake finds again for a
-# consumer; DEFINE is seen by NAME's own sources alone. CUDA: its *.cu are compiled, too, where
-# there is a CUDA compiler.
-# ROOMS: the folders within the stage, each may use those before it, not those that "|" joins it to;
-# "." is the stage's own folder, the last where it is not named (tools/check_layers.py proves it).
-# The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
+# LINK: imported targets of packages, which adasplatsConfig.cmake finds again for consumers.
+# DEFINE: macros for NAME's own sources. CUDA: also compile its *.cu files if CUDA is available.
+# ROOMS: the folders of the stage. Each may use earlier ones, but not those joined to it by "|". "." is
+# the stage's own folder, by default the last (tools/check_layers.py checks this).
 function(adasplats_stage name)
   cmake_parse_arguments(ARG "CUDA;COLD" "" "ALONE;DEPENDS;LINK;DEFINE;ROOMS" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
@@ -141,7 +140,7 @@ function(adasplats_stage name)
   if(tests AND ADASPLATS_TESTS)
     adasplats_test(${name} ${tests})
     if(ARG_CUDA AND ADASPLATS_CUDA)
-      adasplats_use_cuda(adasplats_${name}_test)  # its tests see the private side of the stage
+      adasplats_use_cuda(adasplats_${name}_test)  # tests include private headers of the stage
     endif()
   endif()
 endfunction()
@@ -150,20 +149,19 @@ if(ADASPLATS_TESTS)
   enable_testing()
 endif()
 
-# adasplats_absent_test(NAME REASON): stands where this build cannot have a test, so that it is
-# counted as skipped, with its reason (tools/check_skips.py), and not forgotten.
+# adasplats_absent_test(NAME REASON): a test that this build cannot run; it is reported as skipped with
+# its reason (tools/check_skips.py).
 function(adasplats_absent_test name reason)
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: not in this build, ${reason}")
   set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
 
-# adasplats_test(NAME sources...): a GoogleTest program over the whole library. What it measures the
-# library against may be slow.
+# adasplats_test(NAME sources...): a GoogleTest program. Compiled at -O1: reference code may be slow.
 function(adasplats_test name)
   set(target adasplats_${name}_test)
   add_executable(${target} ${ARGN})
   adasplats_cold(${target})
-  # Each test has helpers of its own, which may have the name of another's.
+  # Helpers of different tests may have the same name.
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${target} PRIVATE adasplats_options GTest::gtest_main
                                           nlohmann_json::nlohmann_json
@@ -173,9 +171,9 @@ function(adasplats_test name)
   else()
     target_link_libraries(${target} PRIVATE adasplats)
   endif()
-  # Real recordings for the tests that take them (src/adasplats/core/recordings_test.h).
+  # Folder of real recordings for tests (src/adasplats/core/recordings_test.h).
   target_compile_definitions(${target} PRIVATE ADASPLATS_TEST_DATA="${ADASPLATS_TEST_DATA}")
   add_test(NAME ${name} COMMAND ${target})
-  # With sanitizers and recordings one of them takes five minutes, on cores that others use ten.
+  # The slowest takes five minutes with sanitizers and recordings, ten on busy cores.
   set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
 endfunction()

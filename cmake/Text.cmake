@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Text in pictures: the glyphs of DejaVu Sans, which the library carries, drawn by stb_truetype.
-# Without them it is written in dots (src/adasplats/simulate/captions/dot_font.cpp).
+# Text in pictures: stb_truetype draws the glyphs of DejaVu Sans, which the library contains. Without
+# them a dot font is used (src/adasplats/simulate/captions/dot_font.cpp).
 find_path(ADASPLATS_STB_DIR stb_truetype.h PATH_SUFFIXES stb)
 find_file(ADASPLATS_TEXT_FONT DejaVuSans.ttf
           PATHS /usr/share/fonts/truetype/dejavu /usr/share/fonts/dejavu-sans-fonts

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The page of `adasplats view` (viewer/): npm fetches what viewer/package-lock.json names, esbuild
-# bundles it, and the library carries the files. Needed nowhere else; where there is no Node.js the
-# program says so (src/adasplats/view/page_missing.cpp).
-# Fetches the page's packages into `page`, and sets `result` to what went wrong.
+# The page of `adasplats view` (viewer/): npm fetches the packages of viewer/package-lock.json, esbuild
+# bundles them, and the library contains the result. Without Node.js `adasplats view` reports an error
+# (src/adasplats/view/page_missing.cpp).
+
+# Fetches the page's packages into `page`; sets `result` to the reason of a failure, empty on success.
 function(adasplats_fetch_page_packages viewer page result)
   file(SHA256 ${viewer}/package-lock.json lock_hash)
   set(fetched "")
@@ -17,14 +18,14 @@ function(adasplats_fetch_page_packages viewer page result)
   endif()
   message(STATUS "adasplats: fetching the packages of the viewer's page")
   file(COPY ${viewer}/package.json ${viewer}/package-lock.json ${viewer}/.npmrc DESTINATION ${page})
-  # Without development packages, install scripts or a look at who needs money.
+  # No development packages, install scripts, audits or funding messages.
   execute_process(
     COMMAND ${ADASPLATS_NPM} ci --omit=dev --ignore-scripts --no-audit --no-fund --loglevel=error
     WORKING_DIRECTORY ${page} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output
     TIMEOUT 300)
   if(NOT status EQUAL 0)
     message(STATUS "adasplats: ${output}")
-    set(${result} "no package from npm (its words are above)" PARENT_SCOPE)
+    set(${result} "npm could not fetch its packages (see npm's output above)" PARENT_SCOPE)
     return()
   endif()
   file(WRITE ${page}/fetched ${lock_hash})
@@ -43,13 +44,13 @@ if(ADASPLATS_VIEWER)
   else()
     execute_process(COMMAND ${ADASPLATS_NODE} --version OUTPUT_VARIABLE ADASPLATS_NODE_VERSION
                     OUTPUT_STRIP_TRAILING_WHITESPACE)
-    # With a letter before it no version is less than another.
+    # VERSION_LESS needs a number without the leading v.
     string(REGEX REPLACE "^v" "" node_version "${ADASPLATS_NODE_VERSION}")
     if(node_version VERSION_LESS 18)
       set(missing "no Node.js 18 or newer (found ${ADASPLATS_NODE_VERSION})")
     else()
-      # The packages are fetched when the build is configured, so that a machine without network says
-      # so at once; they stay in the build folder until the lock file changes.
+      # Fetch at configure time, so that a missing network is reported at once. The packages stay in the
+      # build folder until the lock file changes.
       file(MAKE_DIRECTORY ${page})
       set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${viewer}/package.json
                                              ${viewer}/package-lock.json)
@@ -66,7 +67,7 @@ endif()
 file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS ${viewer}/src/*)
 add_custom_command(
   OUTPUT ${page}/page_data.cpp
-  # Packages are looked for beside the sources that import them.
+  # esbuild resolves packages from the folder of the importing source.
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${page}/src ${page}/dist
   COMMAND ${CMAKE_COMMAND} -E copy_directory ${viewer}/src ${page}/src
   COMMAND ${CMAKE_COMMAND} -E copy ${viewer}/build.mjs ${page}

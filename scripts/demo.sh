@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds the program and runs its demo. Needs no data and no GPU.
+# Installs missing packages, builds the program and runs its demo. Needs no data and no GPU.
 # usage: scripts/demo.sh [OUTPUT_FOLDER]      (default: out/demo in the repository)
 set -euo pipefail
 
@@ -15,8 +15,15 @@ fi
 cd "$root"
 
 scripts/setup.sh --for demo
-# Every time, and without options: what was installed since is found, and what was said is kept.
-cmake --preset release
+# Without a GPU, the first build leaves out CUDA, whose code takes minutes to compile. Later calls pass
+# no options: they keep the cached ones and find packages installed in the meantime.
+options=()
+if [[ ! -e build/release/CMakeCache.txt && ! -e /proc/driver/nvidia/version ]] &&
+  ! nvidia-smi -L >/dev/null 2>&1; then
+  options=(-DADASPLATS_USE_CUDA=OFF)
+  echo "demo: no NVIDIA GPU, so CUDA is left out (to add it: cmake --preset release -DADASPLATS_USE_CUDA=AUTO)"
+fi
+cmake --preset release "${options[@]}"
 cmake --build build/release --target adasplats_program
 mkdir -p "$(dirname "${output[1]}")"
 build/release/bin/adasplats demo "${output[@]}"

@@ -4,13 +4,13 @@
 #
 # Fuzzes every reader of the library (tests/fuzz) with libFuzzer, AddressSanitizer and UBSan.
 # usage: scripts/fuzz.sh [--seconds N] [--targets "NAME NAME"] [--coverage] [--json FILE] [--keep]
-#   --seconds   time for all targets together (default: 60); an hour finds more: --seconds 3600
-#   --targets   some of them; build/fuzz/bin/adasplats_fuzz --list has the names
-#   --coverage  also say which lines and regions of their sources the inputs reach; 0 seconds do
+#   --seconds   total time for all targets (default: 60)
+#   --targets   run only these; build/fuzz/bin/adasplats_fuzz --list prints all names
+#   --coverage  also print the line and region coverage of the readers; works with --seconds 0
 #   --json      write the table to a file, such as bench/results/fuzzing.json (needs build/release)
-#   --keep      put the smallest inputs that reach as much into tests/fuzz/corpus
-# Inputs that reach something new stay in build/fuzz/corpus and are where the next run goes on; those
-# that break a reader are in build/fuzz/findings, and the exit code is 1. Without Clang it is 77.
+#   --keep      copy the smallest set of inputs with the same coverage to tests/fuzz/corpus
+# Inputs that reach new code are kept in build/fuzz/corpus, and the next run starts from them. Inputs
+# that crash a reader go to build/fuzz/findings, and the exit code is 1. Without Clang it is 77.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -27,7 +27,7 @@ for word in "$@"; do
 done
 
 if ! command -v clang++ >/dev/null; then
-  echo "fuzz: skipped: libFuzzer comes with Clang, and there is none (apt-get install clang)"
+  echo "fuzz: skipped: libFuzzer needs Clang (apt-get install clang)"
   exit 77
 fi
 cmake --preset fuzz >/dev/null

@@ -2,19 +2,19 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Makes packages of the commit that is checked out, in dist/: a .deb of the program, a wheel of the
-# Python package that holds the libraries it needs, and the sources.
+# Packages the checked-out commit into dist/: a .deb of the program, a wheel of the Python package with
+# the libraries it needs, and a source archive.
 # usage: scripts/package.sh [deb] [wheel] [sdist] [--cuda] [--test]     (default: all three)
-#   --cuda   use NVIDIA GPUs; needs nvcc, the packages run without a driver, too
-#   --test   install each into a bare system (debootstrap; needs root) and use it there
-# The .deb is for the release of Debian or Ubuntu that this runs on, the wheel for its Python and any
-# Linux whose glibc is not older. The same commit and libraries give the same bytes, in any folder.
+#   --cuda   support NVIDIA GPUs; needs nvcc. The packages also run without a driver
+#   --test   install each package into a minimal system (debootstrap; needs root) and run it there
+# The .deb is for the Debian or Ubuntu release of this machine, the wheel for its Python and any Linux
+# with the same or a newer glibc. The same commit and libraries give the same bytes in any folder.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 readonly dist=$root/dist
-readonly python=${PYTHON:-/usr/bin/python3} # the distribution's: it has pybind11
+readonly python=${PYTHON:-/usr/bin/python3} # the distribution's, which has pybind11
 
 say() { echo "package: $*"; }
 fail() {
@@ -34,15 +34,15 @@ while (($#)); do
       sed -n '5,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
       exit 0
       ;;
-    *) fail "unknown argument '$1' (--help shows what there is)" ;;
+    *) fail "unknown argument '$1' (see --help)" ;;
   esac
   shift
 done
 ((${#kinds[@]})) || kinds=(deb wheel sdist)
 
-# The date of what is packed, for every time that a package holds (reproducible-builds.org).
+# The date of the commit, used for all timestamps in packages (reproducible-builds.org).
 if [[ -z ${SOURCE_DATE_EPOCH:-} ]]; then
-  SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) || fail "no clone: set SOURCE_DATE_EPOCH"
+  SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) || fail "not a git clone: set SOURCE_DATE_EPOCH"
 fi
 export SOURCE_DATE_EPOCH
 umask 022
@@ -69,10 +69,10 @@ make_sdist() {
   "$python" packaging/make_sdist.py "$dist"
 }
 
-# The release that this system is of.
+# The code name of this system's release.
 codename() { sed -n 's/^VERSION_CODENAME=//p' /etc/os-release; }
 
-# Where this system has its packages from: the first address in /etc/apt.
+# The package server of this system: the first address in /etc/apt.
 mirror() {
   local -a lists=()
   mapfile -t lists < <(find /etc/apt/sources.list.d /etc/apt/sources.list -name '*.sources' -o -name '*.list')
@@ -85,11 +85,11 @@ mirror() {
 bare_system() {
   local mirror kept
   mirror=$(mirror 2>/dev/null)
-  [[ -n $mirror ]] || fail "no mirror in /etc/apt"
+  [[ -n $mirror ]] || fail "no package server in /etc/apt"
   kept=$root/build/bare-$(codename).tar
   if [[ ! -s $kept ]]; then
     command -v debootstrap >/dev/null || fail "debootstrap is not installed"
-    say "making a bare $(codename)"
+    say "making a minimal $(codename) system"
     rm -rf build/bare-new
     debootstrap --variant=minbase "$(codename)" build/bare-new "$mirror" >build/debootstrap.log ||
       fail "debootstrap failed, see build/debootstrap.log"
@@ -100,14 +100,14 @@ bare_system() {
   rm -rf "$1"
   mkdir -p "$1"
   tar -C "$1" -xf "$kept"
-  # How packages are fetched is for this system to say, not for this script.
+  # Fetch packages as this system does.
   rm -f "$1/etc/apt/sources.list"
   cp -a /etc/apt/sources.list* /etc/apt/apt.conf.d /etc/apt/auth.conf.d /etc/apt/trusted.gpg.d "$1/etc/apt/" 2>/dev/null || true
   cp /etc/resolv.conf "$1/etc/"
   cp -a /usr/share/keyrings/. "$1/usr/share/keyrings/"
 }
 
-# inside FOLDER COMMAND...: in the bare system, with nothing of this one's environment.
+# inside FOLDER COMMAND...: runs a command in the minimal system with a clean environment.
 inside() {
   local folder=$1
   shift
@@ -117,11 +117,11 @@ inside() {
 
 size_of() { stat -c %s -- "$1"; }
 
-# Installs a file into a bare system with one command and uses it there.
+# Installs a package into a minimal system and runs it there.
 test_package() {
   local kind=$1 file=$2 bare=$root/build/bare begin
   if [[ $kind == sdist ]]; then
-    say "sdist: has $(tar -tzf "$file" | wc -l) names"
+    say "sdist: $(tar -tzf "$file" | wc -l) entries"
     return
   fi
   bare_system "$bare"
@@ -138,10 +138,10 @@ test_package() {
       inside "$bare" test -s /tmp/demo/consistent-street.png
       inside "$bare" test -s /usr/share/bash-completion/completions/adasplats
       inside "$bare" apt-get -qq -y remove adasplats >>build/install.log
-      ! inside "$bare" test -e /usr/bin/adasplats || fail "adasplats is still there when removed"
+      ! inside "$bare" test -e /usr/bin/adasplats || fail "removing the package left the program behind"
       ;;
     wheel)
-      # NumPy of the distribution, so that this needs no index of packages.
+      # The distribution's NumPy: no package index needed.
       inside "$bare" apt-get -qq -y --no-install-recommends install python3-venv python3-numpy \
         >build/install.log
       inside "$bare" python3 -m venv --system-site-packages /tmp/venv

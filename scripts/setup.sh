@@ -2,19 +2,18 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing to build adasplats, through apt: Debian 12 and 13, Ubuntu 24.04.
+# Installs the packages that adasplats needs through apt: Debian 12 and 13, Ubuntu 24.04.
 # usage: scripts/setup.sh [--for demo|test] [--dry-run]
-#   --for demo   what the program needs
+#   --for demo   only what the program needs
 #   --for test   also what the tests, benchmarks and checks need (default)
-#   --dry-run    say what is missing, install nothing; exit code 1 where something is
+#   --dry-run    list missing packages and install nothing; exit code 1 if any are missing
 set -euo pipefail
 
-readonly kCmakeLeast=3.24
+readonly kCmakeMin=3.24
 
-# One line a package: when, package, command that may serve instead (- for none), what it is for.
-# "maybe" packages are taken where the distribution has them (clang-tidy-14 is not in Debian 13),
-# those of "maybe-test" for tests alone. What skips itself without
-# one of them is listed in tests/allowed_skips.tsv.
+# Each line: when it is installed, package, a command that replaces it (- for none), purpose. "maybe"
+# packages are installed if the distribution has them (Debian 13 has no clang-tidy-14), "maybe-test" ones
+# for tests only. tests/allowed_skips.tsv lists the tests that skip themselves without them.
 packages() {
   cat <<'LIST'
 demo  cmake                cmake         configures the build
@@ -30,49 +29,49 @@ demo  zlib1g-dev           -             gzip, checksums of archives and MCAP
 demo  libssl-dev           -             SHA-256 and base64 (libcrypto)
 demo  libpugixml-dev       -             E57 (XML)
 demo  libboost-dev         -             the viewer's server (headers)
-maybe ccache               ccache        compiles nothing twice
+maybe ccache               ccache        caches compiled objects
 maybe libopenblas-dev      -             segmentation by networks
 maybe libzstd-dev          -             packed recordings (MCAP, ROS 2 bags)
-maybe liblz4-dev           -             likewise (MCAP, ROS 1 bags)
-maybe libbz2-dev           -             likewise (ROS 1 bags)
-maybe libsqlite3-dev       -             ROS 2 bags of SQLite
-maybe libwebp-dev          -             films (WebP)
+maybe liblz4-dev           -             packed recordings (MCAP, ROS 1 bags)
+maybe libbz2-dev           -             packed recordings (ROS 1 bags)
+maybe libsqlite3-dev       -             ROS 2 bags in SQLite files
+maybe libwebp-dev          -             animations (WebP)
 maybe libstb-dev           -             text in pictures
-maybe fonts-dejavu-core    -             likewise
+maybe fonts-dejavu-core    -             text in pictures
 maybe nodejs               node          the viewer's page
-maybe npm                  npm           likewise
+maybe npm                  npm           the viewer's page
 test  git                  git           lists the files to check
 test  python3              python3       the layer check and clang-tidy's driver
 test  libgtest-dev         -             tests
-test  libeigen3-dev        -             oracle of the tests
-test  libnanoflann-dev     -             baseline of the benchmarks
+test  libeigen3-dev        -             reference results in tests
+test  libnanoflann-dev     -             baseline in benchmarks
 test  shellcheck           shellcheck    checks the scripts
 test  doxygen              doxygen       checks the comments of headers
 test  pybind11-dev         -             the Python package
-test  python3-dev          -             likewise
-test  python3-numpy        -             likewise
+test  python3-dev          -             the Python package
+test  python3-numpy        -             the Python package
 test  python3-setuptools   -             pip install
-test  python3-wheel        -             likewise
-test  python3-pip          -             likewise
-test  python3-venv         -             likewise
+test  python3-wheel        -             pip install
+test  python3-pip          -             pip install
+test  python3-venv         -             pip install
 test  python3-pytest       -             tests of the Python package
-maybe-test clang-format-14 clang-format-14  checks, as this version does
-maybe-test clang-tidy-14   clang-tidy-14 checks, as this version does
+maybe-test clang-format-14 clang-format-14  format check (only this version)
+maybe-test clang-tidy-14   clang-tidy-14 static analysis (only this version)
 maybe-test clang           clang++       the fuzz targets
-maybe-test libclang-rt-dev -             likewise (libFuzzer, the sanitizers)
-maybe-test llvm            llvm-symbolizer likewise (places of what they find, coverage)
-maybe-test python3-distributed -        cities by many processes (adasplats.distributed), its tests
-maybe-test python3-torch   -             the data set of examples/torch_dataset.py, tools/segmentation
+maybe-test libclang-rt-dev -             the fuzz targets (libFuzzer, sanitizers)
+maybe-test llvm            llvm-symbolizer the fuzz targets (stack traces, coverage)
+maybe-test python3-distributed -        tests of adasplats.distributed (cities on several machines)
+maybe-test python3-torch   -             examples/torch_dataset.py, tools/segmentation
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
-maybe-test cloudcompare    CloudCompare  distances to compare ours with
-maybe-test patchelf        patchelf      wheels that hold their libraries (scripts/package.sh)
-maybe-test zsh             zsh           completion of the program in it
-maybe-test fish            fish          likewise
+maybe-test cloudcompare    CloudCompare  reference distances in tests
+maybe-test patchelf        patchelf      wheels with bundled libraries (scripts/package.sh)
+maybe-test zsh             zsh           shell completion
+maybe-test fish            fish          shell completion
 maybe-test groff-base      groff         the program's manual pages
-maybe-test mandoc          mandoc        likewise
+maybe-test mandoc          mandoc        the program's manual pages
 maybe-test chromium        chromium      the report page in a browser
-maybe-test parallel        -             the tiles of a city as it runs them (GNU parallel)
+maybe-test parallel        -             tests of city tiles under GNU parallel
 LIST
 }
 
@@ -84,7 +83,7 @@ fail() {
 
 installed() { [[ $(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
 
-# Runs apt-get as root, without questions, and again where the network or another apt fails it.
+# Runs apt-get as root without prompts; retries if the network or the lock of another apt fails it.
 apt_get() {
   local -a as_root=()
   if ((EUID != 0)); then
@@ -121,18 +120,18 @@ while (($#)); do
       sed -n '5,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
       exit 0
       ;;
-    *) fail "unknown argument '$1' (--help shows what there is)" ;;
+    *) fail "unknown argument '$1' (see --help)" ;;
   esac
 done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  fail "no apt on this system. Install what these Debian packages hold, then call cmake and ninja
-yourself (CONTRIBUTING.md): $(packages | awk '{print $2}' | paste -sd' ')"
+  fail "this system has no apt. Install the equivalents of these Debian packages, then run cmake and
+ninja yourself (CONTRIBUTING.md): $(packages | awk '{print $2}' | paste -sd' ')"
 fi
 
-# Whether the package lists that are here know a package: those of a new container are empty.
+# Whether the local package lists contain a package; a new container has none.
 offered() { [[ -n $(apt-cache madison "$1" 2>/dev/null) ]]; }
-offered coreutils && lists_are_here=true || lists_are_here=false
+offered coreutils && has_lists=true || has_lists=false
 
 missing=()
 not_offered_yet=()
@@ -148,16 +147,16 @@ while read -r when package command reason; do
   fi
 done < <(packages)
 
-$lists_are_here || say "this system has no package lists yet"
-if ((${#missing[@]})) || { ((${#not_offered_yet[@]})) && ! $lists_are_here; }; then
+$has_lists || say "this system has no package lists yet"
+if ((${#missing[@]})) || { ((${#not_offered_yet[@]})) && ! $has_lists; }; then
   $dry_run && exit 1
   say "updating the package lists"
-  apt_get update || say "apt-get update failed; trying with the package lists that are there"
+  apt_get update || say "apt-get update failed; continuing with the existing package lists"
   for package in "${not_offered_yet[@]}"; do
     if offered "$package"; then
       missing+=("$package")
     else
-      say "this system has no $package; going on without"
+      say "no package $package on this system; continuing without it"
     fi
   done
   if ((${#missing[@]})); then
@@ -168,7 +167,7 @@ if ((${#missing[@]})) || { ((${#not_offered_yet[@]})) && ! $lists_are_here; }; t
 fi
 
 cmake_version=$(cmake --version | awk 'NR == 1 {print $3}')
-if [[ $(printf '%s\n' "$kCmakeLeast" "$cmake_version" | sort -V | head -n 1) != "$kCmakeLeast" ]]; then
-  fail "CMake $kCmakeLeast or newer is needed, found $cmake_version ($(command -v cmake))"
+if [[ $(printf '%s\n' "$kCmakeMin" "$cmake_version" | sort -V | head -n 1) != "$kCmakeMin" ]]; then
+  fail "CMake $kCmakeMin or newer is needed, found $cmake_version ($(command -v cmake))"
 fi
-say "everything for '$purpose' is here (CMake $cmake_version)"
+say "all packages for '$purpose' are installed (CMake $cmake_version)"

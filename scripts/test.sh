@@ -2,22 +2,22 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, then builds, tests and checks everything; ends with a line
-# "N passed, N failed", where each check and each test program counts once. What skips itself must be
-# in tests/allowed_skips.tsv, and for the reason that stands there; all of it is printed at the end.
+# Installs missing packages, then builds, tests and checks everything. The last line is "N passed,
+# N failed": each check and each test program counts once. tests/allowed_skips.tsv lists the tests and
+# checks that may skip themselves, and when; all skips are printed at the end.
 # usage: scripts/test.sh [--help] [CHECK...]
 #   CHECK: names layers scripts format doxygen packages build tidy tests asan fuzz install
 #        (default: all)
-# The build folders are build/release, build/asan and build/fuzz; logs of the checks are in build/test-logs.
+# Builds are in build/release, build/asan and build/fuzz, logs in build/test-logs.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
 readonly kChecks="names layers scripts format doxygen packages build tidy tests asan fuzz install"
 readonly logs=$root/build/test-logs
-readonly skipped_checks=$logs/skipped_checks.tsv # name, tab, what the check said
+readonly skipped_checks=$logs/skipped_checks.tsv # name, tab, reason
 
-# git refuses a clone that another user owns, which is what a container sees of a mounted folder.
+# git rejects a clone that another user owns, as a mounted folder appears in a container.
 export GIT_CONFIG_COUNT=1 GIT_CONFIG_KEY_0=safe.directory GIT_CONFIG_VALUE_0=$root
 
 passed=0
@@ -39,12 +39,12 @@ count_failure() {
   failures+=("$1")
 }
 
-# check NAME COMMAND...: runs a command, counts it and shows the end of what it said if it failed.
-# Exit code 77 means that it could not judge here and is not counted. Returns 1 on failure.
+# check NAME COMMAND...: runs and counts a command; on failure, prints the end of its output and returns
+# 1. Exit code 77 means skipped: not counted.
 check() {
   local name=$1 status=0 begin=$SECONDS log=$logs/$1.log
   shift
-  # In a shell of its own, because bash ignores set -e in all that a condition runs, whatever is set.
+  # In a new shell: bash ignores set -e in commands that are part of a condition.
   bash -euo pipefail -c '"$@"' check "$@" >"$log" 2>&1 </dev/null || status=$?
   case $status in
     0)
@@ -71,7 +71,7 @@ check_scripts() {
   shellcheck "${scripts[@]}"
 }
 
-# What the tests of the page and of the exports read with, from the npm registry.
+# npm packages for the tests of the viewer's page and of the exports.
 fetch_packages() {
   local folder
   for folder in viewer tests/exports; do
@@ -81,7 +81,8 @@ fetch_packages() {
 }
 
 build_release() {
-  cmake --preset release -DADASPLATS_BUILD_TESTS=ON -DADASPLATS_BUILD_BENCH=ON
+  # scripts/demo.sh may have switched CUDA off in this folder.
+  cmake --preset release -DADASPLATS_BUILD_TESTS=ON -DADASPLATS_BUILD_BENCH=ON -DADASPLATS_USE_CUDA=AUTO
   cmake --build build/release
 }
 
@@ -90,8 +91,8 @@ build_asan() {
   cmake --build build/asan
 }
 
-# run_tests NAME FOLDER: runs every test program of a build and counts each by its verdict in
-# ctest's JUnit file.
+# run_tests NAME FOLDER: runs every test program of a build and counts the results in ctest's JUnit
+# file.
 run_tests() {
   local label=$1 folder=$2 junit=$logs/$1.xml log=$logs/$1.log name status begin=$SECONDS
   mkdir -p "$logs/$label-cases"
@@ -106,7 +107,7 @@ run_tests() {
   while read -r name status; do
     case $status in
       run) count_pass ;;
-      notrun | disabled) ;; # in the list at the end
+      notrun | disabled) ;; # check_skipped lists them
       *) count_failure "$label $name" ;;
     esac
   done < <(sed -n '/<testcase name=/ {
@@ -123,9 +124,9 @@ run_tests() {
   fi
 }
 
-# Installs into a folder of its own and builds the examples against that, as a stranger would.
+# Installs into an empty folder and builds the examples against it, like an outside project.
 build_example() {
-  # README.md shows the short one, without its licence.
+  # README.md shows the short example without its licence header.
   # shellcheck disable=SC2016
   diff <(sed -n '/^```cpp$/,/^```$/{//!p}' README.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
   rm -rf build/install build/example
@@ -148,7 +149,7 @@ build_example() {
   grep -a -m 1 '^element vertex [1-9]' build/example/scan.ply
 }
 
-# Prints what skipped itself, and fails where that must not be.
+# Prints all skips; fails on one that is not allowed.
 check_skipped() {
   check skips tools/check_skips.py "$logs" && sed 's/^/    /' "$logs/skips.log"
 }
@@ -161,16 +162,12 @@ built=true
 if ! scripts/setup.sh --for test; then
   count_failure setup
 else
-  check skips-self-test tools/check_skips.py --self-test
   wanted names && check names tools/check_names.sh
   wanted names && check figures tools/make_figures.py --check
   if wanted layers; then
-    check layers-self-test tools/check_layers.py --self-test
     check layers tools/check_layers.py
     check paths tools/check_paths.py
-    check shared-maths-self-test tools/check_shared_maths.py --self-test
     check shared-maths tools/check_shared_maths.py
-    check fuzzers-self-test tools/check_fuzzers.py --self-test
     check fuzzers tools/check_fuzzers.py
   fi
   wanted scripts && check scripts check_scripts
@@ -186,7 +183,6 @@ else
     wanted install && check install build_example
   fi
   if wanted asan && check asan-build build_asan; then
-    check one-definition-self-test tools/check_one_definition.py --self-test
     check one-definition tools/check_one_definition.py build/asan
     UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
   fi

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Makes the documentation of the public headers (build/api) and fails where Doxygen finds fault with
-# a comment; before that, that it would find one.
+# Builds the documentation of the public headers (build/api); fails if Doxygen warns about a comment.
+# First checks that it does warn about a wrong reference.
 # usage: tools/check_doxygen.sh
 set -euo pipefail
 
@@ -13,15 +13,15 @@ planted=$(mktemp -d)
 trap 'rm -rf "$planted"' EXIT
 printf '/// See @ref nowhere.\nint planted();\n' >"$planted/planted.h"
 if printf '@INCLUDE = docs/Doxyfile\nINPUT = %s\nOUTPUT_DIRECTORY = %s\n' "$planted" "$planted" |
-  doxygen - 2>"$planted/said"; then
-  echo "check_doxygen: a reference to nothing passes" >&2
+  doxygen - 2>"$planted/output"; then
+  echo "check_doxygen: Doxygen accepts a wrong reference" >&2
   exit 1
 fi
-grep -q "nowhere" "$planted/said" || {
-  cat "$planted/said" >&2
+grep -q "nowhere" "$planted/output" || {
+  cat "$planted/output" >&2
   exit 1
 }
 
 rm -rf build/api
 doxygen docs/Doxyfile
-echo "check_doxygen: no fault in the comments; build/api/index.html shows them"
+echo "check_doxygen: no warnings (open build/api/index.html)"

@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that every source that opens a file or parses text is fuzzed.
 
-Which sources that are is read off their text. Each is among the sources of a fuzz target
-(tests/fuzz/fuzz_targets.cpp) or in NOT_FUZZED below, with the reason; sources that are named and are
-not there are faults, too.
+Such sources are recognised by the functions they call. Each must belong to a fuzz target
+(tests/fuzz/fuzz_targets.cpp) or be in NOT_FUZZED below, with the reason. Entries of either list that do
+not exist or do not read are errors, too.
 
-usage: tools/check_fuzzers.py      tools/check_fuzzers.py --self-test
+usage: tools/check_fuzzers.py
 """
 
 import pathlib
@@ -19,66 +19,65 @@ SOURCES = ROOT / "src" / "adasplats"
 TARGETS = ROOT / "tests" / "fuzz" / "fuzz_targets.cpp"
 READS = re.compile(r"\b(?:InputFile|InputDescriptor|LineReader)\s+\w+\s*[({]|\bread_file\(|\bifstream\b|"
                    r"\b(?:[Jj]son|toml)::parse\(|\bopen\([^;]*O_RDONLY|\bsqlite3_open|\bfopen\(")
-# A target's sources are the third text of its entry; texts that are cut in two are joined first.
+# The third string of a target's entry lists its sources; adjacent string literals are joined first.
 ENTRY = re.compile(r'\{"[\w-]+",\s*"[^"]*",\s*"([^"]*)"')
 
-# What others made does not get there.
+# These never read files of other programs.
 NOT_FUZZED = {
-    "city/passing_rays.cpp": "rays of tiles that an unfinished run of ours wrote",
-    "city/square_classes.cpp": "classes of points that an unfinished run of ours wrote",
-    "city/tile_points.cpp": "points of tiles that an unfinished run of ours wrote",
-    "core/child_process.cpp": "/proc, and what our own programs print",
-    "evaluate/error_points.cpp": "headers and tables of io/ply",
-    "io/base/atomic_file.cpp": "gives whole files to others; opens what it writes",
-    "io/base/atomic_file.h": "likewise",
-    "io/base/input_file.cpp": "gives bytes to others",
-    "io/base/sha256.cpp": "takes any bytes as they are",
-    "jobs/output/folder_task.cpp": "manifests that a run of ours wrote",
-    "jobs/output/output_folder.cpp": "likewise",
-    "jobs/output/resumable_folder.cpp": "likewise",
-    "jobs/output/unfinished_folder.cpp": "journals and notes that runs of ours wrote",
+    "city/passing_rays.cpp": "rays of tiles that our own unfinished run wrote",
+    "city/square_classes.cpp": "classes of points that our own unfinished run wrote",
+    "city/tile_points.cpp": "points of tiles that our own unfinished run wrote",
+    "core/child_process.cpp": "/proc, and the output of our own programs",
+    "evaluate/error_points.cpp": "uses the headers and tables of io/ply",
+    "io/base/atomic_file.cpp": "returns whole files to its callers; also opens files that it wrote",
+    "io/base/atomic_file.h": "declares the above",
+    "io/base/input_file.cpp": "returns bytes to its callers",
+    "io/base/sha256.cpp": "accepts any bytes",
+    "jobs/output/folder_task.cpp": "manifests that our own runs wrote",
+    "jobs/output/output_folder.cpp": "manifests that our own runs wrote",
+    "jobs/output/resumable_folder.cpp": "manifests that our own runs wrote",
+    "jobs/output/unfinished_folder.cpp": "journals and notes that our own runs wrote",
     "jobs/provenance/machine.cpp": "/proc and /sys",
     "jobs/provenance/provenance.cpp": "/proc",
-    "jobs/city/city_addition.cpp": "manifests of finished cities that a run of ours wrote",
-    "jobs/city/city_classes.cpp": "what its own unfinished run wrote",
-    "jobs/city/city_fit.cpp": "what its own unfinished run wrote",
-    "jobs/city/city_origins.cpp": "what its own unfinished run wrote",
-    "jobs/city/city_survey.cpp": "what its own unfinished run wrote",
-    "jobs/city/city_work.cpp": "likewise",
+    "jobs/city/city_addition.cpp": "manifests of finished cities that our own runs wrote",
+    "jobs/city/city_classes.cpp": "files that our own unfinished run wrote",
+    "jobs/city/city_fit.cpp": "files that our own unfinished run wrote",
+    "jobs/city/city_origins.cpp": "files that our own unfinished run wrote",
+    "jobs/city/city_survey.cpp": "files that our own unfinished run wrote",
+    "jobs/city/city_work.cpp": "files that our own unfinished run wrote",
     "jobs/compare/steps.cpp": "files that its own steps and runs wrote",
-    "report/html_page.cpp": "puts pictures of ours into a page as they are",
+    "report/html_page.cpp": "copies our own pictures into a page",
     "dataset/nuscenes_writer.cpp": "counts bytes of a file that it wrote",
-    "sensors/calibrated_sensor.cpp": "sensors that are built in",
+    "sensors/calibrated_sensor.cpp": "built-in sensors",
 }
 
 
-def named_sources(text):
+def fuzzed_sources(text):
     """The sources of all targets."""
     text = re.sub(r'"\s*\n\s*"', "", text)
     return {source for sources in ENTRY.findall(text) for source in sources.split()}
 
 
-def is_within(path, named):
-    return any(path == source or path.startswith(source + "/") for source in named)
+def is_within(path, sources):
+    return any(path == source or path.startswith(source + "/") for source in sources)
 
 
-def faults(readers, named, exceptions, exists):
-    """readers: paths of the sources that read."""
+def find_errors(readers, fuzzed, exceptions, exists):
     for path in sorted(readers):
-        if not is_within(path, named) and path not in exceptions:
-            yield (f"src/adasplats/{path}: reads, and is of no fuzz target: give it an entry in "
-                   "tests/fuzz/fuzz_targets.cpp, or say in tools/check_fuzzers.py why it needs none")
+        if not is_within(path, fuzzed) and path not in exceptions:
+            yield (f"src/adasplats/{path}: reads, but has no fuzz target: add it to "
+                   "tests/fuzz/fuzz_targets.cpp, or to NOT_FUZZED in tools/check_fuzzers.py")
     for path in sorted(exceptions):
         if path not in readers:
-            yield f"tools/check_fuzzers.py: {path} reads nothing (or is not there)"
-        elif is_within(path, named):
+            yield f"tools/check_fuzzers.py: {path} reads nothing or does not exist"
+        elif is_within(path, fuzzed):
             yield f"tools/check_fuzzers.py: {path} is fuzzed"
-    for source in sorted(named):
+    for source in sorted(fuzzed):
         if not exists(source):
-            yield f"tests/fuzz/fuzz_targets.cpp: there is no src/adasplats/{source}"
+            yield f"tests/fuzz/fuzz_targets.cpp: src/adasplats/{source} does not exist"
 
 
-def readers():
+def find_readers():
     """Sources and headers that read, without tests."""
     for file in SOURCES.rglob("*"):
         if file.suffix not in (".cpp", ".h", ".cu", ".cuh") or "test" in file.stem.split("_"):
@@ -88,36 +87,29 @@ def readers():
 
 
 def self_test():
-    named = named_sources('{"a", "a.x b.x", "io/a "\n     "cloud/b.cpp", &read},\n{"c", "",\n "io/c.h"')
-    assert named == {"io/a", "cloud/b.cpp", "io/c.h"}, named
+    fuzzed = fuzzed_sources('{"a", "a.x b.x", "io/a "\n   "cloud/b.cpp", &read},\n{"c", "",\n "io/c.h"')
+    assert fuzzed == {"io/a", "cloud/b.cpp", "io/c.h"}, fuzzed
     for text in ("InputFile file(path);", "LineReader lines_{x}", "read_file(path)", "std::ifstream in",
                  "nlohmann::json::parse(text)", "toml::parse(text)", "::open(p, O_RDONLY)"):
         assert READS.search(text), text
     assert not READS.search("const InputFile& file; parse(text); read_files()")
-    none = {"why": ""}
-    assert len(list(faults({"io/a/b.cpp", "cloud/b.cpp"}, named, {}, lambda _: True))) == 0
-    assert len(list(faults({"io/ab.cpp"}, named, {}, lambda _: True))) == 1
-    assert len(list(faults({"io/ab.cpp"}, named, {"io/ab.cpp": ""}, lambda _: True))) == 0
-    assert len(list(faults({"io/a/b.cpp"}, named, {"io/a/b.cpp": ""}, lambda _: True))) == 1
-    assert len(list(faults(set(), named, none, lambda _: True))) == 1
-    assert len(list(faults(set(), named, {}, lambda source: source != "io/a"))) == 1
+    for readers, exceptions, missing, expected in [
+            ({"io/a/b.cpp", "cloud/b.cpp"}, {}, "", 0), ({"io/ab.cpp"}, {}, "", 1),
+            ({"io/ab.cpp"}, {"io/ab.cpp": ""}, "", 0), ({"io/a/b.cpp"}, {"io/a/b.cpp": ""}, "", 1),
+            (set(), {"none": ""}, "", 1), (set(), {}, "io/a", 1)]:
+        errors = list(find_errors(readers, fuzzed, exceptions, lambda source: source != missing))
+        assert len(errors) == expected, errors
 
 
 def main():
-    if sys.argv[1:] == ["--self-test"]:
-        self_test()
-        print("check_fuzzers: what it should find it finds")
-        return 0
-    found = set(readers())
-    named = named_sources(TARGETS.read_text(encoding="utf-8"))
-    said = list(faults(found, named, NOT_FUZZED, lambda source: (SOURCES / source).exists()))
-    for line in said:
-        print(line, file=sys.stderr)
-    if said:
-        print(f"check_fuzzers: {len(said)} faults", file=sys.stderr)
-        return 1
-    print(f"check_fuzzers: {len(found)} sources that read are fuzzed, or it is said why not")
-    return 0
+    self_test()
+    readers = set(find_readers())
+    fuzzed = fuzzed_sources(TARGETS.read_text(encoding="utf-8"))
+    errors = list(find_errors(readers, fuzzed, NOT_FUZZED, lambda source: (SOURCES / source).exists()))
+    for error in errors:
+        print(error, file=sys.stderr)
+    print(f"check_fuzzers: {len(readers)} sources read, {len(errors)} errors")
+    return 1 if errors else 0
 
 
 if __name__ == "__main__":

@@ -1,24 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that the stages under src/adasplats include only what the layout allows.
+"""Checks that the stages under src/adasplats include only what the root CMakeLists.txt allows, with
+adasplats_stage(NAME ROOMS ... DEPENDS ...):
 
-The order of the stages and what each may use stand in the root CMakeLists.txt, as
-adasplats_stage(NAME ROOMS ... DEPENDS ...). From that this script proves:
+1. DEPENDS names only stages above. Every folder is a stage and every stage a folder; the same holds for
+   the rooms (folders) of a stage.
+2. A file includes headers of its own stage and of the stages in its DEPENDS, not of their dependencies.
+   A test (*_test.cpp, *_test.h) may include all stages above.
+3. A file includes headers of its own room and of earlier rooms, not of rooms joined to its own by "|".
+   "." is the stage's own folder, by default the last room. A test may include all rooms of its stage.
+4. Includes of our headers are written in full: "adasplats/STAGE/ROOM/FILE.h".
+5. Headers that another stage, the program or an example includes, directly or through other headers, do
+   not include heavy third-party headers, which slow down every build that uses them.
 
-1. DEPENDS names only stages above; every folder is a stage and every stage a folder.
-2. A file includes headers of its own stage and of stages in its DEPENDS, listed directly. A test
-   (*_test.cpp, *_test.h) may include every stage above its own.
-3. Public headers do not include heavy third-party headers, directly or through other headers:
-   everybody who includes them would pay. Public is what another stage, the program or an example
-   includes; a stage's own sources and the headers that only they (or any tests and benchmarks, which
-   look inside) include may use what they like.
-4. Includes of our own headers are written in full: "adasplats/STAGE/ROOM/FILE.h".
-5. The folders of a stage are its ROOMS. A file includes headers of its own room and of rooms before
-   it, not of those that "|" joins its room to; "." is the stage's own folder, the last room where
-   ROOMS does not name it. A test may include every room of its stage.
-
-usage: tools/check_layers.py [ROOT]      tools/check_layers.py --self-test
+usage: tools/check_layers.py
 """
 
 import pathlib
@@ -28,71 +24,51 @@ import tempfile
 
 HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", "png.h",
          "nanoflann", "gtest/", "benchmark/", "cuda", "cub/", "thrust/", "boost/")
-LIGHT = ("nlohmann/json_fwd.hpp",)  # declarations alone
+LIGHT = ("nlohmann/json_fwd.hpp",)  # only declarations
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 STAGE = re.compile(r"^[ \t]*adasplats_stage\(([^)]*)\)", re.MULTILINE)
 STAGE_KEYWORDS = ("COLD", "ROOMS", "DEPENDS", "LINK", "DEFINE", "ALONE", "CUDA")
 SOURCE_SUFFIXES = (".h", ".cpp", ".cu", ".cuh")
-OUTSIDE = ("apps", "examples", "python")  # what uses the stages from outside
+OUTSIDE = ("apps", "examples", "python")  # users of the stages
 
 
-def stages_of(cmake_text):
-    """The stages in their order, each with the stages it lists under DEPENDS, and their rooms:
-    {stage: {room: place in the order}}."""
-    text = re.sub(r"#[^\n]*", "", cmake_text)
+def read_stages(cmake_text):
+    """({stage: its DEPENDS}, {stage: {room: position in the order}}), in the order of the file."""
     stages, rooms = {}, {}
-    for match in STAGE.finditer(text):
+    for match in STAGE.finditer(re.sub(r"#[^\n]*", "", cmake_text)):
         name, *words = match.group(1).split()
-        depends, groups, keyword = [], [], None
+        lists, keyword = {"DEPENDS": [], "ROOMS": []}, None
         for word in words:
             if word in STAGE_KEYWORDS:
                 keyword = word
-            elif keyword == "DEPENDS":
-                depends.append(word)
-            elif keyword == "ROOMS":
-                groups.append(word.split("|"))
-        stages[name] = depends
-        rooms[name] = {room: place for place, group in enumerate(groups) for room in group}
-        rooms[name].setdefault(".", len(groups))
+            elif keyword in lists:
+                lists[keyword].append(word)
+        stages[name] = lists["DEPENDS"]
+        rooms[name] = {room: position for position, group in enumerate(lists["ROOMS"])
+                       for room in group.split("|")}
+        rooms[name].setdefault(".", len(lists["ROOMS"]))
     return stages, rooms
 
 
-def room_of(parts):
-    """The room of a file, of its path's parts from the stage's folder on."""
-    return parts[1] if len(parts) > 2 else "."
+def folders_of(folder):
+    return {path.name for path in folder.iterdir() if path.is_dir()} if folder.is_dir() else set()
 
 
-def check_rooms(rooms, folders):
-    """Faults of the rooms of all stages; folders: {stage: its folders}."""
-    for stage, own in rooms.items():
-        there = folders.get(stage, set())
-        for room in sorted(there - set(own)):
-            yield f"src/adasplats/{stage}/{room}: a folder that is no room of stage '{stage}'"
-        for room in sorted(set(own) - there - {"."}):
-            yield f"CMakeLists.txt: room '{room}' has no folder src/adasplats/{stage}/{room}"
-
-
-def check_room(path, parts, rooms, target):
-    """The fault of one include within a stage against the order of its rooms, or None."""
-    own, used = room_of(parts), room_of(target.split("/")[1:])
-    if own == used or is_test(path) or own not in rooms or used not in rooms:
-        return None
-    if rooms[used] < rooms[own]:
-        return None
-    return f"includes {target}, but room '{used}' does not stand before '{own}'"
-
-
-def check_order(stages, folders):
-    """Faults of the stage list itself."""
+def check_folders(source_root, stages, rooms):
+    """Errors of the stage list itself."""
     above = set()
     for name, depends in stages.items():
-        for dependency in depends:
-            if dependency not in above:
-                yield f"CMakeLists.txt: stage '{name}' depends on '{dependency}', not above it"
+        for dependency in sorted(set(depends) - above):
+            yield f"CMakeLists.txt: stage '{name}' depends on '{dependency}', which is not above it"
         above.add(name)
-    for folder in sorted(folders - set(stages)):
-        yield f"src/adasplats/{folder}: a folder that CMakeLists.txt has no adasplats_stage for"
-    for name in sorted(set(stages) - folders):
+        folders = folders_of(source_root / name)
+        for room in sorted(folders - set(rooms[name])):
+            yield f"src/adasplats/{name}/{room}: not a room of stage '{name}'"
+        for room in sorted(set(rooms[name]) - folders - {"."}):
+            yield f"CMakeLists.txt: room '{room}' has no folder src/adasplats/{name}/{room}"
+    for folder in sorted(folders_of(source_root) - set(stages)):
+        yield f"src/adasplats/{folder}: CMakeLists.txt has no adasplats_stage for this folder"
+    for name in sorted(set(stages) - folders_of(source_root)):
         yield f"CMakeLists.txt: stage '{name}' has no folder src/adasplats/{name}"
 
 
@@ -100,24 +76,34 @@ def is_test(path):
     return path.stem.endswith("_test")
 
 
-def check_include(path, stage, stages, bracket, target):
-    """The fault of one include against the order of the stages, or None."""
+def room_of(path):
+    """The room of a path STAGE/ROOM/FILE or STAGE/FILE."""
+    return path.parts[1] if len(path.parts) > 2 else "."
+
+
+def check_include(path, relative, stages, rooms, bracket, target):
+    """The error of one include, or None."""
+    stage = relative.parts[0]
     if not target.startswith("adasplats/"):
         if bracket == '"' and (path.parent / target).exists():
             return f'"{target}" is written without "adasplats/{stage}/"'
-        if bracket == '"' and "/" in target:
-            return f'"{target}" is of no stage'
+        return f'"{target}" is not in a stage' if bracket == '"' and "/" in target else None
+    used = pathlib.PurePath(target).relative_to("adasplats")
+    used_stage = used.parts[0]
+    if used_stage not in stages:
+        return f"{target}: there is no stage '{used_stage}'"
+    if used_stage == stage:
+        own_room, used_room = room_of(relative), room_of(used)
+        order = rooms[stage]
+        if (own_room != used_room and not is_test(path) and own_room in order and
+                order.get(used_room, -1) >= order[own_room]):
+            return f"includes {target}, but room '{used_room}' is not before '{own_room}'"
         return None
-    used = target.split("/")[1]
     order = list(stages)
-    if used == stage:
-        return None
-    if used not in stages:
-        return f"{target}: there is no stage '{used}'"
-    if order.index(used) > order.index(stage):
-        return f"upward include of {target}: stage '{used}' stands below '{stage}'"
-    if not is_test(path) and used not in stages[stage]:
-        return f"includes {target}, but stage '{stage}' does not list '{used}' in DEPENDS"
+    if order.index(used_stage) > order.index(stage):
+        return f"includes {target}, but stage '{used_stage}' is below '{stage}'"
+    if not is_test(path) and used_stage not in stages[stage]:
+        return f"includes {target}, but stage '{stage}' does not list '{used_stage}' in DEPENDS"
     return None
 
 
@@ -133,8 +119,8 @@ def includes_of(folder):
 
 
 def check_public_headers(root, inside, outside):
-    """Faults of heavy headers that reach users of a stage."""
-    users = {}  # public header -> a file that made it public
+    """Errors of heavy headers that reach users of a stage."""
+    users = {}  # {public header: a file that makes it public}
 
     def make_public(includes, user, own_stage):
         for _, _, target in includes:
@@ -144,12 +130,10 @@ def check_public_headers(root, inside, outside):
                 users[header] = user
                 make_public(inside[header], user, None)
 
-    for path, includes in inside.items():
+    for path, includes in (inside | outside).items():
         if not is_test(path):
-            make_public(includes, path, path.relative_to(root / "src" / "adasplats").parts[0])
-    for path, includes in outside.items():
-        if not is_test(path):
-            make_public(includes, path, None)
+            own_stage = path.relative_to(root / "src/adasplats").parts[0] if path in inside else None
+            make_public(includes, path, own_stage)
     for header, user in users.items():
         for line, _, target in inside[header]:
             if target.startswith(HEAVY) and target not in LIGHT:
@@ -158,121 +142,102 @@ def check_public_headers(root, inside, outside):
 
 
 def check_tree(root):
-    """All faults under root, as lines of text."""
-    stages, rooms = stages_of((root / "CMakeLists.txt").read_text(encoding="utf-8"))
+    """All errors under root, as lines of text."""
+    stages, rooms = read_stages((root / "CMakeLists.txt").read_text(encoding="utf-8"))
     if not stages:
         return ["CMakeLists.txt: no adasplats_stage(...) found"]
     source_root = root / "src" / "adasplats"
-    faults = list(check_order(stages, {p.name for p in source_root.iterdir() if p.is_dir()}))
-    faults += check_rooms(rooms, {stage: {p.name for p in (source_root / stage).iterdir()
-                                          if p.is_dir()}
-                                  for stage in stages if (source_root / stage).is_dir()})
+    errors = list(check_folders(source_root, stages, rooms))
     inside = includes_of(source_root)
     for path, includes in inside.items():
-        parts = path.relative_to(source_root).parts
-        stage = parts[0]
-        if stage not in stages:
-            continue
-        for line, bracket, target in includes:
-            fault = check_include(path, stage, stages, bracket, target)
-            if not fault and target.startswith(f"adasplats/{stage}/"):
-                fault = check_room(path, parts, rooms[stage], target)
-            if fault:
-                faults.append(f"{path.relative_to(root)}:{line}: {fault}")
+        relative = path.relative_to(source_root)
+        if relative.parts[0] in stages:
+            for line, bracket, target in includes:
+                error = check_include(path, relative, stages, rooms, bracket, target)
+                if error:
+                    errors.append(f"{path.relative_to(root)}:{line}: {error}")
     outside = {}
     for folder in OUTSIDE:
         outside |= includes_of(root / folder)
-    return faults + list(check_public_headers(root, inside, outside))
+    return errors + list(check_public_headers(root, inside, outside))
 
 
-# The self-test: a small tree that is right, and plants of which each must give this one fault.
+# The self-test: a correct tree, and changes that must each give one error. Includes are short here.
 GOOD = {
     "CMakeLists.txt": "adasplats_stage(core LINK PRIVATE TBB::tbb)\n"
                       "# adasplats_stage(ghost DEPENDS top)\n"
                       "adasplats_stage(io DEPENDS core\n  LINK PRIVATE PNG::PNG DEFINE top)\n"
                       "adasplats_stage(top DEPENDS io)\n"
                       "adasplats_stage(house ROOMS low left|right)\n",
-    "src/adasplats/house/low/l.h": "",
-    "src/adasplats/house/low/l_test.cpp": '#include "adasplats/house/h.h"\n',
-    "src/adasplats/house/left/a.h": '#include "adasplats/house/low/l.h"\n',
-    "src/adasplats/house/right/b.h": "",
-    "src/adasplats/house/h.h": '#include "adasplats/house/left/a.h"\n',
-    "src/adasplats/core/a.h": "#include <vector>\n",
-    "src/adasplats/core/a.cpp": '#include "adasplats/core/a.h"\n#include <tbb/task_arena.h>\n',
-    "src/adasplats/io/b.h": '#include "adasplats/core/a.h"\n',
-    "src/adasplats/io/own.h": "#include <nlohmann/json.hpp>\n",
-    "src/adasplats/io/b.cpp": '#include "adasplats/io/own.h"\n#include <png.h>\n',
-    "src/adasplats/top/t.cpp": '#include "adasplats/io/b.h"\n',
-    "src/adasplats/top/t_test.cpp": '#include <gtest/gtest.h>\n#include "adasplats/core/a.h"\n',
-    "apps/main.cpp": '#include <CLI/CLI.hpp>\n#include "adasplats/io/b.h"\n',
+    "core/a.h": "<vector>",
+    "core/a.cpp": '"adasplats/core/a.h" <tbb/task_arena.h>',
+    "io/b.h": '"adasplats/core/a.h"',
+    "io/own.h": "<nlohmann/json.hpp>",
+    "io/b.cpp": '"adasplats/io/own.h" <png.h>',
+    "top/t.cpp": '"adasplats/io/b.h"',
+    "top/t_test.cpp": '<gtest/gtest.h> "adasplats/core/a.h"',
+    "house/low/l.h": "",
+    "house/low/l_test.cpp": '"adasplats/house/h.h"',
+    "house/left/a.h": '"adasplats/house/low/l.h"',
+    "house/right/b.h": "",
+    "house/h.h": '"adasplats/house/left/a.h"',
+    "../../apps/main.cpp": '<CLI/CLI.hpp> "adasplats/io/b.h"',
 }
-PLANTS = {
-    "upward include": {"src/adasplats/core/bad.h": '#include "adasplats/io/b.h"\n'},
-    "upward include of": {"src/adasplats/core/bad_test.cpp": '#include "adasplats/io/b.h"\n'},
-    "does not list 'core'": {"src/adasplats/top/bad.cpp": '\n#include "adasplats/core/a.h"\n'},
-    "no stage 'nowhere'": {"src/adasplats/io/bad.cpp": "# include <adasplats/nowhere/a.h>\n"},
-    'without "adasplats/io/"': {"src/adasplats/io/bad.cpp": '#include "b.h"\n'},
+CMAKE = GOOD["CMakeLists.txt"]
+BAD = {
+    "stage 'io' is below 'core'": {"core/bad.h": '"adasplats/io/b.h"'},
+    "core/bad_test.cpp:1: includes": {"core/bad_test.cpp": '"adasplats/io/b.h"'},
+    "does not list 'core'": {"top/bad.cpp": '"adasplats/core/a.h"'},
+    "no stage 'nowhere'": {"io/bad.cpp": "<adasplats/nowhere/a.h>"},
+    'without "adasplats/io/"': {"io/bad.cpp": '"b.h"'},
+    '"cli/a.h" is not in a stage': {"io/bad.cpp": '"cli/a.h"'},
     "core/a.h:1: includes the heavy <Eigen/Core>, and reaches src/adasplats/io/b.h": {
-        "src/adasplats/core/a.h": "#include <Eigen/Core>\n"},
+        "core/a.h": "<Eigen/Core>"},
     "io/own.h:1: includes the heavy <nlohmann/json.hpp>, and reaches src/adasplats/top/t.cpp": {
-        "src/adasplats/io/b.h": '#include "adasplats/io/own.h"\n'},
+        "io/b.h": '"adasplats/io/own.h"'},
     "io/own.h:1: includes the heavy <nlohmann/json.hpp>, and reaches examples/bad.cpp": {
-        "examples/bad.cpp": '  #include "adasplats/io/own.h"\n'},
-    "io/own.h:2: includes the heavy <embree3/rtcore.h>, and reaches src/adasplats/top/t.cpp": {
-        "src/adasplats/io/b.h": '#include "adasplats/io/own.h"\n',
-        "src/adasplats/io/own.h":
-            "#if __has_include(<embree3/rtcore.h>)\n#  include <embree3/rtcore.h>\n#endif\n"},
-    "a folder that CMakeLists.txt": {"src/adasplats/stray/bad.h": ""},
-    "has no folder": {"CMakeLists.txt": GOOD["CMakeLists.txt"] + "adasplats_stage(ghost)\n"},
-    "depends on 'io', not above": {
-        "CMakeLists.txt": GOOD["CMakeLists.txt"].replace("(core ", "(core DEPENDS io ")},
-    '"cli/a.h" is of no stage': {"src/adasplats/io/bad.cpp": '#include "cli/a.h"\n'},
-    "room 'left' does not stand before 'low'": {
-        "src/adasplats/house/low/l.h": '#include "adasplats/house/left/a.h"\n'},
-    "room 'left' does not stand before 'right'": {
-        "src/adasplats/house/right/bad.cpp": '#include "adasplats/house/left/a.h"\n'},
-    "room '.' does not stand before 'left'": {
-        "src/adasplats/house/left/bad.cpp": '#include "adasplats/house/h.h"\n'},
-    "a folder that is no room": {"src/adasplats/house/shed/s.h": ""},
-    "room 'attic' has no folder": {
-        "CMakeLists.txt": GOOD["CMakeLists.txt"].replace("ROOMS low", "ROOMS attic low")},
+        "../../examples/bad.cpp": '"adasplats/io/own.h"'},
+    "stray: CMakeLists.txt has no adasplats_stage": {"stray/bad.h": ""},
+    "stage 'ghost' has no folder": {"CMakeLists.txt": CMAKE + "adasplats_stage(ghost)\n"},
+    "depends on 'io', which is not above": {"CMakeLists.txt": CMAKE.replace("(core ", "(core DEPENDS io ")},
+    "room 'left' is not before 'low'": {"house/low/l.h": '"adasplats/house/left/a.h"'},
+    "room 'left' is not before 'right'": {"house/right/bad.cpp": '"adasplats/house/left/a.h"'},
+    "room '.' is not before 'left'": {"house/left/bad.cpp": '"adasplats/house/h.h"'},
+    "shed: not a room": {"house/shed/s.h": ""},
+    "room 'attic' has no folder": {"CMakeLists.txt": CMAKE.replace("ROOMS low", "ROOMS attic low")},
     "no adasplats_stage(...)": {"CMakeLists.txt": "project(adasplats)\n"},
 }
 
 
-def faults_of(files):
+def errors_of(files):
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
+        (root / "src/adasplats").mkdir(parents=True)
         for name, text in files.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text, encoding="utf-8")
+            path = root / ("" if name == "CMakeLists.txt" else "src/adasplats") / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if name != "CMakeLists.txt":
+                text = "".join(f"#include {target}\n" for target in text.split())
+            path.write_text(text, encoding="utf-8")
         return check_tree(root)
 
 
 def self_test():
-    failures = [f"the right tree is refused: {fault}" for fault in faults_of(GOOD)]
-    for expected, plant in PLANTS.items():
-        faults = faults_of(GOOD | plant)
-        if len(faults) != 1 or expected not in faults[0]:
-            failures.append(f"plant {plant}: expected one fault '{expected}', got {faults}")
+    failures = [f"error in the correct tree: {error}" for error in errors_of(GOOD)]
+    for expected, change in BAD.items():
+        errors = errors_of(GOOD | change)
+        if len(errors) != 1 or expected not in errors[0]:
+            failures.append(f"{change}: expected one error '{expected}', found {errors}")
     return failures
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        faults, what = self_test(), f"{len(PLANTS)} planted violations are found"
-    elif len(arguments) <= 1 and not (arguments and arguments[0].startswith("-")):
-        root = pathlib.Path(arguments[0] if arguments else __file__).resolve()
-        faults = check_tree(root if arguments else root.parent.parent)
-        what = "the stages include only what they may"
-    else:
-        print(__doc__, file=sys.stderr)
-        return 64
-    for fault in faults:
-        print(fault, file=sys.stderr)
-    print(f"check_layers: {what}" if not faults else f"check_layers: {len(faults)} faults")
-    return 1 if faults else 0
+def main():
+    errors = self_test() or check_tree(pathlib.Path(__file__).resolve().parent.parent)
+    for error in errors:
+        print(error, file=sys.stderr)
+    print(f"check_layers: {len(errors)} errors")
+    return 1 if errors else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

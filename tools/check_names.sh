@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Checks what no compiler sees: every source carries the SPDX header, no file names a folder of
-# one machine, and nothing large or binary slipped in.
+# Checks that every source has the SPDX header, no file names a folder of one machine, and no file is
+# too large.
 set -euo pipefail
 
 readonly kLargestBytes=3000000
@@ -17,8 +17,7 @@ fault() {
   faults=$((faults + 1))
 }
 
-# Folders that exist on one machine only. A file that has to name one says why on that line with
-# "machine path".
+# Folders that exist only on some machines. A line that needs one has the words "machine path".
 readonly kMachinePath='(^|[^A-Za-z0-9_.~})-])/(work|home|root|Users|mnt)/'
 
 for file in "${files[@]}"; do
@@ -43,7 +42,7 @@ for file in "${files[@]}"; do
 done
 
 if ((faults)); then
-  echo "check_names: $faults faults"
+  echo "check_names: $faults errors"
   exit 1
 fi
-echo "check_names: ${#files[@]} files carry the header and name no machine"
+echo "check_names: ${#files[@]} files, no errors"

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that documents name files and functions that exist.
+"""Checks that files and functions named in documents exist.
 
-1. What reads like a path of a stage ("splats/paper/grow.h", "io/las", "gpu/trace/...") in ARCHITECTURE.md
-   and docs/*.md is a file, with or without its ending, or a folder.
-2. What stands as `name` or `name()` in the section "A tour" of ARCHITECTURE.md occurs in the sources.
+1. A path within a stage ("splats/paper/grow.h", "io/las", "gpu/trace/...") in ARCHITECTURE.md or
+   docs/*.md is a folder or a file, with or without its extension.
+2. A `name` or `name()` in the section "A tour" of ARCHITECTURE.md occurs in the sources.
 
-usage: tools/check_paths.py [--self-test]
+usage: tools/check_paths.py
 """
 import pathlib
 import re
@@ -21,7 +21,7 @@ PATH = re.compile(r"(?<![\w/.-])(?:src/adasplats/)?((?:%s)/[a-z_0-9]+(?:/[a-z_0-
                   % "|".join(STAGES))
 PROSE = re.compile(r"^```.*?^```", re.S | re.M)
 NAME = re.compile(r"`([A-Za-z_]\w+)(?:\([^`]*\))?`")
-# Written as paths and meant as words.
+# These look like paths, but are not.
 WORDS = {"splats/s", "scene/s"}
 
 
@@ -39,14 +39,14 @@ def path_faults(name, text):
         if match[1] in WORDS or exists(match[1], match[2]):
             continue
         line = text.count("\n", 0, match.start()) + 1
-        yield f"{name}:{line}: there is no {match[1]}{match[2] or ''}"
+        yield f"{name}:{line}: {match[1]}{match[2] or ''} does not exist"
 
 
 def tour_faults(text, sources):
     tour = re.search(r"^## A tour\n(.*?)^## ", text, re.S | re.M)
     if not tour:
-        return ["ARCHITECTURE.md: the tour is missing"]
-    return [f"ARCHITECTURE.md: the tour names {word}, which is nowhere"
+        return ['ARCHITECTURE.md: the section "A tour" is missing']
+    return [f"ARCHITECTURE.md: {word} in the tour is not in the sources"
             for word in sorted(set(NAME.findall(tour[1]))) if not re.search(rf"\b{word}\b", sources)]
 
 
@@ -67,8 +67,6 @@ def self_test():
 def main():
     if not self_test():
         sys.exit("check_paths: the self-test failed")
-    if sys.argv[1:] == ["--self-test"]:
-        return
     architecture = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     faults = tour_faults(architecture, all_sources())
     for path in [ROOT / "ARCHITECTURE.md", *sorted((ROOT / "docs").glob("*.md"))]:
@@ -76,8 +74,8 @@ def main():
     for fault in faults:
         print(fault, file=sys.stderr)
     if faults:
-        sys.exit(f"check_paths: {len(faults)} faults")
-    print("check_paths: what the documents name exists")
+        sys.exit(f"check_paths: {len(faults)} errors")
+    print("check_paths: 0 errors")
 
 
 if __name__ == "__main__":

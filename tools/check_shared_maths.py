@@ -1,27 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that what CPUs and GPUs both compute uses only operations that round alike on both.
+"""Checks that code for CPUs and GPUs uses only operations that round identically on both.
 
-Models, hits and pictures of a GPU have the CPU's bits. That holds for + - * / and sqrt, comparisons
-and conversions, which IEEE 754 defines to the last bit (nvcc gets --fmad=false); arc tangents,
-logarithms and the like have other last bits in every library. So functions marked ADASPLATS_HD and
-all of *.cu and *.cuh may not call them. (fmaf and reciprocals stand in box tests, whose margin
-covers them.)
+GPUs must give the same bits as CPUs for models, hits and pictures. IEEE 754 defines + - * / and sqrt,
+comparisons and conversions to the last bit (nvcc gets --fmad=false), but transcendental functions differ
+between libraries. So functions marked ADASPLATS_HD and all code in *.cu and *.cuh must not call them.
+fmaf and reciprocals are used only in box tests, whose margin covers the difference.
 
-usage: tools/check_shared_maths.py [ROOT]      tools/check_shared_maths.py --self-test
+usage: tools/check_shared_maths.py
 """
 
 import pathlib
 import re
 import sys
 
-ROUNDS_ANYHOW = ("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh",
+TRANSCENDENTAL = ("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh",
                  "cospi", "erf", "erfc", "exp", "exp10", "exp2", "expm1", "hypot", "lgamma", "log",
                  "log10", "log1p", "log2", "norm3d", "pow", "powi", "rcbrt", "rhypot", "rsqrt", "sin",
                  "sincos", "sinh", "sinpi", "tan", "tanh", "tgamma")
-# With the float versions and CUDA's fast ones: sinf, __sinf, __fdividef.
-CALL = re.compile(r"(?<![\w.>])(?:std::)?(_*(?:" + "|".join(ROUNDS_ANYHOW) + r")[fl]?|__fdividef"
+# Including float versions and CUDA's fast ones: sinf, __sinf, __fdividef.
+CALL = re.compile(r"(?<![\w.>])(?:std::)?(_*(?:" + "|".join(TRANSCENDENTAL) + r")[fl]?|__fdividef"
                   r"|__frsqrt_rn)\s*\(")
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
@@ -32,7 +31,7 @@ def without_comments(text):
 
 
 def shared_parts(text):
-    """(offset, part) of every function that is marked ADASPLATS_HD: up to its last brace."""
+    """(offset, text) of every function marked ADASPLATS_HD, up to its last brace."""
     for mark in re.finditer(r"\bADASPLATS_HD\b", text):
         depth = 0
         for brace in re.finditer(r"[{};]", text[mark.end():]):
@@ -42,19 +41,19 @@ def shared_parts(text):
                 break
 
 
-def faults_of(name, text):
+def errors_of(name, text):
     text = without_comments(text)
     parts = [(0, text)] if name.endswith((".cu", ".cuh")) else shared_parts(text)
     for offset, part in parts:
         for call in CALL.finditer(part):
             line = text.count("\n", 0, offset + call.start(1)) + 1
-            yield f"{name}:{line}: {call.group(1)} has other last bits on a GPU"
+            yield f"{name}:{line}: {call.group(1)} rounds differently on GPUs"
 
 
 def check_tree(root):
     for path in sorted((root / "src").rglob("*")):
         if path.suffix in (".h", ".cu", ".cuh") and not path.stem.endswith("_test"):
-            yield from faults_of(str(path.relative_to(root)), path.read_text(encoding="utf-8"))
+            yield from errors_of(str(path.relative_to(root)), path.read_text(encoding="utf-8"))
 
 
 RIGHT = {
@@ -74,29 +73,20 @@ WRONG = {
 
 def self_test():
     for name, text in RIGHT.items():
-        yield from (f"right, but: {fault}" for fault in faults_of(name, text))
+        assert not list(errors_of(name, text)), name
     for name, text in WRONG.items():
-        found = list(faults_of(name, text))
-        if len(found) != 1:
-            yield f"{name}: planted one fault, found {found}"
+        errors = list(errors_of(name, text))
+        assert len(errors) == 1, f"{name}: expected one error, found {errors}"
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        faults, what = list(self_test()), f"{len(WRONG)} planted calls are found"
-    elif len(arguments) <= 1 and not (arguments and arguments[0].startswith("-")):
-        root = pathlib.Path(arguments[0] if arguments else __file__).resolve()
-        faults = list(check_tree(root if arguments else root.parent.parent))
-        what = "CPUs and GPUs share no function that rounds differently"
-    else:
-        print(__doc__, file=sys.stderr)
-        return 64
-    for fault in faults:
-        print(fault, file=sys.stderr)
-    print(f"check_shared_maths: {what}" if not faults else
-          f"check_shared_maths: {len(faults)} faults")
-    return 1 if faults else 0
+def main():
+    self_test()
+    errors = list(check_tree(pathlib.Path(__file__).resolve().parent.parent))
+    for error in errors:
+        print(error, file=sys.stderr)
+    print(f"check_shared_maths: {len(errors)} errors")
+    return 1 if errors else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

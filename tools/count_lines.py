@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Count lines of code by area, without comments, blank lines, tests and data.
 
-Prints a row for each area (a stage of src/adasplats, or a top-level folder), then the totals that
-CONTRIBUTING.md refers to: files, files under 40 lines, folders, option structs, words of
-documentation, and functions of more than 60 lines.
+Prints a row for each area (a stage of src/adasplats, or a top-level folder), then the totals of
+CONTRIBUTING.md: files, files under 40 lines, folders, option structs, words of documentation, and
+functions of more than 60 lines.
 
 usage: tools/count_lines.py [COMMIT]      (default: the working tree)
 """

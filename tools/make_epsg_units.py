@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes src/adasplats/io/base/epsg_unit_table.h: which projected and vertical systems of the EPSG
-Geodetic Parameter Dataset (IOGP) have coordinates in another unit than metres, from the data base
-that comes with PROJ (proj.db, package proj-data).
+"""Writes src/adasplats/io/base/epsg_unit_table.h: the projected and vertical coordinate systems of the
+EPSG Geodetic Parameter Dataset (IOGP) that do not use metres, from PROJ's database (proj.db, package
+proj-data).
 
 usage: tools/make_epsg_units.py [PROJ.DB]
 """

@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy over the sources of src/, apps/ and python/ (tests and benchmarks are not checked).
+"""Runs clang-tidy over the sources of src/, apps/ and python/, without tests.
 
-A file that passed is not run again until it, a header of ours that it includes, its compile
-command or .clang-tidy changes: what passed is kept as stamps, for all clones of a user, in
-$ADASPLATS_TIDY_CACHE (~/.cache/adasplats/tidy), for 30 days after its last use. Nearly all the time goes
-into the headers of others, so sources that can are judged together (tools/source_batches.py); where
-that finds anything each is judged alone, and that counts. Versions of clang-tidy find different
-things, so only the pinned one judges: others skip (exit code 77).
+A source that passed is checked again only if it, one of our headers that it includes, its compile
+command or .clang-tidy changes. The stamps of passed sources are kept for 30 days after their last use
+in $ADASPLATS_TIDY_CACHE (default: ~/.cache/adasplats/tidy), for all clones of a user. Most of the time
+goes into third-party headers, so sources that CMake compiles together (CMAKE_UNITY_BUILD) are first
+checked as one file; if that finds anything, each source is checked alone, and only that result counts.
+Other versions of clang-tidy give other warnings, so without the pinned one this exits with code 77.
 
-usage: tools/run_tidy.py BUILD [-j JOBS]      (BUILD holds compile_commands.json)
+usage: tools/run_tidy.py BUILD [-j JOBS]      (BUILD contains compile_commands.json)
 """
 
 import argparse
 import collections
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
@@ -26,15 +27,16 @@ import subprocess
 import sys
 import time
 
-import source_batches
-
 PINNED = 14  # Debian 12's
 KEPT_S = 30 * 24 * 3600
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHECKED = (ROOT / "src", ROOT / "apps", ROOT / "python" / "src")
 DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
-OUR_INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
-JOINED = re.compile(r'^#include "(.+)"$', re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
+UNITY_INCLUDE = re.compile(r'^#include "(.+)"$', re.MULTILINE)
+
+# unity: the file that CMake compiles instead of this source and others, or the source itself.
+Source = collections.namedtuple("Source", "path command unity")
 
 
 def find_clang_tidy():
@@ -49,38 +51,61 @@ def find_clang_tidy():
     return None
 
 
-def with_headers(source):
-    """The source and every header of ours that it includes, directly or not."""
-    found, pending = set(), [source]
-    # Where its includes may stand: beside it and in the folders above.
-    roots = [folder for folder in source.parents if folder.is_relative_to(ROOT)]
+def read_sources(build):
+    """The sources to check, each once."""
+    found = {}
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        # Drop ccache and options that only GCC has.
+        command = re.sub(r"^\S.*/ccache ", "", entry["command"])
+        command = re.sub(r"-Wno-(restrict|subobject-linkage) ", "", command)
+        unity = pathlib.Path(entry["file"])
+        paths = [unity]
+        if unity.parent.name == "Unity":
+            paths = map(pathlib.Path, UNITY_INCLUDE.findall(unity.read_text(encoding="utf-8")))
+        for path in paths:
+            # clang 14 supports CUDA up to 11.5 only, so *.cu are not checked.
+            if (path.suffix == ".cpp" and not path.stem.endswith("_test") and path.exists() and
+                    any(path.is_relative_to(folder) for folder in CHECKED)):
+                found.setdefault(path, Source(path, command.replace(str(unity), str(path)), unity))
+    return list(found.values())
+
+
+@functools.lru_cache(maxsize=None)
+def included_headers(path):
+    """Our headers that a file includes directly, searched as the compiler does."""
+    folders = [ROOT / "src", *(folder for folder in path.parents if folder.is_relative_to(ROOT))]
+    names = INCLUDE.findall(path.read_text(encoding="utf-8"))
+    files = (next((f / name for f in folders if (f / name).is_file()), None) for name in names)
+    return [file for file in files if file]
+
+
+@functools.lru_cache(maxsize=None)
+def hash_of(path):
+    return hashlib.sha256(path.read_bytes()).digest()
+
+
+def settings_of(path):
+    """The .clang-tidy files for a source, nearest first."""
+    folders = [folder for folder in path.parents if folder.is_relative_to(ROOT)]
+    return [folder / ".clang-tidy" for folder in folders if (folder / ".clang-tidy").is_file()]
+
+
+def stamp_name(source, version):
+    """A hash of everything that the result depends on, independent of the clone's folder."""
+    files, pending = set(), [source.path]
     while pending:
         path = pending.pop()
-        if path in found:
-            continue
-        found.add(path)
-        for name in OUR_INCLUDE.findall(path.read_bytes()):
-            for folder in (ROOT / "src", *roots):
-                header = folder / os.fsdecode(name)
-                if header.is_file():
-                    pending.append(header)
-                    break
-    return sorted(found)
-
-
-def stamp_of(source, command, version):
-    """A hash of everything that the verdict on a source depends on, wherever the clone lies."""
-    state = hashlib.sha256()
-    for part in (version, command.replace(str(ROOT), "")):
-        state.update(part.encode() + b"\0")
-    for path in settings_of(source) + with_headers(source):
-        state.update(os.fsencode(path.relative_to(ROOT)) + b"\0" +
-                     hashlib.sha256(path.read_bytes()).digest())
+        if path not in files:
+            files.add(path)
+            pending += included_headers(path)
+    state = hashlib.sha256(f"{version}\0{source.command.replace(str(ROOT), '')}\0".encode())
+    for path in settings_of(source.path) + sorted(files):
+        state.update(os.fsencode(path.relative_to(ROOT)) + b"\0" + hash_of(path))
     return state.hexdigest()
 
 
 def stamp_folder():
-    """Where stamps are kept; those that nothing used for long are removed."""
+    """The folder of stamps, without those that were not used for long."""
     cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
     folder = pathlib.Path(os.environ.get("ADASPLATS_TIDY_CACHE") or cache / "adasplats/tidy")
     folder.mkdir(parents=True, exist_ok=True)
@@ -90,127 +115,68 @@ def stamp_folder():
     return folder
 
 
-def for_clang(entry):
-    """A compile command that clang can follow: without ccache and what stands before it, and without
-    the warnings that only GCC has."""
-    command = re.sub(r"^\S.*/ccache ", "", entry["command"])
-    command = re.sub(r"-Wno-(restrict|subobject-linkage) ", "", command)
-    return {**entry, "command": command}
-
-
-def one_by_one(entry):
-    """The entry; for a file in which CMake joined sources (CMAKE_UNITY_BUILD), one for each of
-    these."""
-    file = pathlib.Path(entry["file"])
-    if file.parent.name != "Unity":
-        return [entry]
-    return [{**entry, "file": source, "command": entry["command"].replace(entry["file"], source)}
-            for source in JOINED.findall(file.read_text(encoding="utf-8"))]
-
-
-def clang_commands(build):
-    """The compile commands for clang-tidy, written to a folder of their own."""
-    with open(build / "compile_commands.json", encoding="utf-8") as file:
-        entries = [for_clang(alone) for entry in json.load(file) for alone in one_by_one(entry)]
-    folder = build / "tidy-commands"
-    folder.mkdir(exist_ok=True)
-    (folder / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
-    return folder, entries
-
-
-def sources_of(entries):
-    """(source, compile command) of what is checked, once where two targets compile it."""
-    seen = set()
-    for entry in entries:
-        source = pathlib.Path(entry["file"])
-        if source in seen:
-            continue
-        seen.add(source)
-        # clang 14 knows CUDA up to 11.5: what kernels share with the CPU is checked in its .cpp.
-        checked = (source.suffix != ".cu" and
-                   any(source.is_relative_to(folder) for folder in CHECKED))
-        if checked and not source.stem.endswith("_test") and source.exists():
-            yield source, entry["command"]
-
-
-def settings_of(source):
-    """The .clang-tidy files that hold for a source, nearest first."""
-    folders = [folder for folder in source.parents if folder.is_relative_to(ROOT)]
-    return [folder / ".clang-tidy" for folder in folders if (folder / ".clang-tidy").is_file()]
-
-
-def headers_text(source):
-    headers = [path for path in with_headers(source) if path != source]
-    return "".join(path.read_text(encoding="utf-8") for path in headers)
-
-
-def batches_of(pairs):
-    """The (source, command) pairs in lists that may be judged together: the same options, the same
-    settings, and no name with two meanings."""
-    commands = dict(pairs)
-    alike = collections.defaultdict(list)
-    for source, command in pairs:
-        options = re.sub(r" -o \S+| -c \S+", "", command)
-        alike[options, settings_of(source)[0]].append(source)
-    for sources in alike.values():
-        texts = {source: source.read_text(encoding="utf-8") for source in sources}
-        for batch in source_batches.batches(texts, headers_text):
-            yield [(source, commands[source]) for source in batch]
+def batches_of(sources):
+    """Lists of sources to check as one file. Those that include a file twice are alone, because
+    readability-duplicate-include cannot be used on a batch."""
+    batches = collections.defaultdict(list)
+    for source in sources:
+        includes = INCLUDE.findall(source.path.read_text(encoding="utf-8"))
+        is_alone = len(includes) != len(set(includes))
+        batches[source.path if is_alone else source.unity].append(source)
+    # The largest first, so that no core is left with a large one at the end.
+    return sorted(batches.values(), key=len, reverse=True)
 
 
 class Tidy:
-    """clang-tidy over a build, which remembers what passed."""
+    """clang-tidy with the compile commands of a build."""
 
-    def __init__(self, program, version, build):
-        self.program, self.version = program, version
-        self.folder, self.entries = clang_commands(build)
-        self.stamps = stamp_folder()
+    def __init__(self, program, build, sources):
+        self.program, self.build, self.folder = program, build, build / "tidy"
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.write_commands(self.folder, {source.path: source.command for source in sources})
 
-    def stamp(self, pair):
-        return self.stamps / stamp_of(*pair, self.version)
+    def write_commands(self, folder, commands):
+        folder.mkdir(parents=True)
+        entries = [{"directory": str(self.build), "file": str(file), "command": command}
+                   for file, command in commands.items()]
+        (folder / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
 
     def run(self, *words):
+        """(whether it passed, its output)"""
         result = subprocess.run([self.program, "--quiet", *words], text=True, check=False,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        # stderr counts the warnings of system headers; it matters where nothing else was said.
-        return result.returncode, result.stdout or result.stderr
+        # stderr also counts suppressed warnings; it is of interest only if stdout is empty.
+        return result.returncode == 0, result.stdout or result.stderr
 
     def passes_together(self, batch):
-        """Whether a batch has no fault, nor a clash of names that are each right alone."""
-        texts = {source: source.read_text(encoding="utf-8") for source, _ in batch}
-        first, command = batch[0]
-        name = hashlib.sha256("".join(map(str, texts)).encode()).hexdigest()[:16]
-        folder = self.folder / "batches" / name
-        folder.mkdir(parents=True, exist_ok=True)
-        # clang-tidy looks for its settings beside the source and in the folders above.
-        nearest, furthest = settings_of(first)[0], settings_of(first)[-1]
-        shutil.copy(furthest, folder.parent)
-        if nearest != furthest:
-            shutil.copy(nearest, folder)
+        """Whether the sources pass as one file, in which each keeps its path and line numbers."""
+        first = batch[0]
+        folder = self.folder / hashlib.sha256(str(first.path).encode()).hexdigest()[:16]
         joined = folder / "batch.cpp"
-        joined.write_text(source_batches.batch_text(texts, texts, headers_text), encoding="utf-8")
-        # Sources include what lies beside them, in quotes.
-        beside = "".join(f" -iquote {path}" for path in sorted({source.parent for source in texts}))
-        entry = {"directory": str(self.folder.parent), "file": str(joined),
-                 "command": command.replace(f" -c {first}", f"{beside} -c {joined}")}
-        (folder / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
-        # The sources include the same headers, each once (source_batches.py).
-        code, _ = self.run("-p", folder, "--checks=-readability-duplicate-include", joined)
-        return code == 0
+        # Quoted includes are relative to the folder of their source. Without -Wshadow, which GCC checks:
+        # a local constant may have the name of another source's constant.
+        quoted = "".join(f" -iquote {path}" for path in sorted({s.path.parent for s in batch}))
+        self.write_commands(folder, {joined: first.command.replace(
+            f" -c {first.path}", f" -Wno-shadow{quoted} -c {joined}")})
+        joined.write_text("".join(f'#line 1 "{source.path}"\n'
+                                  f"{source.path.read_text(encoding='utf-8')}\n"
+                                  for source in batch), encoding="utf-8")
+        # clang-tidy reads the settings of the folder and of those above.
+        settings = settings_of(first.path)
+        shutil.copy(settings[-1], self.folder)
+        if len(settings) > 1:
+            shutil.copy(settings[0], folder)
+        return self.run("-p", folder, "--checks=-readability-duplicate-include", joined)[0]
 
-    def judge(self, batch):
-        """[(source, its faults as text, or None)] of a batch."""
+    def check(self, batch):
+        """[(source, output of clang-tidy or None if it passed)] of a batch."""
         if len(batch) > 1 and self.passes_together(batch):
-            for pair in batch:
-                self.stamp(pair).touch()
-            return [(source, None) for source, _ in batch]
-        verdicts = []
-        for pair in batch:
-            code, text = self.run("-p", self.folder, pair[0])
-            if code == 0:
-                self.stamp(pair).touch()
-            verdicts.append((pair[0], None if code == 0 else text))
-        return verdicts
+            return [(source, None) for source in batch]
+        results = []
+        for source in batch:
+            passed, output = self.run("-p", self.folder, source.path)
+            results.append((source, None if passed else output))
+        return results
 
 
 def main():
@@ -220,31 +186,32 @@ def main():
     options = parser.parse_args()
     found = find_clang_tidy()
     if not found:
-        print(f"run_tidy: skipped: clang-tidy {PINNED} judges, and it is not here")
+        print(f"run_tidy: skipped: clang-tidy {PINNED} is not installed")
         return 77
-    tidy = Tidy(*found, options.build.resolve())
-
-    pairs = list(sources_of(tidy.entries))
-    stamps = [tidy.stamp(pair) for pair in pairs]
-    stale = [pair for pair, stamp in zip(pairs, stamps) if not stamp.exists()]
-    for stamp in stamps:
+    program, version = found
+    sources = read_sources(options.build.resolve())
+    stamps, folder, stale = {}, stamp_folder(), []
+    for source in sources:
+        stamp = stamps[source] = folder / stamp_name(source, version)
         if stamp.exists():
-            stamp.touch()  # used
-    faulty, said = 0, set()
+            stamp.touch()  # still in use
+        else:
+            stale.append(source)
+    tidy = Tidy(program, options.build.resolve(), sources)
+    faulty, printed = 0, set()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        # The largest first, so that none is left for one core at the end.
-        for verdicts in pool.map(tidy.judge, sorted(batches_of(stale), key=len, reverse=True)):
-            for source, text in verdicts:
-                if text is None:
+        for results in pool.map(tidy.check, batches_of(stale)):
+            for source, output in results:
+                if output is None:
+                    stamps[source].touch()
                     continue
                 faulty += 1
-                # What is wrong in a header is found once for every source that includes it.
-                new = [part for part in DIAGNOSTIC.split(text) if part not in said]
-                said.update(new)
-                print(f"{source.relative_to(ROOT)}:\n{''.join(new)}", flush=True)
-    print(f"run_tidy: {len(pairs)} sources, {len(pairs) - len(stale)} unchanged since they passed, "
-          f"{faulty} faulty")
-    return 1 if faulty or not pairs else 0
+                # A warning in a header is found in every source that includes it; print it once.
+                new = [part for part in DIAGNOSTIC.split(output) if part not in printed]
+                printed.update(new)
+                print(f"{source.path.relative_to(ROOT)}:\n{''.join(new)}", flush=True)
+    print(f"run_tidy: {len(sources)} sources, {len(sources) - len(stale)} unchanged, {faulty} faulty")
+    return 1 if faulty or not sources else 0
 
 
 if __name__ == "__main__":

@@ -105,7 +105,7 @@ def test_a_check_that_fails_says_so(tmp_path, monkeypatch):
     import export
     file = saved(random_network(["road"]), ["road"], tmp_path / "a.pt")
     monkeypatch.setattr(sys, "argv", ["export.py", str(file), str(tmp_path / "a.network")])
-    monkeypatch.setattr(export, "MOST_APART", -1.0)
+    monkeypatch.setattr(export, "MAX_DIFFERENCE", -1.0)
     with pytest.raises(SystemExit, match="from PyTorch's"):
         export.main()
 
@@ -181,5 +181,5 @@ def test_fine_tuning_in_one_command(tmp_path, world):
     told = json.loads((labelled / "adasplats.json").read_text())
     assert [c["id"] for c in told["classes"]] == [40, 50]
     tool("prepare.py", tmp_path / "b.npz", world)
-    assert "other classes in" in tool("train.py", tmp_path / "no", tmp_path / "a.npz",
+    assert "different classes in" in tool("train.py", tmp_path / "no", tmp_path / "a.npz",
                                       tmp_path / "b.npz", code=1)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs test modules of this folder (all without arguments): run_tests.py [MODULE...]
 
-ADASPLATS_PROGRAM names the program under test. The last line says "N passed, N failed". Where
-ADASPLATS_TEST_RESULTS names a folder, command_line_MODULE.xml there tells which cases were skipped.
+ADASPLATS_PROGRAM is the program under test. The last line is "N passed, N failed". If
+ADASPLATS_TEST_RESULTS is set, the skipped cases are written to command_line_MODULE.xml in that folder.
 """
 import os
 import sys
@@ -15,7 +15,7 @@ FOLDER = Path(__file__).resolve().parent
 
 
 def write_skipped(result, modules):
-    """The skipped cases, as tools/check_skips.py reads them."""
+    """Writes the skipped cases for tools/check_skips.py."""
     folder = os.environ.get("ADASPLATS_TEST_RESULTS")
     if not folder:
         return

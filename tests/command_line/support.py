@@ -46,7 +46,7 @@ SUBCOMMANDS = [
     ["send"],
     ["demo"],
 ]
-# What tells of the program and computes nothing.
+# Commands about the program, which compute nothing.
 ABOUT = [["help"], ["version"], ["completion"], ["man"]]
 ROAD, BUILDING, POLE = 40, 50, 80
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The commands that tell of the program: help, version, completion and man. The oracles are the
-helps that the parser prints, and the shells and readers of manual pages that are installed."""
+"""The commands about the program: help, version, completion and man, checked against the parser's help,
+and with the installed shells and readers of manual pages."""
 import os
 import re
 import shutil
@@ -208,7 +208,7 @@ class Manual(ProgramTest):
         self.assertRegex(text, r"--neighbors INT\n +Number of neighbours of a point, K.  Default: 40\.")
         self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile: folder of a city.  Required\.")
 
-    def test_mandoc_takes_them(self):
+    def test_mandoc_accepts_them(self):
         if not shutil.which("mandoc"):
             self.skipTest("mandoc is not installed")
         # It warns of pages without a date; ours have the version in its place.

@@ -35,7 +35,7 @@ def pose_line(k, shift=0.0):
 
 
 def winding_line(k):
-    """Of a drive that turns, and not about one place: that would tell no yaw of the mount."""
+    """A pose of a winding drive. Turning on the spot would not constrain the yaw of the mount."""
     yaw = 0.12 * k
     return (f"{0.1 * k:.1f},{-9 + 1.1 * k},{4 * math.sin(0.45 * k)},1.8,"
             f"{math.cos(yaw / 2)},0,0,{math.sin(yaw / 2)}")
@@ -110,7 +110,7 @@ class Calibrate(ProgramTest):
                 t + ahead_m * z))
         (sequence / "poses.txt").write_text("\n".join(lines) + "\n")
         words = ["calibrate", sequence, "--own-body", "0", "--overwrite", "-o", self.folder / "out"]
-        # By such poses no points tell that the sensor was at rest within scans.
+        # With these poses the points do not show that the sensor was at rest within scans.
         warning, report = "assumed to be at rest", self.folder / "report.json"
         self.run_warned(warning, *words, "--report", report)
         mount = json.loads(report.read_text(encoding="utf-8"))["mount"]

@@ -158,7 +158,7 @@ class CityAddition(ProgramTest):
         report = self.report(*self.addition("--max-shift", "0.5", new=high))
         self.assertAlmostEqual(report["fit"]["shift_m"][2], -0.3, delta=0.01)
 
-    def test_points_far_away_are_said_to_have_nothing_in_common(self):
+    def test_distant_points_are_reported_as_disjoint(self):
         self.make_first()
         far = self.folder / "far.ply"
         write_cloud(far, moved(self.new_points, 60))

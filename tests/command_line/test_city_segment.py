@@ -66,7 +66,7 @@ class SegmentedCity(ProgramTest):
         self.assertEqual({path.name for path in self.city.iterdir()},
                          {"adasplats.json", "city.json", "common.ply", "levels", "tiles"})
 
-    def test_labels_are_replaced_and_that_is_said(self):
+    def test_replaced_labels_give_a_warning(self):
         said = run("model", self.cloud, "-o", self.city, "--tile", "6", "--halo", "20",
                    *self.options())
         self.assertEqual((said.returncode, said.stderr), (0, REPLACED))
@@ -146,7 +146,7 @@ class SegmentedCity(ProgramTest):
         self.assertEqual(report["tiles_resumed"], report["tiles"])
         self.assertEqual(tree_digest(self.city), tree_digest(whole))
 
-    def test_what_cannot_be_is_refused_as_in_one_piece(self):
+    def test_impossible_options_are_rejected_as_without_tiles(self):
         self.run_bad(64, *self.command("--labels", "semantickitti"),
                      says=["--labels has no effect with --segment"])
         self.run_bad(64, *self.command("--remove", "moving"),

@@ -132,16 +132,16 @@ class Street(CompareTest):
         self.assertEqual((data["offset_m"], data["every"], data["preset"]), ([1, 1, -1], 40, ""))
         self.assertAlmostEqual(data["points"], 4000, delta=1000)
         self.assertGreater(results["machine"]["memory_bytes"], 0)
-        told = results["provenance"]
-        self.assertEqual(told["command"], results["command"])
+        provenance = results["provenance"]
+        self.assertEqual(provenance["command"], results["command"])
         for entry in results["competitors"]:
             own = entry["provenance"]
             self.assertEqual(set(entry["made_by"]), set(CHILD_STEPS))
             for made_by in entry["made_by"].values():
                 self.assertEqual((made_by["version"], made_by["commit"], made_by["dirty"]),
-                                 (told["version"], told["commit"], told["dirty"]))
-            self.assertEqual((own["commit"], own["dirty"]), (told["commit"], told["dirty"]))
-            self.assertTrue(told["date"] <= own["first_date"] <= own["last_date"], own)
+                                 (provenance["version"], provenance["commit"], provenance["dirty"]))
+            self.assertEqual((own["commit"], own["dirty"]), (provenance["commit"], provenance["dirty"]))
+            self.assertTrue(provenance["date"] <= own["first_date"] <= own["last_date"], own)
         removed = data["removed"]
         self.assertEqual((removed["rule"], removed["paper"]), ("movable", "movable"))
         self.assertEqual(sum(removed["by_class"].values()), removed["points"])
@@ -341,7 +341,7 @@ class Street(CompareTest):
         self.assertEqual(self.run_again(before),
                          {f"basic/{step}" for step in CHILD_STEPS if step != "generate"})
 
-    def test_folders_that_are_refused(self):
+    def test_unsuitable_folders_are_rejected(self):
         before = states(self.output)
         descriptor = os.open(self.output, os.O_RDONLY)
         fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -463,12 +463,12 @@ class Presets(CompareTest):
         self.assertEqual([(row["title"], row["state"]) for row in rows.values()],
                          [("AdaSplats-KPConv", "done"), ("AdaSplats, classes", "done")])
         made = rows["kpconv"]["generate"]
-        told = made["segmentation"]
-        self.assertEqual((told["network"]["name"], told["replaced_labels"]),
+        segmentation = made["segmentation"]
+        self.assertEqual((segmentation["network"]["name"], segmentation["replaced_labels"]),
                          (network.name, True))
-        self.assertEqual(len(told["network"]["sha256"]), 64)
-        self.assertEqual(made["points_removed"], {"car": told["classes"]["car"]})
-        self.assertGreater(told["classes"]["car"], 100)
+        self.assertEqual(len(segmentation["network"]["sha256"]), 64)
+        self.assertEqual(made["points_removed"], {"car": segmentation["classes"]["car"]})
+        self.assertGreater(segmentation["classes"]["car"], 100)
         self.assertIn(" --segment ", made["command"])
         self.assertIn(" --network " + network.name, made["command"])
         self.assertNotIn("--labels", made["command"])

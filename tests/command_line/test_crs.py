@@ -71,10 +71,10 @@ class CoordinateSystems(ProgramTest):
         self.assertEqual((facts["crs"], facts["las"]["version"], facts["las"]["software"]),
                          ("EPSG:32632", "1.4", "tests"))
         self.assertEqual(facts["las"]["scale"], [0.001, 0.001, 0.001])
-        told = run("info", b).stdout
+        output = run("info", b).stdout
         for words in ("coordinate system", "EPSG:32632", "LAS 1.4, point format 6, by tests",
                       "0.001, 0.001, 0.001 m", "2 ground", "6 building"):
-            self.assertIn(words, told)
+            self.assertIn(words, output)
         model = self.folder / "m.ply"
         self.run_warned("model", self.folder / "a.las", b, "-o", model)
         name = "EPSG:32632 (WGS 84 / UTM zone 32N)"
@@ -86,7 +86,7 @@ class CoordinateSystems(ProgramTest):
         self.assertIn(b"comment adasplats.crs_wkt " + utm(32).encode(),
                       (self.folder / "g.ply").read_bytes()[:4000])
 
-    def test_mixes_are_errors_and_silence_is_told(self):
+    def test_mixed_systems_are_errors_and_missing_ones_are_reported(self):
         a = self.write("a.las", self.left, wkt=utm(32))
         b = self.write("b.las", self.right, wkt=utm(33))
         silent = self.write("silent.las", self.right)
@@ -113,7 +113,7 @@ class CoordinateSystems(ProgramTest):
         self.assertTrue(self.facts(model)["crs"].startswith("EPSG:32632"))
         self.run_bad(65, "evaluate", "presence", model, b, says=["EPSG:32632", "EPSG:32633"])
 
-    def test_feet_are_an_error_that_says_what_to_do(self):
+    def test_feet_are_an_error_with_a_remedy(self):
         feet = 'PROJCS["x",GEOGCS["y"],UNIT["US survey foot",0.304800609601219]]'
         path = self.write("feet.las", self.left, wkt=feet)
         self.run_bad(65, "model", path, "-o", self.folder / "m.ply",

@@ -161,7 +161,7 @@ class Manifest(ProgramTest):
         again, other = self.manifest("--rain", "5", "--threads", "1")
         self.assertEqual(first, again)
         self.assertEqual(tree_digest(folder), tree_digest(other))
-        # Elsewhere, too: only names of files are told.
+        # The same in another folder: the manifest contains only file names.
         moved = self.folder / "moved"
         moved.mkdir()
         for path in [self.place, self.poses, self.sensor]:

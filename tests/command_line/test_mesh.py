@@ -177,7 +177,7 @@ class Meshing(ProgramTest):
 
 
 class Poisson(ProgramTest):
-    """With stand-ins for the programs, so that what they are told is seen."""
+    """With stand-ins for the programs, which record their arguments."""
 
     def setUp(self):
         super().setUp()
@@ -197,7 +197,7 @@ class Poisson(ProgramTest):
             (self.programs / name).write_text(text)
             (self.programs / name).chmod(0o755)
 
-    def test_none_there(self):
+    def test_programs_are_missing(self):
         self.run_bad(69, *self.command, env=self.environment,
                      says=["PoissonRecon", "SurfaceTrimmer", "PATH", "libopen3d-dev"])
         self.assertEqual(list(self.outputs.iterdir()), [])
@@ -205,9 +205,9 @@ class Poisson(ProgramTest):
     def test_flags_and_result(self):
         self.provide()
         self.run_good(*self.command, env=self.environment)
-        told = (self.notes / "recon").read_text()
+        arguments = (self.notes / "recon").read_text()
         for flag in ["--depth 13 ", "--bType 3 ", "--samplesPerNode 2.0", "--density", "--tempDir "]:
-            self.assertIn(flag, told)
+            self.assertIn(flag, arguments)
         self.assertIn("--trim 10.0", (self.notes / "trimmer").read_text())
         self.assertEqual([p.name for p in self.outputs.iterdir()], ["m.ply"])
         facts = self.report("info", self.outputs / "m.ply")["files"][0]
@@ -216,9 +216,9 @@ class Poisson(ProgramTest):
         self.run_good(*self.command, "--depth", "9", "--report", report, env=self.environment)
         self.assertIn("--depth 9 ", (self.notes / "recon").read_text())
         self.assertIn("--trim 6.0", (self.notes / "trimmer").read_text())
-        told = json.loads(report.read_text())
-        self.assertEqual((told["program"], told["primitives"]), ("PoissonRecon", 1))
-        self.assertGreater(told["program_peak_memory_bytes"], 0)
+        result = json.loads(report.read_text())
+        self.assertEqual((result["program"], result["primitives"]), ("PoissonRecon", 1))
+        self.assertGreater(result["program_peak_memory_bytes"], 0)
 
     def test_failure_leaves_nothing(self):
         self.provide(recon="#!/bin/sh\necho bad luck >&2\nexit 5\n")

@@ -72,7 +72,7 @@ class ModelSegmentTest(ProgramTest):
         self.run_good("model", self.bare, "-o", self.out)
         self.assertNotIn(b"network_sha256", self.out.read_bytes()[:2000])
 
-    def test_labels_are_replaced_and_that_is_said(self):
+    def test_replaced_labels_give_a_warning(self):
         report = self.folder / "report.json"
         words = ["--method", "semantic", "--segment", "--network", self.network]
         said = run("model", self.cloud, "-o", self.out, *words, "--report", report)
@@ -97,7 +97,7 @@ class ModelSegmentTest(ProgramTest):
         self.assertEqual(b"\n".join(without),
                          b"\n".join(expected.read_bytes().split(b"\n", 19)))
 
-    def test_what_has_no_effect_is_refused(self):
+    def test_options_without_effect_are_rejected(self):
         model = ["model", self.bare, "-o", self.out]
         self.run_bad(64, *model, "--network", self.network, says=["--network has no effect"])
         self.run_bad(64, "model", self.cloud, "-o", self.out, "--segment", "--labels",

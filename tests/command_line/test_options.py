@@ -55,7 +55,7 @@ class OptionsTest(ProgramTest):
         report = self.report("model", self.cloud, "-o", model, "--labels", "semantickitti")
         self.assertEqual(report["points_removed"], {})
 
-    def test_default_method_tells_its_own_figures(self):
+    def test_default_method_prints_its_own_figures(self):
         path = self.folder / "m.ply"
         text = self.run_good("model", self.cloud, "-o", path, "--labels", "semantickitti").stdout
         for word in [" cells, ", " seeds, ", " measured rays"]:

@@ -41,7 +41,7 @@ class Origins(ProgramTest):
         self.assertEqual(both["origins"]["measured"], alone["points_in"])
         self.assertEqual(both["origins"]["none"], len(tiny_place()))
 
-    def test_impossible_viewpoints_are_refused(self):
+    def test_impossible_viewpoints_are_rejected(self):
         self.run_bad(64, "model", self.bare, "--viewpoint", "5e6,0,0", "-o", self.folder / "m.ply",
                      says=["viewpoint", "5000 km"])
         ring = self.folder / "ring.xyz"

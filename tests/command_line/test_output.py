@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs appear whole or not at all, and faults are told before long work."""
+"""Outputs are complete or absent, and errors are reported before long computations."""
 import fcntl
 import os
 import resource

@@ -274,7 +274,7 @@ class Captures(ProgramTest):
                 # The place that sent them has them at its surfaces, to the steps of packets.
                 self.assertLess(figures["range_error_m"]["median"], 0.002)
 
-    def test_what_is_needed_is_said(self):
+    def test_missing_requirements_are_named(self):
         folder = self.drive("vlp", "velodyne-vlp-16")
         capture = folder / "drive.pcap"
         output = self.folder / "no.ply"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reports tell where their figures come from; outputs depend on data and settings alone."""
+"""Reports record the provenance of their figures; outputs depend only on data and settings."""
 import os
 import re
 import shutil
@@ -14,21 +14,21 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class Report(ProgramTest):
-    def test_a_report_tells_where_it_comes_from(self):
+    def test_reports_have_provenance(self):
         report = self.report("info", self.cloud, "--threads", "1")
-        told = report["provenance"]
-        self.assertEqual(list(told), ["version", "commit", "dirty", "date", "command", "machine",
+        provenance = report["provenance"]
+        self.assertEqual(list(provenance), ["version", "commit", "dirty", "date", "command", "machine",
                                       "device"])
-        self.assertRegex(told["date"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
-        self.assertRegex(told["commit"], r"^([0-9a-f]{40}|[0-9A-Za-z._-]+)$")
-        self.assertEqual(told["version"], report["version"])
-        self.assertEqual(told["machine"]["cores"], 1)
-        self.assertEqual(list(told["machine"]), ["cpu", "cores", "memory_bytes", "system",
+        self.assertRegex(provenance["date"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertRegex(provenance["commit"], r"^([0-9a-f]{40}|[0-9A-Za-z._-]+)$")
+        self.assertEqual(provenance["version"], report["version"])
+        self.assertEqual(provenance["machine"]["cores"], 1)
+        self.assertEqual(list(provenance["machine"]), ["cpu", "cores", "memory_bytes", "system",
                                                  "compiler"])
-        self.assertRegex(told["machine"]["compiler"], r"^(g\+\+|clang) \d")
-        self.assertEqual(told["device"]["kind"], "cpu")
+        self.assertRegex(provenance["machine"]["compiler"], r"^(g\+\+|clang) \d")
+        self.assertEqual(provenance["device"]["kind"], "cpu")
         # The very words, quoted for a shell: the folder's name has spaces.
-        self.assertEqual(told["command"], f"adasplats info '{self.cloud}' --threads 1 "
+        self.assertEqual(provenance["command"], f"adasplats info '{self.cloud}' --threads 1 "
                          f"--report '{self.folder / 'report.json'}'")
 
 

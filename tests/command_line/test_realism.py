@@ -25,7 +25,7 @@ class Realism(ProgramTest):
     def realism(self, simulated, real, *arguments):
         return self.report("evaluate", "realism", simulated, real, *arguments)
 
-    def test_the_same_process_is_not_told_and_another_noise_is(self):
+    def test_distinguishes_other_noise_but_not_the_same_process(self):
         self.model()
         real = self.scans("real", "--seed", 1)
         same = self.realism(self.scans("same", "--seed", 2), real)

@@ -97,7 +97,7 @@ class Resume(ProgramTest):
             self.run_good(*self.command())
         self.assertEqual(tree_digest(self.output), tree_digest(whole))
 
-    def test_other_jobs_are_refused(self):
+    def test_other_jobs_are_rejected(self):
         self.assertTrue(self.end_early(signal.SIGINT, 40))
         kept = tree_digest(self.unfinished)
         for words, key in [(["--seed", "9"], "seed"), (["--no-noise"], "noise"),

@@ -52,8 +52,8 @@ class SegmentTest(ProgramTest):
             self.assertEqual(file.stat().st_size * 4, scan.stat().st_size)
         self.assertEqual(report["points"], sum(scan.stat().st_size // 16 for scan in scans))
         self.assertEqual(sum(report["classes"].values()), report["points"])
-        told = self.report("evaluate", "segmentation", out, self.world)
-        self.assertGreater(told["groups"]["iou"]["ground"], 0.8)
+        result = self.report("evaluate", "segmentation", out, self.world)
+        self.assertGreater(result["groups"]["iou"]["ground"], 0.8)
 
     def test_threads_do_not_matter(self):
         for threads in ("1", "2"):
@@ -137,8 +137,8 @@ class SegmentTest(ProgramTest):
         self.assertEqual(report["classes"]["ground"], labels.count(1))
         self.run_good("segment", self.sequence, "-o", out, "--scans", "0:1", "--class-map",
                       map_file, "--confidences", "--probabilities")
-        told = json.loads((out / "adasplats.json").read_text())
-        self.assertEqual([c["id"] for c in told["classes"]], [2, 3, 1])
+        manifest = json.loads((out / "adasplats.json").read_text())
+        self.assertEqual([c["id"] for c in manifest["classes"]], [2, 3, 1])
         tree = out / "sequences" / "00"
         labels = words((tree / "labels" / "000000.label").read_bytes(), "I")
         confidences = words((tree / "confidences" / "000000.bin").read_bytes(), "f")

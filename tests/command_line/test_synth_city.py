@@ -62,7 +62,7 @@ class SynthCity(ProgramTest):
         self.assertAlmostEqual(report["points"], 50000, delta=16 * 360)
         self.assertFalse((folder / "truth").exists())
 
-    def test_refusals(self):
+    def test_rejected_arguments(self):
         out = self.folder / "out"
         for options, says in [(["--length", "10"], "--length"), (["--length", "10miles"], "10km"),
                               (["--length", "km"], "10km"), (["--points", "0"], "--points"),

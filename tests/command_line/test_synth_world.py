@@ -26,7 +26,7 @@ class SynthWorld(ProgramTest):
                 self.assertTrue((sequence / name).exists(), name)
             self.assertTrue((self.folder / kind / "mesh.ply").exists())
 
-    def test_info_says_who_measured_a_sequence_and_when(self):
+    def test_info_names_sensor_and_date_of_a_sequence(self):
         folder = self.folder / "known"
         self.run_good("synth", "world", "-o", folder, "--scans", "3", "--length", "80")
         facts = self.report("info", folder / "sequences" / "00")["files"][0]
@@ -45,7 +45,7 @@ class SynthWorld(ProgramTest):
         self.assertEqual(scan("one", "3"), scan("same", "3"))
         self.assertNotEqual(scan("third", "4"), scan("fourth", "3"))
 
-    def test_refusals(self):
+    def test_rejected_arguments(self):
         out = self.folder / "out"
         for options, says in [(["--kind", "desert"], "desert"), (["--length", "20"], "--length"),
                               (["--scans", "0"], "--scans"), (["--sensor", "hdl"], "hdl"),

@@ -150,7 +150,7 @@ class ViewTest(ProgramTest):
         (self.folder / "empty").mkdir()
         self.run_bad(66, "view", self.folder / "empty", says=["neither"])
 
-    def test_what_is_refused(self):
+    def test_rejected_requests(self):
         model = self.model()
         self.run_bad(66, "view", self.folder / "none.ply", says=["none.ply"])
         self.run_bad(64, "view", model, "--sensor", "velodyne-vlp-17", says=["velodyne-vlp-17"])

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Configures the project without the packages that it can do without, then again in the same folder
-with them: it must have the parts that a fresh folder has. CMake itself hides the packages.
+"""Configures the project without its optional packages, then with them in the same folder: the result
+must have the same parts as in a fresh folder. CMake options hide the packages.
 
 usage: check_late_parts.py CMAKE GENERATOR
 """
@@ -39,19 +39,19 @@ def main():
         before = parts_of(cmake, generator, late, *hidden(True))
         after = parts_of(cmake, generator, late, *hidden(False))
         expected = parts_of(cmake, generator, fresh)
-        # What was said stays said.
+        # An option stays in the cache.
         parts_of(cmake, generator, fresh, "-DADASPLATS_BUILD_PYTHON=OFF")
-        said = parts_of(cmake, generator, fresh)
+        kept = parts_of(cmake, generator, fresh)
     print("before:", before, "after:", after, "fresh:", expected, sep="\n")
     faults = []
     if not expected or after != expected:
-        faults.append("what was installed late is not found")
+        faults.append("packages installed later are not found")
     optional = {"tests", "IMLS meshes", "Poisson meshes", "the viewer's server",
                 "segmentation", "the Python package"}
     if not optional <= set(before) or any(before[name] for name in optional):
-        faults.append("the packages were not hidden: this test shows nothing")
-    if said != {**expected, "the Python package": False}:
-        faults.append("an option that was said is not kept")
+        faults.append("the packages were not hidden, so this test checks nothing")
+    if kept != {**expected, "the Python package": False}:
+        faults.append("an option is not kept")
     print("\n".join(faults))
     return 1 if faults else 0
 

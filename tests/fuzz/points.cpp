@@ -60,7 +60,7 @@ void read_ply_file(const Input& input) {
   read_point_file(input);
 }
 
-/// Behind the checksums of pages, too, which tell nearly all that is broken.
+/// Also past the checksums of pages, which detect nearly all corruption.
 void read_e57_file(const Input& input) {
   try {
     read_point_file(input);

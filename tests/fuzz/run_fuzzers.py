@@ -130,12 +130,12 @@ def reached(target):
 
 
 def features_of(control):
-    """{input: its features (edges, by how often)} of the file that libFuzzer's merging goes by: how many
-    inputs there are, how many of them are of the first folder, their names, and what each one has."""
+    """{input: its features (edges and how often)} of libFuzzer's merge control file, which has the number of
+    inputs, the number in the first folder, their names, and the features of each."""
     lines = control.read_text(encoding="utf-8").splitlines()
     names = [pathlib.Path(name) for name in lines[2:2 + int(lines[0])]]
-    told = [line.split() for line in lines[2 + len(names):]]
-    return {names[int(words[1])]: set(words[2:]) for words in told if words[0] == "FT"}
+    records = [line.split() for line in lines[2 + len(names):]]
+    return {names[int(words[1])]: set(words[2:]) for words in records if words[0] == "FT"}
 
 
 def best_of(inputs):
@@ -206,13 +206,13 @@ def report(arguments, results, coverage):
         for kind, (done, there) in zip(("lines", "regions"), coverage.get(result.name, ())):
             entry |= {kind: there, f"{kind}_reached": done}
         targets[result.name] = entry
-    told = provenance.provenance_of(ROOT / "build/release/bin/adasplats")
-    # That program tells the machine; what was fuzzed is these sources as Clang compiled them.
-    told["commit"] = output_of("git", "-C", ROOT, "rev-parse", "HEAD")
-    told["dirty"] = bool(output_of("git", "-C", ROOT, "status", "--porcelain"))
-    told["machine"]["compiler"] = output_of("clang++", "--version").splitlines()[0]
-    told = {"provenance": told, "seconds": arguments.seconds, "targets": targets}
-    arguments.json.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    record = provenance.provenance_of(ROOT / "build/release/bin/adasplats")
+    # The machine is that program's; the fuzzed code is these sources, compiled by Clang.
+    record["commit"] = output_of("git", "-C", ROOT, "rev-parse", "HEAD")
+    record["dirty"] = bool(output_of("git", "-C", ROOT, "status", "--porcelain"))
+    record["machine"]["compiler"] = output_of("clang++", "--version").splitlines()[0]
+    report = {"provenance": record, "seconds": arguments.seconds, "targets": targets}
+    arguments.json.write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
 
 
 def main():

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A client that sends what it is told over a plain socket, and a small WebSocket one."""
+"""A client that sends given bytes over a plain socket, and a small WebSocket client."""
 import base64
 import hashlib
 import json

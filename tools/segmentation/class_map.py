@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Class maps as `adasplats segment --class-map` reads them (docs/segmentation.md, "Class maps"), the
-other way round: which class points of an own number are."""
+"""Class maps of `adasplats segment --class-map` (docs/segmentation.md, "Class maps"), read in reverse:
+from your numbers to classes."""
 import numpy as np
 
 from classes import IGNORED, NAMES
@@ -10,7 +10,7 @@ NO_CLASS = ("unknown", "unlabeled")
 
 
 def numbers_by_class(file):
-    """{class: its numbers}, in the order of the file."""
+    """{class: its numbers}, in file order."""
     found = {}
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
         line = line.partition("#")[0].strip()
@@ -31,7 +31,7 @@ def numbers_by_class(file):
 
 
 def read_class_map(file):
-    """(names of the classes, table: number -> class). The names are the 19 where these hold all."""
+    """(names of the classes, table: number -> class). The names are the 19 if those include all."""
     numbers = {name: own for name, own in numbers_by_class(file).items() if name not in NO_CLASS}
     names = list(NAMES) if set(numbers) <= set(NAMES) else list(numbers)
     if not numbers or len(names) >= IGNORED:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The classes that networks tell apart: the 19 of SemanticKITTI's single-scan benchmark, or own ones."""
+"""Classes of networks: the 19 of SemanticKITTI's single-scan benchmark, or your own."""
 import numpy as np
 
 NAMES = ["car", "bicycle", "motorcycle", "truck", "other-vehicle", "person", "bicyclist",
@@ -8,7 +8,7 @@ NAMES = ["car", "bicycle", "motorcycle", "truck", "other-vehicle", "person", "bi
          "vegetation", "trunk", "terrain", "pole", "traffic-sign"]
 IGNORED = 255
 
-# As learning_map of semantic-kitti.yaml has them (Behley et al. 2019); what is missing is ignored.
+# learning_map of semantic-kitti.yaml (Behley et al. 2019); other labels are ignored.
 _SEMANTICKITTI = {
     "car": [10, 252], "bicycle": [11], "motorcycle": [15], "truck": [18, 258],
     "other-vehicle": [13, 16, 20, 256, 257, 259], "person": [30, 254], "bicyclist": [31, 253],
@@ -16,16 +16,15 @@ _SEMANTICKITTI = {
     "other-ground": [49], "building": [50], "fence": [51], "vegetation": [70], "trunk": [71],
     "terrain": [72], "pole": [80], "traffic-sign": [81]}
 
-# PandaSet's classes (its classes.csv) by what they are nearest to. Its vegetation holds trunks, its
-# ground is any that is neither road nor sidewalk; poles are among 'other static object', so these
-# are left out.
+# PandaSet's classes (its classes.csv) mapped to the closest class. Its vegetation includes trunks, its
+# ground everything except road and sidewalk; 'other static object', which includes poles, is ignored.
 _PANDASET = {
     "car": [13, 14, 22], "bicycle": [26], "motorcycle": [18, 25], "truck": [15, 16],
     "other-vehicle": [17, 19, 20, 21, 23, 27, 28, 29], "person": [30, 31],
     "road": [7, 8, 9, 10], "parking": [12], "sidewalk": [11], "terrain": [6], "building": [41],
     "fence": [35, 39], "vegetation": [5], "traffic-sign": [36, 38]}
 
-# The paper's groups (section "Adaptive Splatting"), movable ones apart.
+# The paper's groups (section "Adaptive Splatting") and movable objects.
 GROUPS = {
     "ground": ["road", "parking", "sidewalk", "other-ground", "terrain"],
     "surface": ["building"],
@@ -36,12 +35,12 @@ GROUPS = {
 
 
 def use(names):
-    """Networks tell these apart from now on."""
+    """Replaces the list of classes."""
     NAMES[:] = names
 
 
 def group_of(names):
-    """Numbers of the groups of classes; None where one has no group."""
+    """Group index of each class; None if a class has no group."""
     groups = [next((g for g, of in enumerate(GROUPS.values()) if name in of), None)
               for name in names]
     return None if None in groups else np.array(groups)

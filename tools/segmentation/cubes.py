@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Points of scans as places that train.py reads: of several in a cube of 5 cm one, by chance."""
+"""Scans as scenes that train.py reads: one random point per 5 cm cube."""
 import numpy as np
 
 CUBE_M = 0.05
 FARTHEST_M = 80
-RING_DEG = 0.4  # what is dropped together
+RING_DEG = 0.4  # beams within this elevation are dropped together
 
 
 def one_a_cube(positions, rng):
-    """Numbers of the points that are kept, ascending."""
+    """Indices of the points to keep, ascending."""
     order = rng.permutation(len(positions))
     cells = np.floor(positions[order] / CUBE_M).astype(np.int64)
     cells -= cells.min(0)
@@ -18,14 +18,14 @@ def one_a_cube(positions, rng):
 
 
 def shares_of(intensities):
-    """Of 0 to 255, which is the 99th percentile and more."""
+    """Intensities as 0 to 255, which is the 99th percentile and above."""
     highest = max(np.percentile(intensities, 99), 1e-6)
     return np.round(255 * np.clip(intensities / highest, 0, 1)).astype(np.uint8)
 
 
 def arrays_of(positions, ways, intensities, scans, classes):
-    """The arrays of a place. positions (N, 3) in the world and ways (N, 3) to them from the sensor,
-    m; scans, classes (N,)."""
+    """The arrays of a scene. positions (N, 3): world coordinates, m; ways (N, 3): vectors from the sensor
+    to them, m; scans, classes (N,)."""
     ranges = np.linalg.norm(ways, axis=1)
     elevations_deg = np.degrees(np.arcsin(np.clip(ways[:, 2] / np.maximum(ranges, 1e-3), -1, 1)))
     near = np.flatnonzero(ranges < FARTHEST_M)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A network of train.py as the file that adasplats reads (docs/segmentation.md, "The file").
+"""Converts a network of train.py to a file that adasplats reads (docs/segmentation.md, "The file").
 
   tools/segmentation/export.py NETWORK.pt OUT.network [--card TEXT] [--bits 8|16]
 
-Normalisations become part of the weights before them. Weights are written with 16 or 8 bits. The file is
-run on points by adasplats, where the package can be imported, and must give PyTorch's logits.
+Normalisations are merged into the preceding weights. Weights have 16 or 8 bits. If the package adasplats
+can be imported, it runs the file on points and must give PyTorch's logits.
 """
 import argparse
 import json
@@ -22,11 +22,11 @@ from pyramid import make_pyramid, means_by_cell
 
 MAGIC = b"adasplats-network\n"
 SLOPE = 0.1
-MOST_APART = 1e-3  # logits of the program and of PyTorch, with the same weights
+MAX_DIFFERENCE = 1e-3  # logits of the program and of PyTorch, with the same weights
 
 
 class Layers:
-    """Writes down what Network.forward() does, value by value."""
+    """Records the operations of Network.forward()."""
 
     def __init__(self, network, bits):
         self.network, self.layers, self.weights = network, [], []
@@ -155,7 +155,7 @@ def main():
     parser.add_argument("network", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--card", default="")
-    parser.add_argument("--bits", type=int, choices=(8, 16), default=16, help="of a weight")
+    parser.add_argument("--bits", type=int, choices=(8, 16), default=16, help="bits per weight")
     options = parser.parse_args()
     network, classes = read_trained(options.network)
     write_network(network, classes, options.card, options.out, options.bits)
@@ -164,7 +164,7 @@ def main():
           f"logits by up to {rounded:.1e}")
     if apart is None:
         print("not checked against the program: the package adasplats cannot be imported")
-    elif not apart <= MOST_APART:
+    elif not apart <= MAX_DIFFERENCE:
         raise SystemExit(f"{options.out}: the program's logits are up to {apart:.1e} from PyTorch's")
     else:
         print(f"the program's logits are PyTorch's to {apart:.1e}")

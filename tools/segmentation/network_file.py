@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Network files as the program reads them, run by PyTorch: the oracle of the program's own run."""
+"""Runs network files in PyTorch: the reference for the program's own results."""
 import json
 import struct
 

@@ -13,15 +13,15 @@ import torch
 from classes import IGNORED, NAMES
 from pyramid import height_above_ground, make_pyramid, means_by_cell
 
-MIDDLES_APART_M = 1000.0  # crops of a batch lie side by side
-LEAST_POINTS = 1000
+CROP_SPACING_M = 1000.0  # crops of a batch are placed this far apart
+MIN_POINTS = 1000
 
 
 @dataclass
 class Place:
     name: str
     positions: torch.Tensor    # (N, 3), m
-    intensities: torch.Tensor  # (N,), share of the highest
+    intensities: torch.Tensor  # (N,), fraction of the maximum
     rings: torch.Tensor        # (N,), steps of elevation
     scans: torch.Tensor        # (N,)
     classes: torch.Tensor      # (N,), IGNORED: none
@@ -32,7 +32,7 @@ def load_place(file, device):
 
 
 def place_of(name, data, device):
-    """Of the arrays of a file, or of cubes.py."""
+    """From the arrays of a file or of cubes.py."""
     return Place(name, torch.tensor(data["positions"].astype(np.float32) / 100, device=device),
                  torch.tensor(data["intensities"].astype(np.float32) / 255, device=device),
                  torch.tensor(data["rings"].astype(np.int64), device=device),
@@ -48,7 +48,7 @@ def features_of(points, intensities, has_intensity, height_unit_m=4.0):
 
 
 class Crops:
-    """Random crops: other scans, rings, turns, sizes, noise every time."""
+    """Random crops, each with random scans, rings, rotation, scale and noise."""
 
     def __init__(self, places, shape, seed, shares=None, radius_m=20.0, most_points=100_000):
         self.places, self.shape = places, shape
@@ -67,10 +67,10 @@ class Crops:
             self.weights.append(torch.cumsum(weight, 0))
 
     def crop(self):
-        """Points, features and classes of one; others are drawn until there is enough of it."""
+        """Points, features and classes of one crop that has at least MIN_POINTS points."""
         while True:
             kept, place, away = self.points_of_crop()
-            if len(kept) >= LEAST_POINTS:
+            if len(kept) >= MIN_POINTS:
                 return self.seen(place, away, kept)
 
     def points_of_crop(self):
@@ -132,7 +132,7 @@ class Crops:
     def batch(self, count):
         crops = [self.crop() for _ in range(count)]
         for k, (points, _, _) in enumerate(crops):
-            points[:, 0] += k * MIDDLES_APART_M
+            points[:, 0] += k * CROP_SPACING_M
         return [torch.cat(parts) for parts in zip(*crops)]
 
 
@@ -155,7 +155,7 @@ def batches(crops, count, device):
                 while not ended.is_set():
                     batch = make()
                     made.put((batch, torch.cuda.current_stream().record_event()))
-        except BaseException as error:  # told to whoever waits
+        except BaseException as error:  # raised again in the consumer
             made.put((error, None))
 
     thread = threading.Thread(target=work, daemon=True)

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Labelled recordings as places that train.py reads.
+"""Converts a labelled recording to a scene that train.py reads.
 
-  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset|none | --class-map FILE]
+  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset | --class-map FILE]
       [--scans FIRST:COUNT:STRIDE] [--trajectory FILE]
 
-INPUT: what adasplats.read() takes; the package must be importable. Of several points in a cube of
-5 cm one is kept, by chance. Positions in cm from the middle, intensities as shares of the 99th
-percentile, each point with its scan, the elevation of its beam and its class. --class-map: labels of
-your own (docs/segmentation.md, "Class maps"); those that it does not name teach nothing. --labels none: for pseudo.py.
+INPUT: any input of adasplats.read(); the package must be importable. Keeps one random point per 5 cm
+cube. Positions are in cm from the median, intensities fractions of the 99th percentile; each point has its
+scan, beam elevation and class. --class-map: your own labels (docs/segmentation.md, "Class maps"); points
+with labels it does not list are not used.
 """
 import argparse
 import pathlib
@@ -18,7 +18,7 @@ import adasplats
 import numpy as np
 
 from class_map import read_class_map
-from classes import IGNORED, NAMES, TABLES
+from classes import NAMES, TABLES
 from cubes import arrays_of
 
 
@@ -27,17 +27,17 @@ def inputs_of(path):
 
 
 def classes_wanted(options):
-    """(names of the classes, the class of every label's number or None: there are no labels)"""
+    """(names of the classes, table: label -> class)"""
     if options.class_map:
         return read_class_map(options.class_map)
-    return NAMES, TABLES.get(options.labels)
+    return NAMES, TABLES[options.labels]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("input", type=pathlib.Path)
-    parser.add_argument("--labels", choices=[*sorted(TABLES), "none"], default="semantickitti")
+    parser.add_argument("--labels", choices=sorted(TABLES), default="semantickitti")
     parser.add_argument("--class-map", type=pathlib.Path)
     parser.add_argument("--scans", default="")
     parser.add_argument("--trajectory", type=pathlib.Path)
@@ -50,12 +50,10 @@ def main():
         words["trajectory"] = options.trajectory
     names, table = classes_wanted(options)
     cloud = adasplats.read(options.input, **words)
-    if table is not None and cloud.classes is None:
-        raise SystemExit(f"{options.input}: its points have no labels")
-    classes = (np.full(len(cloud.positions), IGNORED, np.uint8) if table is None
-               else table[cloud.classes])
+    if cloud.classes is None:
+        raise SystemExit(f"{options.input}: the points have no labels")
     arrays = arrays_of(cloud.positions, cloud.positions - cloud.sensor_positions, cloud.intensities,
-                       cloud.scan_indices, classes)
+                       cloud.scan_indices, table[cloud.classes])
     np.savez_compressed(options.out, **arrays, names=np.array(names))
     print(f"{options.out}: {len(arrays['classes']):,} of {len(cloud.positions):,} points")
 

@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""All networks of docs/segmentation.md, from recordings to files, with one command.
+"""Trains all networks of docs/segmentation.md from recordings, with one command.
 
   tools/segmentation/recipe.py OUT --program adasplats --semantickitti sequences --pandaset DRIVE
-      [--unlabelled DRIVE] [--worlds 16] [--steps N] [--minutes 7] [--at-once 4] [--only NAME...]
+      [--worlds 16] [--steps N] [--minutes 7] [--at-once 4] [--only NAME...]
 
-SEMANTICKITTI: a tree's folder `sequences` with the seven places (ten scans each); PANDASET: a drive's
-folder with frames/*.ply and vehicle_trajectory.csv; --unlabelled: a sequence that gets pseudo-labels.
-WORLDS procedural places of each of five kinds.
-What OUT has is not made again: stopped, it goes on. Gives OUT/NAME.network, and in OUT/NAME the log,
-the checkpoint and the confusions of the places that the network did not learn from.
+SEMANTICKITTI: a tree's folder `sequences` with the seven scenes (ten scans each). PANDASET: a drive's
+folder with frames/*.ply and vehicle_trajectory.csv. WORLDS: procedural scenes of each of five kinds.
+Files in OUT are reused, so an interrupted run can be resumed. Writes OUT/NAME.network, and to OUT/NAME
+the log, the checkpoint and the confusion matrices of scenes that the network was not trained on.
 """
 import argparse
 import concurrent.futures
@@ -21,46 +20,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from resimulate import SENSORS as AGAIN, resimulate
-
 HERE = pathlib.Path(__file__).resolve().parent
 PLACES = ["00", "01", "02", "03", "05", "07", "09"]
 FOLDS = {"a": ["00", "03"], "b": ["01", "05"], "c": ["02", "07", "09"]}
 KINDS = ["residential", "suburban", "rural", "motorway", "city"]
 FIRST_SEED = 401
-OWN_SENSOR = "velodyne-hdl-64e-kitti"  # of 7 places in 10
+OWN_SENSOR = "velodyne-hdl-64e-kitti"  # of 7 scenes in 10
 SENSORS = ["hesai-pandar64", "hesai-pandar64", "ouster-os1-128", "velodyne-hdl-32e",
            "velodyne-vlp-32c", "velodyne-vls-128", "velodyne-hdl-64e-s3"]
 TRAINING = ["--crops", 6, "--rate", 4e-3]
-UNLABELLED_SCANS = 70
 
 
 @dataclass(frozen=True)
-class Lesson:
-    """What a network learns from."""
+class TrainingSet:
+    """The scenes that a network is trained on."""
     places: tuple = ()          # of SemanticKITTI
     pandaset: bool = True
-    worlds: str = "seven"       # procedural places: of seven sensors, of "one", or "none"
-    share: float = 0.5          # of the crops that are of these
-    again: float = 0.0          # of crops of the places as other sensors see them
-    pseudo: float = 0.0         # of crops with labels by the network `teacher`
-    teacher: str = ""
+    share: float = 0.5          # fraction of crops from procedural scenes
 
 
 def networks():
-    """By name."""
-    found = {}
-    for fold, tested in FOLDS.items():
-        learned = tuple(place for place in PLACES if place not in tested)
-        found[f"fold-{fold}"] = Lesson(learned)
-        found[f"real-{fold}"] = Lesson(learned, worlds="none", share=0)
-        found[f"one-{fold}"] = Lesson(learned, worlds="one")
-        found[f"again-{fold}"] = Lesson(learned, share=0.35, again=0.25)
-        found[f"pseudo-{fold}"] = Lesson(learned, share=0.4, pseudo=0.15, teacher=f"fold-{fold}")
-    found["default"] = Lesson(share=0.75)
-    found["semantickitti"] = Lesson(tuple(PLACES), pandaset=False)
-    found["procedural"] = Lesson(pandaset=False, share=1)
-    return found
+    """{name: its training set}"""
+    sets = {f"fold-{fold}": TrainingSet(tuple(place for place in PLACES if place not in tested))
+            for fold, tested in FOLDS.items()}
+    sets["default"] = TrainingSet(share=0.75)
+    sets["semantickitti"] = TrainingSet(tuple(PLACES), pandaset=False)
+    sets["procedural"] = TrainingSet(pandaset=False, share=1)
+    return sets
 
 
 def run(*words):
@@ -79,26 +65,22 @@ def make_world(options, kind, seed, sensor, spacing_m):
 
 
 def make_worlds(options):
-    """Files of the procedural places, of "seven" sensors and of "one"."""
+    """Files of the procedural scenes."""
     random = np.random.default_rng(7)
-    wanted = {"seven": [], "one": []}
+    worlds = []
     for seed in range(FIRST_SEED, FIRST_SEED + options.worlds):
         for kind in KINDS:
             sensor = OWN_SENSOR
             if random.random() >= 0.7:
                 sensor = SENSORS[int(random.integers(len(SENSORS)))]
             spacing_m = float(np.round(random.uniform(0.6, 1.6), 2))
-            wanted["seven"].append((kind, seed, sensor, spacing_m))
-            wanted["one"].append((kind, seed, OWN_SENSOR, spacing_m))
-    used = {lesson.worlds for name, lesson in networks().items() if name in options.only}
+            worlds.append((kind, seed, sensor, spacing_m))
     with concurrent.futures.ThreadPoolExecutor(options.at_once) as pool:
-        return {"none": []} | {
-            name: list(pool.map(lambda words: make_world(options, *words), worlds))
-            for name, worlds in wanted.items() if name in used}
+        return list(pool.map(lambda words: make_world(options, *words), worlds))
 
 
 def make_places(options):
-    """Files of the recordings, by name."""
+    """{name: file} of the recordings."""
     files = {place: options.out / "places" / f"kitti-{place}.npz" for place in PLACES}
     for place, npz in files.items():
         if not npz.exists():
@@ -111,66 +93,17 @@ def make_places(options):
     return files
 
 
-def again_of(options, place):
-    """The place as other sensors see it."""
-    folder = options.out / "again"
-    files = [folder / f"{place}-{sensor}.npz" for sensor in AGAIN]
-    if not all(file.exists() for file in files):
-        files = resimulate(options.program, options.semantickitti / place, AGAIN, folder,
-                           np.random.default_rng(int(place)))
-    return files
-
-
-def unlabelled_parts(options):
-    """Files of the drive without labels, ten scans each."""
-    files = []
-    for first in range(0, UNLABELLED_SCANS, 10):
-        npz = options.out / "places" / f"unlabelled-{first:03}.npz"
-        if not npz.exists():
-            run(sys.executable, HERE / "prepare.py", npz, options.unlabelled, "--labels", "none",
-                "--scans", f"{first}:10:1")
-        files.append(npz)
-    return files
-
-
-def pseudo_of(options, teacher):
-    """The parts of the drive with the classes that the teacher is sure of."""
-    files = []
-    for part in unlabelled_parts(options):
-        files.append(options.out / teacher / f"pseudo-{part.stem}.npz")
-        if not files[-1].exists():
-            run(sys.executable, HERE / "pseudo.py", files[-1], part,
-                options.out / teacher / "network.pt")
-    return files
-
-
 def make_network(options, name, files, worlds):
-    lesson = networks()[name]
-    known = [*lesson.places, "pandaset"] if lesson.pandaset else lesson.places
+    training_set = networks()[name]
+    places = [*training_set.places, "pandaset"] if training_set.pandaset else training_set.places
     folder = options.out / name
     if not (folder / "network.pt").exists():
-        also = []
-        if lesson.share > 0:
-            also += ["--also", lesson.share, *worlds[lesson.worlds]]
-        if lesson.again > 0:
-            also += ["--also", lesson.again,
-                     *(file for place in lesson.places for file in again_of(options, place))]
-        if lesson.pseudo > 0:
-            also += ["--also", lesson.pseudo, *pseudo_of(options, lesson.teacher)]
-        run(sys.executable, HERE / "train.py", folder, *(files[place] for place in known), *also,
-            "--test", *(file for place, file in files.items() if place not in known), "--steps",
+        run(sys.executable, HERE / "train.py", folder, *(files[place] for place in places),
+            "--also", training_set.share, *worlds, "--test",
+            *(file for place, file in files.items() if place not in places), "--steps",
             options.steps, "--minutes", options.minutes, *TRAINING)
     run(sys.executable, HERE / "export.py", folder / "network.pt", options.out / f"{name}.network",
         "--card", f"{name} of tools/segmentation/recipe.py")
-
-
-def make_networks(options, files, worlds):
-    """Pupils after their teachers."""
-    lessons = networks()
-    for with_teacher in (False, True):
-        names = [name for name in options.only if bool(lessons[name].teacher) == with_teacher]
-        with concurrent.futures.ThreadPoolExecutor(options.at_once) as pool:
-            list(pool.map(lambda name: make_network(options, name, files, worlds), names))
 
 
 def main():
@@ -179,29 +112,18 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--semantickitti", type=pathlib.Path, required=True)
     parser.add_argument("--pandaset", type=pathlib.Path, required=True)
-    parser.add_argument("--unlabelled", type=pathlib.Path, help="a drive of 70 scans or more for "
-                        "pseudo-labels")
-    parser.add_argument("--worlds", type=int, default=16, help="of each kind")
-    parser.add_argument("--steps", type=int, default=100_000, help="of a training, at most")
-    parser.add_argument("--minutes", type=float, default=7, help="of a training, at most")
-    parser.add_argument("--at-once", type=int, default=4, help="trainings on one GPU")
-    parser.add_argument("--only", nargs="*", choices=sorted(networks()), help="networks")
+    parser.add_argument("--worlds", type=int, default=16, help="procedural scenes of each kind")
+    parser.add_argument("--steps", type=int, default=100_000, help="maximum per training")
+    parser.add_argument("--minutes", type=float, default=7, help="maximum per training")
+    parser.add_argument("--at-once", type=int, default=4, help="simultaneous trainings on the GPU")
+    parser.add_argument("--only", nargs="*", choices=sorted(networks()), help="networks to train")
     options = parser.parse_args()
     options.only = options.only or list(networks())
-    lessons = [networks()[name] for name in options.only]
-    missing = {lesson.teacher for lesson in lessons} - {"", *options.only}
-    if missing:
-        raise SystemExit(f"recipe: --only also needs {', '.join(sorted(missing))}")
-    if any(lesson.teacher for lesson in lessons) and options.unlabelled is None:
-        raise SystemExit("recipe: pseudo-labels need --unlabelled")
     for folder in ("places", "worlds"):
         (options.out / folder).mkdir(parents=True, exist_ok=True)
     files, worlds = make_places(options), make_worlds(options)
-    for place in {place for lesson in lessons if lesson.again > 0 for place in lesson.places}:
-        again_of(options, place)  # before trainings that would make the same one at once
-    if any(lesson.teacher for lesson in lessons):
-        unlabelled_parts(options)
-    make_networks(options, files, worlds)
+    with concurrent.futures.ThreadPoolExecutor(options.at_once) as pool:
+        list(pool.map(lambda name: make_network(options, name, files, worlds), options.only))
 
 
 if __name__ == "__main__":

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Train a network on places of prepare.py.
+"""Train a network on scenes of prepare.py.
 
   tools/segmentation/train.py OUT PLACE.npz... [--also SHARE PLACE.npz...]... [--steps N]
       [--test PLACE.npz...] [--checkpoint-every N]
-  tools/segmentation/train.py OUT PLACE.npz... --from NETWORK.pt --minutes 10      # goes on from there
+  tools/segmentation/train.py OUT PLACE.npz... --from NETWORK.pt --minutes 10      # fine-tuning
 
-OUT/checkpoint.pt is taken up again where it is there; OUT/log.jsonl has a line every 50 steps;
-OUT/network.pt and OUT/test.json (confusion, rows: truth) at the end. The same seed on the same
-machine makes nearly the same network: sums on a GPU are not in a fixed order. --from begins with a
-trained network, at a quarter of the rate; places of other classes than its own give it a new head.
+Resumes from OUT/checkpoint.pt if it exists. Writes a line to OUT/log.jsonl every 50 steps and, at the
+end, OUT/network.pt and OUT/test.json (confusion matrices, rows: truth). The same seed on the same machine
+gives nearly the same network: GPU sums have no fixed order. --from starts with a trained network at a
+quarter of the learning rate; if the scenes have other classes, the network gets a new head.
 """
 import argparse
 import json
@@ -29,7 +29,7 @@ from pyramid import make_pyramid, means_by_cell
 
 
 def lovasz_softmax(probabilities, truth):
-    """A convex stand-in for one minus the IoU, mean over the classes that occur (Berman 2018)."""
+    """A convex surrogate of 1 - IoU, averaged over the classes that occur (Berman et al. 2018)."""
     is_class = nn.functional.one_hot(truth, probabilities.shape[1]).T.float()
     errors, order = torch.sort((is_class - probabilities.T).abs(), dim=1, descending=True)
     ordered = torch.gather(is_class, 1, order)
@@ -47,8 +47,8 @@ def class_weights(places):
     return (weights / weights[counts > 0].mean()).float()
 
 
-def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0, least_probability=0.0):
-    """Class of every point, tile by tile; IGNORED where its probability is less than the least."""
+def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0):
+    """The class of every point, computed tile by tile."""
     found = torch.full_like(place.classes, IGNORED)
     network.eval()
     for indices, in_core in tiles_of(place.positions, core_m, margin_m):
@@ -60,9 +60,7 @@ def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0, leas
         features = features_of(means, values[:, 0], with_intensity)
         with torch.no_grad():
             logits = network(features, make_pyramid(means, network.shape))
-        probability, best = logits.softmax(1).max(1)
-        best[probability < least_probability] = IGNORED
-        found[indices[in_core]] = best[cell_of[in_core]]
+        found[indices[in_core]] = logits.argmax(1)[cell_of[in_core]]
     return found
 
 
@@ -78,10 +76,10 @@ def ious(confusion):
         return np.diag(confusion) / (confusion.sum(0) + confusion.sum(1) - np.diag(confusion))
 
 
-def summary(confusion, least_share=5e-4):
+def summary(confusion, min_share=5e-4):
     share = confusion.sum(1) / confusion.sum()
     of_class = ious(confusion)
-    present = share >= least_share
+    present = share >= min_share
     group = group_of(NAMES)
     of_groups = {}
     if group is not None:
@@ -95,18 +93,18 @@ def summary(confusion, least_share=5e-4):
 
 
 def sets_of(options):
-    """(share of the crops, its places), places of the command line first."""
+    """[(fraction of crops, scenes)]: first the positional scenes, then those of each --also."""
     also = [(float(share), [pathlib.Path(file) for file in files]) for share, *files in options.also]
     sets = [(1 - sum(share for share, _ in also), options.places), *also]
     sets = [(share, files) for share, files in sets if files]
     total = sum(share for share, _ in sets)
     if not sets or min(share for share, _ in sets) <= 0:
-        raise SystemExit("train: expected places, and shares of --also that are above 0 and leave some")
+        raise SystemExit("train: no scenes, or shares of --also that are not above 0 or add up to more than 1")
     return [(share / total, files) for share, files in sets]
 
 
 class Progress:
-    """How much of the training is done, by steps or by time, whichever is ahead: 0 to 1."""
+    """Progress of the training by steps or time, whichever is further: 0 to 1."""
 
     def __init__(self, options, network, optimizer):
         self.options, self.network, self.optimizer = options, network, optimizer
@@ -124,7 +122,7 @@ class Progress:
         return max(self.step / self.options.steps, of_time)
 
     def rate(self):
-        """Up for a tenth of the training, down to nothing along a cosine."""
+        """Linear warm-up for a tenth of the training, then a cosine down to 0."""
         share = self.share()
         if share < 0.1:
             return self.options.rate * (0.05 + 0.95 * share / 0.1)
@@ -148,13 +146,13 @@ class Progress:
 
 
 def names_of(files):
-    """The classes of places, which are the same for all."""
+    """The classes of the scenes; an error if they differ."""
     lists = {}
     for file in files:
         data = np.load(file)
         lists.setdefault(tuple(data["names"].tolist() if "names" in data else NAMES), file)
     if len(lists) > 1:
-        raise SystemExit("train: other classes in " + " than in ".join(map(str, lists.values())))
+        raise SystemExit("train: different classes in " + " and ".join(map(str, lists.values())))
     return next(iter(lists), NAMES)
 
 
@@ -168,7 +166,7 @@ def network_to_train(options):
         state = {key: value for key, value in state.items() if not key.startswith("head.")}
     missing, unknown = network.load_state_dict(state, strict=False)
     if unknown or any(not key.startswith("head.") for key in missing):
-        raise SystemExit(f"{options.start}: is no network of train.py")
+        raise SystemExit(f"{options.start}: not a network of train.py")
     return network.to(options.device)
 
 
@@ -206,13 +204,13 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("places", type=pathlib.Path, nargs="*")
     parser.add_argument("--also", nargs="+", action="append", default=[],
-                        metavar=("SHARE", "PLACE.npz"), help="places that this share of the crops "
-                        "is of, all alike; again for others")
+                        metavar=("SHARE", "PLACE.npz"), help="draw this fraction of the crops from "
+                        "these scenes; repeatable")
     parser.add_argument("--test", type=pathlib.Path, nargs="*", default=[])
-    parser.add_argument("--steps", type=int, default=10_000, help="at most")
-    parser.add_argument("--minutes", type=float, default=1e6, help="at most, in all")
-    parser.add_argument("--crops", type=int, default=2, help="of a step")
-    parser.add_argument("--rate", type=float, help="4e-3, with --from 1e-3 where not given")
+    parser.add_argument("--steps", type=int, default=10_000, help="maximum")
+    parser.add_argument("--minutes", type=float, default=1e6, help="maximum")
+    parser.add_argument("--crops", type=int, default=2, help="per step")
+    parser.add_argument("--rate", type=float, help="learning rate (default: 4e-3, with --from 1e-3)")
     parser.add_argument("--from", dest="start", type=pathlib.Path, metavar="NETWORK.pt")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--checkpoint-every", type=int, default=500)

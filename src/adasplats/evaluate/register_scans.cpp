@@ -19,7 +19,7 @@ constexpr std::size_t kBeamEvery = 8;  // uses every 8th beam
 constexpr int kRegistrationSteps = 12;
 constexpr double kFirstWidth_m = 0.15, kLastWidth_m = 0.03;
 /// Prior on a step, in squared metres of residual: a scan without hits does not move.
-constexpr double kPrior = 1e-3;
+constexpr double kMatrixPrior = 1e-3;
 
 Vec3d normal_at(const SceneView& scene, std::uint32_t primitive) {
   return vec_cast<double>(unit_normal(scene, primitive));
@@ -65,7 +65,7 @@ RigidTransform improved(const Tracer& tracer, const SceneView& scene, RigidTrans
         }
         return part;
       });
-  for (std::size_t a = 0; a < 6; ++a) sums.matrix[a * 7] += kPrior;
+  for (std::size_t a = 0; a < 6; ++a) sums.matrix[a * 7] += kMatrixPrior;
   factor<6>(sums.matrix);
   const std::array<double, 6> x = solved<6>(sums.matrix, sums.right);
   return moved_about(pose.translation, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * pose;

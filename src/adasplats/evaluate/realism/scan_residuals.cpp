@@ -28,7 +28,7 @@ constexpr float kPlaneRadius_m = 1.5F;
 constexpr double kMaxThickness_m = 0.05;  // RMS of a plane's points: twice real noise
 constexpr double kMinRoundness = 0.1;     // of variances within the plane: more than a single ring
 constexpr std::size_t kMaxMoved = 6000;   // points that are registered
-constexpr int kSteps = 15;
+constexpr int kBandwidths = 15;
 constexpr double kWidest_m = 0.5, kNarrowest_m = 0.05;
 constexpr double kMaxDistance_m = 0.3;  // of points that count at the end: others are occluded
 constexpr std::size_t kMinOnPlanes = 100;
@@ -149,9 +149,9 @@ double scan_residual_m(std::span<const Vec3f> points, std::span<const Vec3f> pla
   const PointIndex index(targets, executor);
   const std::vector<PlaneAtPoint> planes = planes_at(index, targets, executor);
   RigidTransform pose = guess;
-  for (int step = 0; step < kSteps; ++step) {
-    const double width_m =
-        kWidest_m * std::pow(kNarrowest_m / kWidest_m, static_cast<double>(step) / (kSteps - 1));
+  for (int step = 0; step < kBandwidths; ++step) {
+    const double width_m = kWidest_m * std::pow(kNarrowest_m / kWidest_m,
+                                                static_cast<double>(step) / (kBandwidths - 1));
     pose = closer(pairs_of(moved, index, targets, planes, pose, executor), pose, width_m);
   }
   std::vector<double> distances_m;

@@ -287,9 +287,9 @@ constexpr std::string_view kAsciiComment = "adasplats.crs_key_text ";
 /// Adds `text` in lines that every reader accepts: rply, in CloudCompare and Open3D, rejects lines
 /// of 1024 bytes and more.
 void add_parts(std::string_view key, std::string_view text, std::vector<std::string>& comments) {
-  constexpr std::size_t kPartBytes = 900;
+  constexpr std::size_t kMaxPartBytes = 900;
   while (!text.empty()) {
-    std::size_t size = std::min(kPartBytes, text.size());
+    std::size_t size = std::min(kMaxPartBytes, text.size());
     // Readers strip blanks at the ends of a comment.
     while (size > 1 && size < text.size() && (text[size - 1] == ' ' || text[size] == ' ')) --size;
     comments.push_back(std::string(key) + std::string(text.substr(0, size)));

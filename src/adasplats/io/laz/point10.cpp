@@ -13,8 +13,8 @@ namespace {
 
 // The 20 bytes that formats 0 to 5 share ("LAS specification 1.4 - R15", table 7).
 constexpr std::size_t kPoint10Bytes = 20;
-constexpr std::size_t kYAt = 4, kZAt = 8, kIntensityAt = 12, kReturnsAt = 14, kClassAt = 15,
-                      kAngleAt = 16, kUserDataAt = 17, kSourceAt = 18;
+constexpr std::size_t kYByte = 4, kZByte = 8, kIntensityByte = 12, kReturnsByte = 14,
+                      kClassByte = 15, kAngleByte = 16, kUserDataByte = 17, kSourceByte = 18;
 
 using Point10Bytes = std::array<std::byte, kPoint10Bytes>;
 
@@ -47,13 +47,13 @@ class Point10V2 final : public PointwiseItem {
   void start(const std::byte* first) override {
     std::copy_n(first, kPoint10Bytes, last_.begin());
     // The first record predicts no intensity.
-    store_value(&last_[kIntensityAt], std::uint16_t{0});
+    store_value(&last_[kIntensityByte], std::uint16_t{0});
   }
 
   void decode(RangeDecoder& decoder, std::byte* item) override {
     const unsigned changed = changed_.decode(decoder);
-    if ((changed & 32) != 0) returns_.decode(decoder, last_[kReturnsAt]);
-    const auto bits = std::to_integer<unsigned>(last_[kReturnsAt]);
+    if ((changed & 32) != 0) returns_.decode(decoder, last_[kReturnsByte]);
+    const auto bits = std::to_integer<unsigned>(last_[kReturnsByte]);
     const unsigned number = bits & 7, returns = (bits >> 3) & 7;
     const std::size_t group = group_of_return(returns, number);
     decode_attributes(decoder, changed, group);
@@ -70,16 +70,16 @@ class Point10V2 final : public PointwiseItem {
       intensity = static_cast<std::uint16_t>(intensity_.decode(
           decoder, intensity, static_cast<unsigned>(std::min<std::size_t>(group, 3))));
     }
-    store_value(&last_[kIntensityAt], intensity);
-    if ((changed & 8) != 0) class_.decode(decoder, last_[kClassAt]);
+    store_value(&last_[kIntensityByte], intensity);
+    if ((changed & 8) != 0) class_.decode(decoder, last_[kClassByte]);
     if ((changed & 4) != 0) {
-      const bool goes_back = (std::to_integer<unsigned>(last_[kReturnsAt]) & 64) != 0;
+      const bool goes_back = (std::to_integer<unsigned>(last_[kReturnsByte]) & 64) != 0;
       const std::uint32_t step = angle_steps_[goes_back ? 1 : 0].decode(decoder);
-      last_[kAngleAt] =
-          static_cast<std::byte>(std::to_integer<std::uint32_t>(last_[kAngleAt]) + step);
+      last_[kAngleByte] =
+          static_cast<std::byte>(std::to_integer<std::uint32_t>(last_[kAngleByte]) + step);
     }
-    if ((changed & 2) != 0) user_data_.decode(decoder, last_[kUserDataAt]);
-    if ((changed & 1) != 0) decode_u16(source_, decoder, &last_[kSourceAt]);
+    if ((changed & 2) != 0) user_data_.decode(decoder, last_[kUserDataByte]);
+    if ((changed & 1) != 0) decode_u16(source_, decoder, &last_[kSourceByte]);
   }
 
   void decode_position(RangeDecoder& decoder, std::size_t group, std::size_t depth,
@@ -91,11 +91,11 @@ class Point10V2 final : public PointwiseItem {
     const std::int32_t dy =
         dy_.decode_signed(decoder, y_steps_[group].get(), is_single + std::min(even(x_bits), 20U));
     y_steps_[group].add(dy);
-    store_value(&last_[kYAt], wrapped_sum(load_value<std::int32_t>(&last_[kYAt]), dy));
+    store_value(&last_[kYByte], wrapped_sum(load_value<std::int32_t>(&last_[kYByte]), dy));
     const unsigned mean_bits = (x_bits + dy_.last_bits()) / 2;
     heights_[depth] =
         z_.decode_signed(decoder, heights_[depth], is_single + std::min(even(mean_bits), 18U));
-    store_value(&last_[kZAt], heights_[depth]);
+    store_value(&last_[kZByte], heights_[depth]);
   }
 
   Point10Bytes last_{};
@@ -120,11 +120,11 @@ class Point10V1 final : public PointwiseItem {
     const std::int32_t dy =
         dy_.decode_signed(decoder, median(y_steps_), std::min(x_bits, kMaxBits));
     const unsigned mean_bits = (x_bits + dy_.last_bits()) / 2;
-    const std::int32_t z = z_.decode_signed(decoder, load_value<std::int32_t>(&last_[kZAt]),
+    const std::int32_t z = z_.decode_signed(decoder, load_value<std::int32_t>(&last_[kZByte]),
                                             std::min(mean_bits, kMaxBits));
     store_value(&last_[0], wrapped_sum(load_value<std::int32_t>(&last_[0]), dx));
-    store_value(&last_[kYAt], wrapped_sum(load_value<std::int32_t>(&last_[kYAt]), dy));
-    store_value(&last_[kZAt], z);
+    store_value(&last_[kYByte], wrapped_sum(load_value<std::int32_t>(&last_[kYByte]), dy));
+    store_value(&last_[kZByte], z);
     decode_attributes(decoder, mean_bits);
     x_steps_[oldest_] = dx;
     y_steps_[oldest_] = dy;
@@ -143,15 +143,15 @@ class Point10V1 final : public PointwiseItem {
 
   void decode_attributes(RangeDecoder& decoder, unsigned mean_bits) {
     const unsigned changed = changed_.decode(decoder);
-    if ((changed & 32) != 0) decode_u16(intensity_, decoder, &last_[kIntensityAt]);
-    if ((changed & 16) != 0) returns_.decode(decoder, last_[kReturnsAt]);
-    if ((changed & 8) != 0) class_.decode(decoder, last_[kClassAt]);
+    if ((changed & 32) != 0) decode_u16(intensity_, decoder, &last_[kIntensityByte]);
+    if ((changed & 16) != 0) returns_.decode(decoder, last_[kReturnsByte]);
+    if ((changed & 8) != 0) class_.decode(decoder, last_[kClassByte]);
     if ((changed & 4) != 0) {
-      last_[kAngleAt] = static_cast<std::byte>(angle_.decode(
-          decoder, std::to_integer<std::uint32_t>(last_[kAngleAt]), mean_bits < 3 ? 1 : 0));
+      last_[kAngleByte] = static_cast<std::byte>(angle_.decode(
+          decoder, std::to_integer<std::uint32_t>(last_[kAngleByte]), mean_bits < 3 ? 1 : 0));
     }
-    if ((changed & 2) != 0) user_data_.decode(decoder, last_[kUserDataAt]);
-    if ((changed & 1) != 0) decode_u16(source_, decoder, &last_[kSourceAt]);
+    if ((changed & 2) != 0) user_data_.decode(decoder, last_[kUserDataByte]);
+    if ((changed & 1) != 0) decode_u16(source_, decoder, &last_[kSourceByte]);
   }
 
   Point10Bytes last_{};

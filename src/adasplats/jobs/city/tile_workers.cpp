@@ -22,7 +22,7 @@ namespace {
 /// Tiles that a GPU works on at a time: it is idle while one is read, fused on the CPU or written.
 constexpr std::size_t kTilesAGpu = 3;
 /// Threads that one tile keeps busy on the CPU.
-constexpr std::size_t kThreadsATile = 8;
+constexpr std::size_t kThreadsPerTile = 8;
 
 /// What workers have to tell.
 struct News {
@@ -145,7 +145,7 @@ std::size_t tiles_at_once(const Session& session) {
   const auto threads = static_cast<std::size_t>(session.executor.threads());
   if (session.device.on_gpu())
     return std::clamp<std::size_t>(threads, 1, kTilesAGpu * session.device.gpus.size());
-  return std::max<std::size_t>(1, threads / kThreadsATile);
+  return std::max<std::size_t>(1, threads / kThreadsPerTile);
 }
 
 CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileModeller& modeller,

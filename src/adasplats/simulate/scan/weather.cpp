@@ -16,7 +16,7 @@ namespace {
 /// Full angles where the sensor's are not known: Velodyne VLP-16, geometric mean of 1.5 x 3.0 mrad.
 constexpr double kUsualDivergence_rad = 2.1e-3;
 /// Emitter and receiver see nothing in common nearer than this (Rasshofer et al. 2011).
-constexpr double kNearest_m = 1.0;
+constexpr double kMinAirRange_m = 1.0;
 /// Fog sends back 0.046 / (V at 5 % contrast) per sr (Rasshofer et al. 2011), and alpha is ln 20 /
 /// V.
 const double kFogBackscatter = 0.046 / std::log(20.0);
@@ -92,7 +92,7 @@ AirRules air_rules(const Weather& weather, const LidarModel& sensor,
   for (const int axis : {0, 1})
     air.divergence_rad[axis] =
         sensor.divergence_rad[axis] > 0 ? sensor.divergence_rad[axis] : kUsualDivergence_rad;
-  air.begin_m = std::max(sensor.min_range_m, kNearest_m);
+  air.begin_m = std::max(sensor.min_range_m, kMinAirRange_m);
   const double length_m = std::max(0.0, sensor.max_range_m - air.begin_m);
   const auto steps = static_cast<std::size_t>(std::ceil(length_m / kClutterStep_m));
   expected.push_back(0);
