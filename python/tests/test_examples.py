@@ -30,7 +30,7 @@ def test_numpy_cloud_to_scans(tmp_path):
 
 
 def only_tells_of_the_path(errors):
-    """The street has cars where the vehicle drove; points of these are left out, and that is said."""
+    """The street has cars in the driven path; their points are removed with a warning."""
     return errors.count("Warning: ") == errors.count("are in the driven path of the recording vehicle")
 
 
@@ -64,7 +64,7 @@ def test_torch_live_scans():
     assert last >= first + 10, out  # it learns
 
 
-def test_what_the_documentation_shows(tmp_path, monkeypatch):
+def test_code_blocks_of_the_documentation(tmp_path, monkeypatch):
     """The blocks of docs/python.md run, one after the other, in one folder."""
     text = (EXAMPLES.parent / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = [part.split("```")[0] for part in text.split("```python\n")[1:]]
