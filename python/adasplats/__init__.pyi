@@ -901,28 +901,28 @@ class Scene:
             """(N, 3) float32, m, in the sensor's frame; or None."""
         @property
         def intensities(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,), in the unit of the scene's intensities; or None."""
+            """(N,) float32, in the unit of the scene's intensities; or None."""
         @property
         def classes(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,), ids of the scene's label scheme; or None."""
+            """(N,) uint16, ids of the scene's label scheme; or None."""
         @property
         def instances(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,), 0 for none; or None."""
+            """(N,) uint16, 0 for none; or None."""
         @property
         def rings(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,), 0 the topmost; or None."""
+            """(N,) uint16, 0 the topmost; or None."""
         @property
         def columns(self) -> NDArray[np.uint32] | Scene.DeviceArray | None:
-            """(N,), azimuth steps; or None."""
+            """(N,) uint32, azimuth steps; or None."""
         @property
         def times(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,), s since the revolution began; or None."""
+            """(N,) float32, s since the revolution began; or None."""
         @property
         def ranges(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,), m; or None."""
+            """(N,) float32, m; or None."""
         @property
         def return_indices(self) -> NDArray[np.uint8] | Scene.DeviceArray | None:
-            """(N,), 0 for the first that the sensor reports of a firing; or None."""
+            """(N,) uint8, 0 for the first that the sensor reports of a firing; or None."""
         def padded(self, name: str, length: int) -> NDArray[Any]: ...
 
     def __init__(

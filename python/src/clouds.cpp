@@ -164,34 +164,6 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   options.scan_stride = scans.stride;
 }
 
-bool is_path(py::handle value) {
-  return PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
-         py::hasattr(value, "__fspath__");
-}
-
-std::filesystem::path path_of(py::handle value, const char* name) {
-  if (!is_path(value))
-    throw py::type_error(std::string(name) + ": expected a path, got " + type_name(value));
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
-  return std::string(py::reinterpret_steal<py::bytes>(bytes));
-}
-
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
-                                            const char* else_expected) {
-  std::vector<std::filesystem::path> paths;
-  if (is_path(value)) {
-    paths.push_back(path_of(value, name));
-    return paths;
-  }
-  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
-    throw py::type_error(std::string(name) + ": expected " + else_expected +
-                         "a path or a list of paths, got " + type_name(value));
-  for (const py::handle item : value) paths.push_back(path_of(item, name));
-  if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");
-  return paths;
-}
-
 namespace {
 
 using CloudClass = py::class_<PointCloud, std::shared_ptr<PointCloud>>;
@@ -208,12 +180,8 @@ void bind_attributes(CloudClass& type) {
         },
         (shape_and_type<typename Values::value_type>() + attribute.about + "; or None.").c_str());
   });
-  type.def_property_readonly(
-          "positions",
-          [](const py::object& self) {
-            return array_view(self.cast<const PointCloud&>().positions, self);
-          },
-          "(N, 3) float32, m, relative to origin.")
+  type.def_property_readonly("positions", view_getter(&PointCloud::positions),
+                             "(N, 3) float32, m, relative to origin.")
       .def_property_readonly(
           "origin", [](const PointCloud& cloud) { return array_of(cloud.origin); },
           "(3,) float64, world coordinates of the local origin, m.")

@@ -28,11 +28,4 @@ void take_scan_range(Keywords& keywords, ScanRange& range, const std::string& pr
 /// The keywords of LoadOptions.
 void take_load_options(Keywords& keywords, LoadOptions& options);
 
-/// One path or several; `else_expected` ("a PointCloud, ") goes into the message. Errors:
-/// TypeError, ValueError (no path).
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
-                                            const char* else_expected = "");
-std::filesystem::path path_of(py::handle value, const char* name);
-bool is_path(py::handle value);
-
 }  // namespace adasplats::python

@@ -88,7 +88,7 @@ class BatchStream {
     try {
       auto use = scene_->lock();
       simulator_.run_batches(scans_, first_number_, results_, [&](ScanBatch&& batch) {
-        // The consumer of the batches may use the scene meanwhile.
+        // Who takes the batches may use the scene meanwhile.
         if (use.owns_lock()) use.unlock();
         put(std::make_shared<BatchObject>(BatchObject{scene_, std::move(batch)}));
         use = scene_->lock();
@@ -300,10 +300,11 @@ void bind_batch(SceneClass& type) {
                .c_str());
   for_each_scan_attribute([&](const auto& attribute) {
     const auto of = attribute.of;
+    using Value = std::remove_cvref_t<decltype(*of(std::declval<const ReturnArrays&>()))>;
     batch.def_property_readonly(
         attribute.name,
         [of](const Batch& self) { return array_of_batch(self, of(self->batch.arrays)); },
-        (std::string("(N,), ") + attribute.about + "; or None.").c_str());
+        (shape_and_type<Value>() + attribute.about + "; or None.").c_str());
   });
 }
 

@@ -86,12 +86,8 @@ void bind_scan(py::module_& module) {
            [](const Scan& scan) {
              return "<adasplats.Scan of " + std::to_string(scan.size()) + " points>";
            })
-      .def_property_readonly(
-          "positions",
-          [](const py::object& self) {
-            return array_view(self.cast<const Scan&>().positions, self);
-          },
-          "(N, 3) float32, m, in the sensor's frame.")
+      .def_property_readonly("positions", view_getter(&Scan::positions),
+                             "(N, 3) float32, m, in the sensor's frame.")
       .def_property_readonly(
           "pose", [](const Scan& scan) { return matrix_of(scan.world_from_sensor); },
           "(4, 4) float64, world_from_sensor.")

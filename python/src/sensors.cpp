@@ -329,17 +329,10 @@ void add_attributes(SensorClass& type) {
       .def_property_readonly(
           "repeats", [](const LidarModel& model) { return repeats(model); },
           "Whether every scan has the same rays.")
+      .def_property_readonly("elevations_rad", view_getter(&LidarModel::elevations_rad),
+                             "(B,) float64, topmost first; empty for a list of rays or a rosette.")
       .def_property_readonly(
-          "elevations_rad",
-          [](const py::object& self) {
-            return array_view(self.cast<const LidarModel&>().elevations_rad, self);
-          },
-          "(B,) float64, topmost first; empty for a list of rays or a rosette.")
-      .def_property_readonly(
-          "range_offsets_m",
-          [](const py::object& self) {
-            return array_view(self.cast<const LidarModel&>().range_offsets_m, self);
-          },
+          "range_offsets_m", view_getter(&LidarModel::range_offsets_m),
           "(B,) float64, m, to add to the ranges of each ring of this sensor; empty: not "
           "calibrated.")
       .def_property_readonly(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What goes in and comes out: kinds of arrays, and views."""
+"""Conversion of array arguments, and array views."""
 import gc
 import pickle
 
@@ -181,7 +181,7 @@ def test_not_finite_names_the_first_row(value):
         adasplats.PointCloud(points)
     with pytest.raises(ValueError, match="sensor_positions: row 1"):
         adasplats.PointCloud(POINTS, sensor_positions=points)
-    if np.isnan(value):  # not known
+    if np.isnan(value):  # unknown
         assert np.isnan(adasplats.PointCloud(POINTS, intensities=[1, 2, value]).intensities[2])
         return
     with pytest.raises(ValueError, match=r"intensities\[2\] is not finite"):

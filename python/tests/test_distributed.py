@@ -81,7 +81,7 @@ class Killer(threading.Thread):
 
 @needs_dask
 def test_workers_are_killed(street, whole, tmp_path):
-    # Tasks that take a second on any machine, so that there is something to kill.
+    # Tasks that take a second on any machine, so that workers can be killed during a task.
     program = tmp_path / "slow adasplats"
     program.write_text('#!/bin/sh\ncase "$*" in *--only-tile*) sleep 0.7;; esac\n'
                        f'exec "{shutil.which(PROGRAM)}" "$@"\n')
@@ -98,7 +98,7 @@ def test_workers_are_killed(street, whole, tmp_path):
     assert killer.killed >= 3
     assert tree_digest(tmp_path / "city") == whole
     assert sorted(path.name for path in tmp_path.iterdir()) == ["city", program.name]
-    # All tiles were made by tasks but one, by which the sensor is known.
+    # Tasks made all tiles but one, which make_city() makes itself to estimate the sensor.
     assert report["tiles"] == report["tiles_resumed"] > 8
     assert counts == [("tasks", done, report["tiles"] - 1) for done in range(report["tiles"])]
 

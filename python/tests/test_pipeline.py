@@ -30,15 +30,15 @@ def files_of(folder):
 def png_pixels(path):
     """A PNG of 8-bit RGB; oracle of the pictures. PNG specification, sections 5 and 9."""
     data = path.read_bytes()
-    place, packed = 8, b""
-    while place < len(data):
-        length, kind = struct.unpack(">I4s", data[place:place + 8])
-        body = data[place + 8:place + 8 + length]
+    offset, packed = 8, b""
+    while offset < len(data):
+        length, kind = struct.unpack(">I4s", data[offset:offset + 8])
+        body = data[offset + 8:offset + 8 + length]
         if kind == b"IHDR":
             width, height = struct.unpack(">II", body[:8])
         if kind == b"IDAT":
             packed += body
-        place += 12 + length
+        offset += 12 + length
     raw = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
     pixels = np.zeros((height + 1, width + 1, 3), np.int64)
     for y in range(height):
@@ -408,10 +408,10 @@ def test_segmentation(street, tmp_path):
     result = adasplats.evaluate.segmentation(predicted, true)
     assert result == adasplats.evaluate.segmentation(*files, threads=1)
     assert result == without_times(report_of(street.folder, "evaluate", "segmentation", *files))
-    judged = ~np.isin(true, [0, 1, 52, 99])
-    assert result["points"] == judged.sum()
-    is_road, told_road = np.isin(true, [40, 60]), predicted == 40
-    expected = (is_road & told_road).sum() / (judged & (is_road | told_road)).sum()
+    is_counted = ~np.isin(true, [0, 1, 52, 99])
+    assert result["points"] == is_counted.sum()
+    is_road, is_predicted_road = np.isin(true, [40, 60]), predicted == 40
+    expected = (is_road & is_predicted_road).sum() / (is_counted & (is_road | is_predicted_road)).sum()
     np.testing.assert_allclose(result["iou"]["road"], expected)
     assert adasplats.evaluate.segmentation(true, true)["miou_present"] == 1
 

@@ -17,7 +17,7 @@ HEIGHT_M = 1.13
 
 
 def write_network(path, classes=("road", "car")):
-    """What is higher than HEIGHT_M above the ground is of the second class."""
+    """Points higher than HEIGHT_M above the ground belong to the second class."""
     layer = {"kind": "unary", "level": 0, "input": 0, "output": 1, "weight": 0, "bias": 1}
     header = {"version": 1, "card": "a test", "values": 2, "kernel": [[0, 0, 0]],
               "shape": {"cell_m": 0.1, "levels": 1, "radius": 2.5, "neighbors": 8, "sigma": 1.2,

@@ -68,6 +68,13 @@ py::object optional_view(const std::vector<T>& values, std::size_t count, py::ha
   return array_view(values, owner);
 }
 
+/// The getter of a read-only view of a vector member of T.
+template <class T, class Vector>
+auto view_getter(Vector T::*member) {
+  return
+      [member](const py::object& self) { return array_view(self.cast<const T&>().*member, self); };
+}
+
 /// An array of shape (N,) or (N, K) that owns `values`.
 template <class T>
 py::array owned_array(std::vector<T>&& values, std::vector<py::ssize_t> shape) {

@@ -142,12 +142,8 @@ void Keywords::take(const char* name, std::string& value) {
 void Keywords::take(const char* name, std::filesystem::path& value) {
   const auto given = find(name, py::none());
   if (!given || given->is_none()) return;
-  if (!PyUnicode_Check(given->ptr()) && !PyBytes_Check(given->ptr()) &&
-      !py::hasattr(*given, "__fspath__"))
-    wrong_type(name, "a path", *given);
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(given->ptr(), &bytes) == 0) throw py::error_already_set();
-  value = std::string(py::reinterpret_steal<py::bytes>(bytes));
+  if (!is_path(*given)) wrong_type(name, "a path", *given);
+  value = path_of(*given, name);
 }
 
 void Keywords::take(const char* name, Vec3d& value) {
@@ -229,6 +225,34 @@ void Keywords::finish() const {
     throw py::type_error(function_ + "() got an unexpected keyword argument '" + name + "'" +
                          did_you_mean(name, names_));
   }
+}
+
+bool is_path(py::handle value) {
+  return PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
+         py::hasattr(value, "__fspath__");
+}
+
+std::filesystem::path path_of(py::handle value, const char* name) {
+  if (!is_path(value))
+    throw py::type_error(std::string(name) + ": expected a path, got " + type_name(value));
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
+  return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected) {
+  std::vector<std::filesystem::path> paths;
+  if (is_path(value)) {
+    paths.push_back(path_of(value, name));
+    return paths;
+  }
+  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
+    throw py::type_error(std::string(name) + ": expected " + else_expected +
+                         "a path or a list of paths, got " + type_name(value));
+  for (const py::handle item : value) paths.push_back(path_of(item, name));
+  if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");
+  return paths;
 }
 
 std::string with_keywords(std::string_view message) {

@@ -54,6 +54,14 @@ class Keywords {
   void take(const char* name, std::vector<int>& value);       ///< None: none
   void take(const char* name, py::object& value);
 
+  /// None: no value.
+  template <class T>
+  void take(const char* name, std::optional<T>& value, Words<T> words) {
+    std::vector<std::string> known;
+    for (const auto& [word, meaning] : words) known.emplace_back(word);
+    const std::size_t chosen = take_word(name, known.size(), known);
+    if (chosen < words.size()) value = words[chosen].second;
+  }
   template <class T>
   void take(const char* name, T& value, Words<T> words) {
     std::vector<std::string> known;
@@ -64,16 +72,8 @@ class Keywords {
     }
     value = words[take_word(name, chosen, known)].second;
   }
-  /// None: no value.
-  template <class T>
-  void take(const char* name, std::optional<T>& value, Words<T> words) {
-    std::vector<std::string> known;
-    for (const auto& [word, meaning] : words) known.emplace_back(word);
-    const std::size_t chosen = take_word(name, known.size(), known);
-    if (chosen < words.size()) value = words[chosen].second;
-  }
 
-  /// Call this when all keywords were taken. Errors: TypeError for any other that was given.
+  /// To be called when everything was taken. Errors: TypeError.
   void finish() const;
 
   /// ", name=default" of every keyword that was taken; empty without keywords.
@@ -111,6 +111,15 @@ std::string with_keywords(std::string_view message);
 
 /// Errors: ValueError for a keyword that was given and has no effect with the others.
 void reject_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given);
+
+/// Whether a value is a str, bytes or os.PathLike.
+bool is_path(py::handle value);
+/// Errors: TypeError.
+std::filesystem::path path_of(py::handle value, const char* name);
+/// One path or several; `else_expected` ("a PointCloud, ") goes into the message. Errors:
+/// TypeError, ValueError (no path).
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected = "");
 
 /// The keyword arguments of a call, which Arguments::take(keywords) lists. Errors: TypeError,
 /// ValueError.
