@@ -18,8 +18,8 @@ constexpr const char* kSynthDoc =
 folder: where to write, created if missing: mapping.ply, mapping_trajectory.csv, sequences/00
 (SemanticKITTI), mesh.ply (the true surface) and the true trajectories. points: size of the mapping
 cloud, within 10 %. length: of the road, m; 0: chosen from the number of points. range_noise:
-standard deviation, m. driving_spacing: distance between scans, m. Returns a dict with the keys of
-'adasplats synth street --report'. Raises TypeError, ValueError, OSError.)";
+standard deviation, m. driving_spacing: distance between the driving scans, m; 0: none. Returns a
+dict with the keys of 'adasplats synth street --report'. Raises TypeError, ValueError, OSError.)";
 
 struct StreetArguments {
   StreetOptions street{.seed = 1, .length_m = 0};
