@@ -1,18 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Real LiDAR point clouds in, splat models (oriented disks) and simulated LiDAR scans out.
+"""Make splat models (oriented disks) from LiDAR point clouds and simulate LiDAR scans in them.
 
     cloud = adasplats.PointCloud(positions, sensor_positions=sensors)   # or adasplats.read(paths)
     model = adasplats.model(cloud)                                      # splats
-    scene = adasplats.Scene(model)                                      # what rays are cast into
+    scene = adasplats.Scene(model)                                      # on the CPU or a GPU
     for scan in scene.iter_scans("ouster-os1-64", poses):               # (N, 4, 4)
         scan.positions, scan.ranges, scan.classes                       # NumPy arrays
 
-Lengths are metres, angles radians (degrees where a name says so), times seconds; x forward, y left,
-z up. Poses are matrices world_from_sensor. Arrays that come out are read-only views without a copy;
-arrays that go in are read where they are wherever that is possible. Long work is done without the
-GIL and ends with KeyboardInterrupt when asked to. Errors are TypeError, ValueError, OSError
-(missing files: FileNotFoundError), RuntimeError (a GPU that is not there) and adasplats.Error besides.
+Lengths are in metres, angles in radians (or degrees, if documented), times in seconds; x is
+forward, y left, z up. Poses are matrices world_from_sensor. Returned arrays are read-only views
+without a copy unless documented as new. Arguments are read without a copy where possible. Long calls
+release the GIL, and Ctrl-C interrupts them. Errors are TypeError, ValueError, OSError (missing
+files: FileNotFoundError) or RuntimeError (a missing GPU); those of the library also derive from
+adasplats.Error.
 """
 from . import evaluate
 from ._adasplats import (

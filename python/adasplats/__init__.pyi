@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Types of the module; docstrings tell shapes and units."""
+"""Types of adasplats; docstrings give shapes, dtypes and units."""
 from __future__ import annotations
 
 import os
@@ -15,17 +15,17 @@ Path = Union[str, bytes, os.PathLike[str]]
 Poses = Union["Trajectory", ArrayLike]
 """world_from_sensor, (N, 4, 4) or (4, 4)."""
 Progress = Callable[[str, int, int], object]
-"""Hears (step, done, total); 0 where the total is not known."""
+"""Called with (step, done, total); total is 0 if unknown."""
 Device = Literal["auto", "cpu", "cuda", "optix"]
 DivergenceKind = Literal["fwhm", "1/e2", "1/e2-half", "unknown"]
 Selection = Literal["most-discards-first", "largest-first", "curve", "scattered"]
 
 __version__: str
 NO_PRIMITIVE: int
-"""Stands for the primitive where nothing is hit."""
+"""Index of the primitive of rays that hit nothing."""
 
 class Error(Exception):
-    """What every error of adasplats is besides the class of Python's own."""
+    """Base of all errors of adasplats; each also derives from a built-in exception."""
 
 class UsageError(Error, ValueError): ...
 class DataError(Error, ValueError): ...
@@ -437,82 +437,86 @@ class PointCloud:
         """(N, 3) float32, m, relative to origin."""
     @property
     def origin_kinds(self) -> NDArray[np.uint8] | None:
-        """(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; None: all measured."""
+        """(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; or
+        None."""
     @property
     def sensor_positions(self) -> NDArray[np.float32] | None:
-        """(N, 3) float32, m, relative to origin, or None."""
+        """(N, 3) float32, m, relative to origin; or None."""
     @property
     def intensities(self) -> NDArray[np.float32] | None:
-        """(N,) float32 in the unit of the file, or None."""
+        """(N,) float32, in the unit of the file, NaN where it is not known; or None."""
     @property
     def classes(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16, ids of a label scheme, or None."""
+        """(N,) uint16, ids of a label scheme; or None."""
     @property
     def instances(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16, 0 for none, or None."""
+        """(N,) uint16, 0 for none; or None."""
     @property
     def scan_indices(self) -> NDArray[np.uint32] | None:
-        """(N,) uint32, the scan that a point is from, or None."""
+        """(N,) uint32, the scan that a point is from; or None."""
     @property
     def lasers(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16, the laser that measured a point, topmost 0; 65535 where it is not known; or None."""
+        """(N,) uint16, the laser that measured a point, topmost 0; 65535 where it is not known; or
+        None."""
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
     def crs(self) -> str:
-        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+        """Code and name of the coordinate system, as in the input files ("EPSG:32632 (WGS 84 / UTM
+        zone 32N)"); empty: none in the files."""
     @property
     def crs_wkt(self) -> str:
-        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
+        """The coordinate system as well-known text; empty: none in the files, or given as GeoTIFF
+        keys."""
     @property
     def world_positions(self) -> NDArray[np.float64]:
         """(N, 3) float64, origin + positions: a new array."""
     def save(self, path: Path) -> None: ...
 
 class Network:
-    """A network that gives points semantic classes."""
+    """A network that predicts semantic classes of points."""
 
     def __init__(self, file: Path | None = None) -> None: ...
     @property
     def classes(self) -> list[str]:
-        """Names of what it tells apart."""
+        """Names of the classes that it distinguishes."""
     @property
     def card(self) -> str:
-        """What it was made of, and for what."""
+        """Model card: its training data and its purpose."""
     @property
     def cell_m(self) -> float:
-        """Side of the cells whose means it sees, m."""
+        """Side of the cells; the input points are the means of cells, m."""
     def logits(
         self, points: ArrayLike, features: ArrayLike, *, threads: int = 0
     ) -> NDArray[np.float32]: ...
 
 class LabelScheme:
-    """What the numbers of classes mean; made by label_scheme()."""
+    """Names and properties of semantic classes, made by label_scheme()."""
 
     def __len__(self) -> int: ...
     @property
     def name(self) -> str:
-        """Of the scheme."""
+        """Name of the scheme."""
     @property
     def ids(self) -> NDArray[np.uint16]:
-        """(C,) uint16, ascending: the numbers of the classes."""
+        """(C,) uint16, ids of the classes, ascending."""
     @property
     def names(self) -> list[str]:
         """Names of the classes, in the order of ids."""
     @property
     def groups(self) -> list[str]:
-        """ground, surface, linear or non-surface, in the order of ids."""
+        """'ground', 'surface', 'linear' or 'non-surface', in the order of ids."""
     @property
     def mobilities(self) -> list[str]:
-        """fixed, movable or moving, in the order of ids."""
+        """'fixed', 'movable' or 'moving', in the order of ids."""
     @property
     def colors(self) -> NDArray[np.uint8]:
         """(C, 3) uint8, RGB, in the order of ids."""
     def id_of(self, name: str) -> int: ...
 
 class Trajectory:
-    """Where a sensor was when."""
+    """Poses of a sensor over time."""
 
     def __init__(self, poses: Poses, times: ArrayLike | None = None) -> None: ...
     def __getitem__(self, slice: slice) -> Trajectory: ...
@@ -542,75 +546,76 @@ class Firings:
     def __len__(self) -> int: ...
     @property
     def directions(self) -> NDArray[np.float32]:
-        """(N, 3) float32, unit vectors in the sensor's frame."""
+        """(N, 3) float32, unit vectors in the sensor frame."""
     @property
     def origins(self) -> NDArray[np.float32]:
-        """(N, 3) float32, m: where the beams leave, sensor's frame."""
+        """(N, 3) float32, m: start points of the rays in the sensor frame."""
     @property
     def rings(self) -> NDArray[np.uint16]:
         """(N,) uint16, 0 the topmost."""
     @property
     def columns(self) -> NDArray[np.uint32]:
-        """(N,) uint32."""
+        """(N,) uint32, azimuth steps."""
     @property
     def times(self) -> NDArray[np.float32]:
-        """(N,) float32, s since the scan began."""
+        """(N,) float32, s since the start of the scan."""
 
 class Sensor:
-    """A LiDAR: which rays one revolution holds."""
+    """A LiDAR: the rays of one revolution and the properties of its measurements."""
 
     def __init__(self, name_or_file: Path) -> None: ...
     @property
     def name(self) -> str:
-        """Of the sensor."""
+        """Name of the sensor."""
     @property
     def source(self) -> str:
-        """Where its numbers are from."""
+        """Source of its specification."""
     @property
     def rotation_hz(self) -> float:
-        """Scans a second."""
+        """Revolutions per second, Hz."""
     @property
     def columns(self) -> int:
-        """Azimuth steps; 0: none."""
+        """Azimuth steps per revolution; 0: none."""
     @property
     def min_range_m(self) -> float:
-        """Nearer surfaces are not told, m."""
+        """Minimum range: nearer surfaces return no echo, m."""
     @property
     def max_range_m(self) -> float:
-        """Farther surfaces are not told, m."""
+        """Maximum range: farther surfaces return no echo, m."""
     @property
     def range_noise_m(self) -> float:
-        """Standard deviation, m."""
+        """Standard deviation of ranges, m."""
     @property
     def angular_noise_rad(self) -> float:
-        """Standard deviation, rad."""
+        """Standard deviation of angles, rad."""
     @property
     def range_resolution_m(self) -> float:
-        """Ranges are multiples of it, m; 0: any."""
+        """Ranges are multiples of this, m; 0: continuous."""
     @property
     def most_returns(self) -> int:
-        """Echoes a firing."""
+        """Maximum number of returns per firing."""
     @property
     def rings(self) -> int:
-        """How many beams."""
+        """Number of beams."""
     @property
     def rays_per_scan(self) -> int:
-        """Firings of one scan."""
+        """Firings per scan."""
     @property
     def repeats(self) -> bool:
         """Whether every scan has the same rays."""
     @property
     def elevations_rad(self) -> NDArray[np.float64]:
-        """(B,) float64, topmost first; empty where it is a list of rays or a rosette."""
+        """(B,) float64, topmost first; empty for a list of rays or a rosette."""
     @property
     def range_offsets_m(self) -> NDArray[np.float64]:
-        """(B,) float64, to be added to what each ring of this unit reports; empty: none known."""
+        """(B,) float64, m, to add to the ranges of each ring of this sensor; empty: not calibrated.
+        """
     @property
     def divergence_rad(self) -> tuple[float, float]:
-        """Full angles of a beam between 1/e2 of its intensity, horizontal and vertical."""
+        """Full angles of a beam at 1/e2 of its intensity, horizontal and vertical, rad."""
     @property
     def divergence_kind(self) -> DivergenceKind:
-        """What the source of the divergence stated: 'fwhm', '1/e2', '1/e2-half' or 'unknown'."""
+        """Definition of the angle in the source: 'fwhm', '1/e2', '1/e2-half' or 'unknown'."""
     @staticmethod
     def from_beams(
         elevations_rad: ArrayLike,
@@ -657,7 +662,7 @@ class Sensor:
     def firings(self, scan_index: int = 0) -> Firings: ...
 
 class Model:
-    """A place as oriented disks."""
+    """A scene as oriented disks (splats)."""
 
     def __init__(
         self,
@@ -679,7 +684,7 @@ class Model:
         """(N, 3) float32, m, relative to origin."""
     @property
     def normals(self) -> NDArray[np.float32]:
-        """(N, 3) float32, of unit length."""
+        """(N, 3) float32, unit vectors."""
     @property
     def radii(self) -> NDArray[np.float32]:
         """(N,) float32, m."""
@@ -691,38 +696,40 @@ class Model:
         """(N,) uint8: 0 ground, 1 surface, 2 linear, 3 non-surface; None for basic splats."""
     @property
     def intensities(self) -> NDArray[np.float32] | None:
-        """(N,) float32: reflectances where there is a response, else as measured; or None."""
+        """(N,) float32: reflectances if there is a response, else as measured; or None."""
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
     def crs(self) -> str:
-        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+        """Code and name of the coordinate system, as in the input files ("EPSG:32632 (WGS 84 / UTM
+        zone 32N)"); empty: none in the files."""
     @property
     def crs_wkt(self) -> str:
-        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
+        """The coordinate system as well-known text; empty: none in the files, or given as GeoTIFF
+        keys."""
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """(2, 3) float64: least and greatest world coordinates of the disks."""
+        """(2, 3) float64: minimum and maximum world coordinates of the disks, m."""
     @property
     def labels(self) -> str:
-        """Name or path of the label scheme; empty where there is none."""
+        """Name or path of the label scheme; empty: none."""
     @property
     def network_sha256(self) -> str:
-        """SHA-256 of the file of the network that gave the points classes; empty: none did."""
+        """SHA-256 of the file of the network that predicted the classes; empty: none."""
     @property
     def method(self) -> str:
-        """How it was made."""
+        """The method that made the model."""
     @property
     def response(self) -> dict[str, NDArray[np.float32]] | None:
-        """How intensity depends on range and incidence: a dict of arrays ranges_m, range_gains,
-        cos_incidences, incidence_gains; or None."""
+        """Intensity as a function of range and incidence: a dict of float32 arrays ranges_m,
+        range_gains, cos_incidences, incidence_gains; or None."""
     @property
     def report(self) -> dict[str, Any] | None:
-        """What model() did, with the keys of 'adasplats model --report'; None if loaded."""
+        """Report of model(), with the keys of 'adasplats model --report'; None if loaded."""
 
 class Mesh:
-    """A place as triangles."""
+    """A scene as triangles."""
 
     def __init__(
         self,
@@ -742,7 +749,7 @@ class Mesh:
         """(V, 3) float32, m, relative to origin."""
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """(T, 3) uint32, vertex numbers."""
+        """(T, 3) uint32, vertex indices."""
     @property
     def classes(self) -> NDArray[np.uint16] | None:
         """(T,) uint16, ids of the label scheme, or None."""
@@ -751,17 +758,19 @@ class Mesh:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
     def crs(self) -> str:
-        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+        """Code and name of the coordinate system, as in the input files ("EPSG:32632 (WGS 84 / UTM
+        zone 32N)"); empty: none in the files."""
     @property
     def crs_wkt(self) -> str:
-        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
+        """The coordinate system as well-known text; empty: none in the files, or given as GeoTIFF
+        keys."""
     @property
     def labels(self) -> str:
-        """Name or path of the label scheme; empty where there is none."""
+        """Name or path of the label scheme; empty: none."""
 
 class Scan:
-    """The returns of one revolution of a LiDAR, in the order of its firings. Arrays are read-only
-    views without a copy."""
+    """The returns of one revolution of a LiDAR, in firing order. Arrays are read-only views without
+    a copy; attributes that the scene lacks are None."""
 
     def __len__(self) -> int: ...
     @property
@@ -781,29 +790,29 @@ class Scan:
         """(N,) float32, s since the revolution began."""
     @property
     def intensities(self) -> NDArray[np.float32] | None:
-        """(N,) float32 or None."""
+        """(N,) float32, in the unit of the scene's intensities; or None."""
     @property
     def classes(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16 or None."""
+        """(N,) uint16, ids of the scene's label scheme; or None."""
     @property
     def instances(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16 or None."""
+        """(N,) uint16, 0 for none; or None."""
     @property
     def return_indices(self) -> NDArray[np.uint8] | None:
-        """(N,) uint8, 0 for the first told of a firing; None where no firing can return twice."""
+        """(N,) uint8, 0 for the first that the sensor reports of a firing; or None."""
     @property
     def pose(self) -> NDArray[np.float64]:
         """(4, 4) float64, world_from_sensor."""
     @property
     def time(self) -> float:
-        """Of the pose, s; the middle of the revolution, where the sensor moved."""
+        """Time of the pose, s: the middle of the revolution if the sensor moves."""
     @property
     def begin(self) -> float:
-        """When the revolution began, s, which times count from; of a sensor that stood still,
-        whose points have no motion to take out, the same as time."""
+        """Start of the revolution, s: the zero of times. The same as time if the sensor does not
+        move."""
     @property
     def rays(self) -> int:
-        """How many firings the revolution had."""
+        """Number of firings in the revolution."""
 
 class Scans:
     """The scans of one drive: a sequence of Scan, made by Scene.simulate()."""
@@ -826,89 +835,94 @@ class Scans:
     ) -> None: ...
 
 class Hits:
-    """What rays hit, made by Scene.cast(): shapes are (N,), or (N, depth) for a depth above 1."""
+    """Hits of rays, made by Scene.cast(): arrays have shape (N,), or (N, depth) for a depth above
+    1. ranges and primitives are read-only strided views without a copy."""
 
     def __len__(self) -> int: ...
     @property
     def ranges(self) -> NDArray[np.float32]:
-        """float32, m; inf where nothing is hit."""
+        """float32, m; inf for rays that hit nothing."""
     @property
     def primitives(self) -> NDArray[np.uint32]:
-        """uint32: number of the splat or triangle; NO_PRIMITIVE where nothing is hit."""
+        """uint32: index of the splat or triangle; NO_PRIMITIVE for rays that hit nothing."""
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """bool, whether something is hit: a new array."""
+        """bool, whether the ray hits something: a new array."""
     @property
     def classes(self) -> NDArray[np.uint16] | None:
-        """uint16, 0 where nothing is hit: a new array; None without classes."""
+        """uint16, 0 for rays that hit nothing: a new array; None without classes."""
     @property
     def normals(self) -> NDArray[np.float32]:
-        """(..., 3) float32, NaN where nothing is hit: a new array."""
+        """(..., 3) float32, NaN for rays that hit nothing: a new array."""
 
 class Scene:
-    """A place that rays are cast into, on the CPU or on GPUs."""
+    """A scene that rays are cast into, on the CPU or on GPUs."""
 
     class DeviceArray:
-        """An array in GPU memory that other libraries read without a copy through DLPack."""
+        """An array in GPU memory that other libraries read without a copy through DLPack:
+        torch.from_dlpack(array), cupy.from_dlpack(array). The memory is freed with the last
+        reference."""
 
         def __dlpack__(self, *, stream: Any = None) -> Any: ...
         def __dlpack_device__(self) -> tuple[int, int]: ...
         @property
         def shape(self) -> tuple[int, ...]:
-            """As NumPy has it."""
+            """Shape, as in NumPy."""
         @property
         def pointer(self) -> int:
             """Address of the first element in GPU memory."""
 
     class DeviceHits:
-        """Hits in GPU memory: (scans, firings), or (scans, firings, depth) for a depth above 1."""
+        """Hits in GPU memory, made by Scene.cast_on_device(): arrays have shape (scans, firings),
+        or (scans, firings, depth) for a depth above 1."""
 
         @property
         def ranges(self) -> Scene.DeviceArray:
-            """float32, m; inf where nothing is hit."""
+            """float32, m; inf for rays that hit nothing."""
         @property
         def primitives(self) -> Scene.DeviceArray:
-            """uint32; NO_PRIMITIVE where nothing is hit."""
+            """uint32: index of the splat or triangle; NO_PRIMITIVE for rays that hit nothing."""
 
     class ScanBatch:
-        """Scans whose returns stand one behind the other: those of scan i are [offsets[i], offsets[i + 1]).
-
-        Arrays are read-only views, or DeviceArrays; None where they are not there."""
+        """Scans in consecutive arrays, made by Scene.scan_batches(): scan i has the returns
+        offsets[i] to offsets[i + 1] - 1. Arrays are read-only views, or DeviceArrays in GPU memory
+        for DLPack (torch.from_dlpack); attributes that were not requested or that the scene lacks
+        are None."""
 
         def __len__(self) -> int: ...
         @property
         def first(self) -> int:
-            """Its first scan is that of poses[first]."""
+            """Index in poses of its first scan."""
         @property
         def offsets(self) -> NDArray[np.int64]:
-            """(scans + 1,) int64."""
+            """(scans + 1,) int64, index of the first return of each scan."""
         @property
         def positions(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N, 3) float32, m, in the sensor's frame."""
+            """(N, 3) float32, m, in the sensor's frame; or None."""
         @property
         def intensities(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,) float32, in the unit of the scene's intensities."""
+            """(N,) float32, in the unit of the scene's intensities; or None."""
         @property
         def classes(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,) uint16, ids of the scene's label scheme."""
+            """(N,) uint16, ids of the scene's label scheme; or None."""
         @property
         def instances(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,) uint16, 0 for none."""
+            """(N,) uint16, 0 for none; or None."""
         @property
         def rings(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
-            """(N,) uint16, 0 the topmost."""
+            """(N,) uint16, 0 the topmost; or None."""
         @property
         def columns(self) -> NDArray[np.uint32] | Scene.DeviceArray | None:
-            """(N,) uint32, azimuth steps."""
+            """(N,) uint32, azimuth steps; or None."""
         @property
         def times(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,) float32, s since the revolution began."""
+            """(N,) float32, s since the revolution began; or None."""
         @property
         def ranges(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
-            """(N,) float32, m."""
+            """(N,) float32, m; or None."""
         @property
         def return_indices(self) -> NDArray[np.uint8] | Scene.DeviceArray | None:
-            """(N,) uint8, 0 for the first that the sensor reports of a firing."""
+            """(N,) uint8, 0 for the first that the sensor reports of a firing; or None."""
         def padded(self, name: str, length: int) -> NDArray[Any]: ...
 
     def __init__(
@@ -927,10 +941,10 @@ class Scene:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
     def device(self) -> str:
-        """What casts: 'cpu', or 'cuda' or 'optix' and the names of GPUs."""
+        """The device that casts rays: 'cpu', or 'cuda' or 'optix' and the names of GPUs."""
     @property
     def threads(self) -> int:
-        """Of the CPU."""
+        """Number of CPU threads."""
     @property
     def labels(self) -> LabelScheme | None:
         """The LabelScheme of its classes, or None."""

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Cities on many machines: the tasks of 'adasplats model --tile --plan' as Dask's futures.
+"""Make cities on many machines: the tasks of 'adasplats model --tile --plan' as Dask futures.
 
     from adasplats import distributed
-    distributed.make_city(["drive"], "city", tile=64, workers=4)            # processes of this machine
-    distributed.make_city(["drive"], "city", tile=64, gpus=[0, 1, 2, 3])    # one a card
+    distributed.make_city(["drive"], "city", tile=64, workers=4)            # local processes
+    distributed.make_city(["drive"], "city", tile=64, gpus=[0, 1, 2, 3])    # one per GPU
     client = dask.distributed.Client("tcp://head:8786")                     # SSH, Slurm, Kubernetes
     distributed.make_city(["drive"], "city", tile=64, client=client)
 
-Which workers there are, what they are given and when is Dask's. A task is a command of its own, run
-in a process that ends with its worker; what a killed one leaves does no harm. Workers of a client
-need this package, the program adasplats, and the folder that the city is made in under the same path.
+Dask manages and schedules the workers. A task is a command in its own process, which ends with its
+worker; the files of a killed task do no harm. Workers of a client need this package, the program
+adasplats, and the folder of the city under the same path.
 Needs Dask: pip install adasplats[distributed], or apt-get install python3-distributed.
 """
 from __future__ import annotations
@@ -34,7 +34,7 @@ __all__ = ["TaskError", "make_city", "run_plan"]
 Progress = Callable[[str, int, int], object]
 
 # Starts a command that ends when the worker does, also by kill -9: prctl(PR_SET_PDEATHSIG, SIGKILL).
-# In a process of its own, since a worker has threads, between whose fork and exec little is safe.
+# It is a separate process because few calls are safe between fork and exec in a threaded worker.
 _LAUNCHER = """
 import ctypes, os, sys
 parent = int(sys.argv[1])
@@ -46,7 +46,7 @@ os.execvp(sys.argv[2], sys.argv[2:])
 
 
 class TaskError(RuntimeError):
-    """A command that failed, with what it said."""
+    """A command failed; the message contains its error output."""
 
 
 def make_city(
@@ -64,17 +64,18 @@ def make_city(
     program: str = "adasplats",
     progress: Progress | bool = True,
 ) -> dict[str, Any]:
-    """Models a place tile by tile, as 'adasplats model INPUTS -o OUTPUT --tile TILE' does, with the
-    same bytes; gives the keys of its report. A call that was interrupted goes on when it is made again.
+    """Make a city tile by tile, with the bytes of 'adasplats model INPUTS -o OUTPUT --tile TILE'.
 
-    options: further words of the command line, ["--halo", "12"]. What comes before the tiles, and the
-    end, are done where this is called; the tiles are tasks, as run_plan() runs them, which tells
-    of the other arguments.
-    Raises TaskError (a command failed, with what it said), ImportError (no Dask).
+    Return its report as a dict. The same call resumes interrupted work.
+
+    tile: side of the square tiles, m. options: further words of the command line, ["--halo", "12"].
+    The steps before and after the tiles run in this process; the tiles are tasks of run_plan(),
+    which documents the other arguments.
+    Raises TaskError (a command failed), ValueError, ImportError (no Dask).
     """
     _import_dask()
     if any(word.partition("=")[0] == "--report" for word in options):
-        raise ValueError("options: --report: the report is what make_city() gives back")
+        raise ValueError("options: --report is not allowed; make_city() returns the report")
     has_threads = any(word.partition("=")[0] == "--threads" for word in options)
     command = [_found(program), "model", *map(os.fspath, inputs), "-o", os.fspath(output), "--tile",
                str(tile), *options]
@@ -99,24 +100,24 @@ def run_plan(
     program: str = "adasplats",
     progress: Progress | bool = True,
 ) -> None:
-    """Runs the tasks that a command prints with --plan, in the current folder, and waits for all.
+    """Run the tasks that a command prints with --plan, in the current folder, and wait for all.
 
-    client: whose workers do it; None: `workers` processes of this machine, which are ended behind it.
-    gpus: numbers of cards, each for one process of this machine in place of `workers`; workers of
-    a client see those of their CUDA_VISIBLE_DEVICES, of which a task takes the first.
-    threads: of each task; None: as the plan says, 0: all cores.
-    retries: how often a task is run again that failed, or whose worker died more often than Dask
-    itself allows for (distributed.scheduler.allowed-failures).
-    resources: what a task takes of its worker, {"GPU": 1, "memory": 16e9}, as Client.submit has it;
-    workers without as much that is free get none. Workers of this machine have it once.
-    progress: a bar on stderr with the address of Dask's dashboard; or what is called with
-    ("tasks", done, all); False: nothing.
-    Raises TaskError (a task failed each time, with what it said; no other is begun), ImportError.
+    client: Dask client of the workers; None: start `workers` local processes for this call.
+    gpus: GPU indices; one local process per GPU in place of `workers`. On a worker of a client, a
+    task uses the first GPU of the worker's CUDA_VISIBLE_DEVICES.
+    threads: per task; None: as in the plan, 0: all cores.
+    retries: maximum number of repetitions of a task that failed or lost its worker more often than
+    Dask allows (distributed.scheduler.allowed-failures).
+    resources: of the worker, per task, {"GPU": 1, "memory": 16e9}, as in Client.submit(); a worker
+    runs only tasks that its free resources allow. Local workers have these resources once.
+    progress: True: a bar on stderr with the address of Dask's dashboard; False: nothing; or a
+    function of ("tasks", done, total).
+    Raises TaskError (a task failed every time; no other task is started), ValueError, ImportError.
     """
     _import_dask()
     if client is not None and gpus is not None:
-        raise ValueError("gpus are of processes that are started here: a worker of a client has the "
-                         "card that its CUDA_VISIBLE_DEVICES says")
+        raise ValueError("gpus is for local processes; for the workers of a client set their "
+                         "CUDA_VISIBLE_DEVICES")
     commands = [shlex.split(line)[1:] for line in plan.splitlines()
                 if line.strip() and not line.startswith("#")]
     if threads is not None:
@@ -130,7 +131,7 @@ def run_plan(
 
 
 class _Run:
-    """The futures of commands, one each, until all are done."""
+    """Runs one future per command until all are done."""
 
     def __init__(self, client, commands, gpus, retries, resources, program, progress):
         self.client = client
@@ -168,7 +169,7 @@ class _Run:
             self.client.cancel(list(numbers), force=True)
 
     def is_done(self, future, number):
-        """False: its workers died, and it is to be tried again. Raises what it failed with."""
+        """False: its workers died, and it will be retried. Raises TaskError if it failed."""
         from dask.distributed import KilledWorker
 
         if future.status == "finished":
@@ -185,9 +186,9 @@ class _Run:
 
 
 def _run_task(words, program, folder, gpus):
-    """A command on a worker, in `folder`; ends when the worker does."""
+    """Run a command on a worker, in `folder`; it ends with the worker."""
     environment = dict(os.environ)
-    if gpus:  # workers of a LocalCluster have numbers as names, which they keep when they start anew
+    if gpus:  # names of LocalCluster workers are numbers, which restarts keep
         from dask.distributed import get_worker
 
         environment["CUDA_VISIBLE_DEVICES"] = str(gpus[int(get_worker().name) % len(gpus)])
@@ -204,7 +205,7 @@ def _run_task(words, program, folder, gpus):
 
 @contextlib.contextmanager
 def _local_client(workers, gpus, resources) -> Iterator[Any]:
-    """Processes of this machine, one task at a time each."""
+    """A client of local processes, each of which runs one task at a time."""
     from dask.distributed import Client, LocalCluster
 
     with LocalCluster(n_workers=len(gpus) if gpus else workers, threads_per_worker=1,
@@ -214,14 +215,14 @@ def _local_client(workers, gpus, resources) -> Iterator[Any]:
 
 
 def _threads(threads, client, workers, gpus) -> int | None:
-    """By default the cores of this machine are shared by the processes that are started here."""
+    """By default, local processes share the cores of this machine."""
     if threads is not None or client is not None:
         return threads
     return max(1, len(os.sched_getaffinity(0)) // (len(gpus) if gpus else workers))
 
 
 def _bar(client) -> Progress:
-    """A line on stderr that fills up; a terminal writes it over."""
+    """A progress bar on stderr; a terminal overwrites it in place."""
     print(f"adasplats: Dask's dashboard: {client.dashboard_link}", file=sys.stderr)
     is_terminal = sys.stderr.isatty()
 
@@ -247,12 +248,12 @@ def _import_dask() -> None:
 def _found(program: str) -> str:
     path = shutil.which(program)
     if path is None:
-        raise TaskError(f"{program}: there is no such program in the PATH; `program` names it")
+        raise TaskError(f"{program}: not found in PATH (set `program` to its path)")
     return path
 
 
 def _local_program(program: str) -> str:
-    """A name stays one, to be found by each worker; a path must mean the same in other folders."""
+    """Each worker looks up a name in its PATH; a path becomes absolute."""
     return os.path.abspath(program) if os.sep in program else program
 
 
@@ -261,7 +262,7 @@ def _text(words: Sequence[str]) -> str:
 
 
 def _run(command: Sequence[str]) -> str:
-    """A command of this process; gives what it prints. Warnings go to stderr."""
+    """Run a command; return its output. Its warnings go to stderr."""
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
                           errors="replace", check=False)
     if done.returncode != 0:

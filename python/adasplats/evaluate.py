@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""How good models and scans are: dicts with the keys of 'adasplats evaluate --report'."""
+"""Metrics of models and scans: dicts with the keys of 'adasplats evaluate --report'."""
 from ._adasplats.evaluate import (c2c, echoes, labels, presence, realism, resimulate,
                                   segmentation, truth, unit)
 

@@ -4,8 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
-/// The Python module. Bindings convert arguments and results; the work is the library's. One file
-/// a topic, each with one function that adds it to the module.
+/// The Python module. Bindings only convert arguments and results. Each file adds one topic to the
+/// module.
 namespace adasplats::python {
 
 namespace py = pybind11;
@@ -26,8 +26,8 @@ void bind_hits(py::module_& module);
 void bind_networks(py::module_& module);
 void bind_evaluate(py::module_& module);
 void bind_synth(py::module_& module);
-void bind_recipes(py::module_& module);
-/// Makes every function of the finished module say in words what is wrong with its arguments.
+void bind_jobs(py::module_& module);
+/// Replaces the messages for wrong arguments of every function; called last.
 void explain_wrong_arguments(const py::module_& module);
 
 }  // namespace adasplats::python

@@ -27,50 +27,48 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kReadDoc =
-    "Read point files and SemanticKITTI sequence folders into one PointCloud.\n\n"
-    "paths: a path or a list of them (PLY, PCD, LAS/LAZ, E57, KITTI bin, text, npy, a sequence "
-    "folder,\n"
-    "a folder of point files). Keywords are those of 'adasplats model' for loading: first_scan,\n"
-    "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or\n"
-    "trajectory (a path) tell where the sensor was; label_field names the column of classes.\n"
-    "Points that are not finite or far are dropped with a warning; above the share max_dropped\n"
-    "that is an error, and with strict any that is not finite is one. An intensity that is not\n"
-    "known is NaN. Points on the recording vehicle itself are left out: those that go along with\n"
-    "the sensor, or all nearer to it than own_body_m (0 keeps all). So are those where it drove,\n"
-    "up to driven_path_m beside its path (0 keeps them).\n"
-    "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
+    R"(Read point files and SemanticKITTI sequence folders into one PointCloud.
 
-constexpr const char* kCloudDoc =
-    "Points of one or many scans.\n\n"
-    "positions: (N, 3), world coordinates in metres, any numbers. classes, instances: (N,) of 0 "
-    "to\n"
-    "65535. intensities: (N,), NaN where not known. sensor_positions: (N, 3), where the LiDAR was\n"
-    "when it measured each point, world coordinates; without them normals have no side and no ray\n"
-    "checks the model.\n"
-    "origin_kinds: (N,), how each is known: 0 not, 1 guessed (turns normals alone), 2 stated, 3\n"
-    "measured, which all are where it is None.\n"
-    "scan_indices: (N,). origin: (3,), what positions are kept relative to as float32; chosen by\n"
-    "their extents where it is None. crs_wkt: the coordinate system of the world as well-known\n"
-    "text, which models and files keep. Raises ValueError with the first row that is not finite.\n"
-    "The arrays are read-only views without a copy; an attribute that the cloud lacks is None.";
+paths: a path or a list of them (PLY, PCD, LAS/LAZ, E57, KITTI bin, text, npy, a sequence folder, a
+folder of point files). The keywords are the options of 'adasplats model' for loading. first_scan,
+scan_count (None: all) and scan_stride choose scans of a sequence. viewpoint, (3,) m, or trajectory
+(a path) gives the sensor positions. label_field: name of the column of classes.
+Points that are not finite or too far away are dropped with a warning. A share of them above
+max_dropped is an error; with strict, any point that is not finite is one. Unknown intensities are
+NaN. Points on the recording vehicle are removed: those that move with the sensor, or all within
+own_body_m of it (0 keeps all). So are points within driven_path_m of the driven path (0 keeps them).
+Raises TypeError, FileNotFoundError, ValueError (wrong content of a file), OSError.)";
 
-void take_read(Keywords& keywords, LoadOptions& load, WorkOptions& work) {
-  work.has_device = false;
-  take_load_options(keywords, load);
-  work.take(keywords);
-}
+constexpr const char* kCloudDoc = R"(Points of one or many scans.
+
+positions: (N, 3), world coordinates, m, any numeric dtype. classes, instances: (N,) integers from 0
+to 65535. intensities: (N,), NaN if unknown. sensor_positions: (N, 3), world coordinates, m, of the
+LiDAR when it measured each point; without them normals cannot be oriented, and the model cannot be
+checked against rays.
+origin_kinds: (N,), the source of each sensor position: 0 unknown, 1 guessed (only used to orient
+normals), 2 stated, 3 measured; None: all measured.
+scan_indices: (N,), integers >= 0. origin: (3,), m; positions are stored as float32 relative to it;
+None: chosen from the extent of the points. crs_wkt: coordinate system of the world as well-known
+text; models and files keep it. Arrays are read-only views without a copy; missing attributes are
+None. Raises TypeError, ValueError (with the first row that is not finite).)";
+
+struct ReadArguments {
+  LoadOptions load;
+  WorkOptions work{.has_device = false};
+
+  void take(Keywords& keywords) {
+    take_load_options(keywords, load);
+    work.take(keywords);
+  }
+};
 
 std::shared_ptr<PointCloud> read(py::handle paths, const py::kwargs& kwargs) {
-  Keywords keywords("read", kwargs);
-  LoadOptions load;
-  WorkOptions options;
-  take_read(keywords, load, options);
-  keywords.finish();
+  const auto arguments = arguments_of<ReadArguments>("read", kwargs);
   const auto inputs = paths_of(paths, "paths");
-  Work work(options);
+  Work work(arguments.work);
   return work.run([&](Session& session) {
     return std::make_shared<PointCloud>(
-        load_cloud(inputs, load, session.executor, session.progress).first);
+        load_cloud(inputs, arguments.load, session.executor, session.progress).first);
   });
 }
 
@@ -99,19 +97,18 @@ std::shared_ptr<PointCloud> make_cloud(py::handle positions, py::handle classes,
       numbers_of(intensities, count, "intensities", NotANumber::is_unknown);
   cloud->intensities.assign(measured.begin(), measured.end());
   if (sensor_positions.is_none()) {
-    if (!origin_kinds.is_none())
-      throw py::value_error("origin_kinds: expected sensor_positions as well");
+    if (!origin_kinds.is_none()) throw py::value_error("origin_kinds needs sensor_positions");
     return cloud;
   }
   const Rows sensors(sensor_positions, 3, "sensor_positions");
   if (sensors.size() != count || (sensors.is_single() && count == 1))
     throw py::value_error("sensor_positions: expected shape (" + std::to_string(count) +
-                          ", 3), one row a point");
+                          ", 3), one row per point");
   sensors.require_finite();
   cloud->sensor_positions = relative(sensors, cloud->origin);
   for (const auto kind : whole_numbers_of<std::uint16_t>(origin_kinds, count, "origin_kinds")) {
     if (kind > static_cast<std::uint16_t>(OriginKind::measured))
-      throw py::value_error("origin_kinds: expected numbers of 0 to 3, found " +
+      throw py::value_error("origin_kinds: expected numbers from 0 to 3, got " +
                             std::to_string(kind));
     cloud->origin_kinds.push_back(static_cast<OriginKind>(kind));
   }
@@ -167,36 +164,6 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   options.scan_stride = scans.stride;
 }
 
-bool is_path(py::handle value) {
-  return PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
-         py::hasattr(value, "__fspath__");
-}
-
-std::filesystem::path path_of(py::handle value, const char* name) {
-  if (!is_path(value))
-    throw py::type_error(std::string(name) + ": expected a path, got " +
-                         std::string(py::str(py::type::of(value).attr("__name__"))));
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
-  return std::string(py::reinterpret_steal<py::bytes>(bytes));
-}
-
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
-                                            const char* else_expected) {
-  std::vector<std::filesystem::path> paths;
-  if (is_path(value)) {
-    paths.push_back(path_of(value, name));
-    return paths;
-  }
-  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
-    throw py::type_error(std::string(name) + ": expected " + else_expected +
-                         "a path or a list of paths, got " +
-                         std::string(py::str(py::type::of(value).attr("__name__"))));
-  for (const py::handle item : value) paths.push_back(path_of(item, name));
-  if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");
-  return paths;
-}
-
 namespace {
 
 using CloudClass = py::class_<PointCloud, std::shared_ptr<PointCloud>>;
@@ -213,12 +180,8 @@ void bind_attributes(CloudClass& type) {
         },
         (shape_and_type<typename Values::value_type>() + attribute.about + "; or None.").c_str());
   });
-  type.def_property_readonly(
-          "positions",
-          [](const py::object& self) {
-            return array_view(self.cast<const PointCloud&>().positions, self);
-          },
-          "(N, 3) float32, m, relative to origin.")
+  type.def_property_readonly("positions", view_getter(&PointCloud::positions),
+                             "(N, 3) float32, m, relative to origin.")
       .def_property_readonly(
           "origin", [](const PointCloud& cloud) { return array_of(cloud.origin); },
           "(3,) float64, world coordinates of the local origin, m.")
@@ -255,23 +218,16 @@ void bind_clouds(py::module_& module) {
           },
           py::arg("path"),
           documented("save", "self, path",
-                     "Write a .ply, whole or not at all, with every attribute. Raises "
-                     "OSError,\nValueError (another ending).")
+                     "Write a .ply with every attribute; no partial file remains after an error.\n"
+                     "Raises TypeError, OSError, ValueError (another extension).")
               .c_str());
 
   bind_attributes(type);
   add_crs(type, [](const PointCloud& cloud) -> const Crs& { return cloud.crs; });
   add_pickling<PointCloud>(type, "PointCloud");
 
-  const std::string read_doc = documented(
-      "read", "paths",
-      [](Keywords& keywords) {
-        LoadOptions load;
-        WorkOptions work;
-        take_read(keywords, load, work);
-      },
-      kReadDoc);
-  module.def("read", &read, py::arg("paths"), read_doc.c_str());
+  module.def("read", &read, py::arg("paths"),
+             documented<ReadArguments>("read", "paths", kReadDoc).c_str());
 }
 
 }  // namespace adasplats::python

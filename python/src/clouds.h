@@ -14,24 +14,18 @@
 
 namespace adasplats::python {
 
-/// Vectors in world coordinates as they are kept: relative to the origin that suits them.
+/// Vectors in world coordinates, stored relative to a nearby origin.
 struct LocalVectors {
   Vec3d origin;
   std::vector<Vec3f> vectors;
 };
-/// `origin`: None for the one that choose_origin() gives. Errors: ValueError (not finite).
+/// `origin`: None for that of choose_origin(). Errors: ValueError (not finite).
 LocalVectors local_vectors(const Rows& world, py::handle origin);
 
-/// The keywords of a range of scans: first_scan, scan_count, scan_stride, each behind `prefix`.
+/// The keywords of a range of scans: first_scan, scan_count, scan_stride, each with `prefix`.
 void take_scan_range(Keywords& keywords, ScanRange& range, const std::string& prefix = "");
 
 /// The keywords of LoadOptions.
 void take_load_options(Keywords& keywords, LoadOptions& options);
-
-/// One path or several. Errors: TypeError.
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
-                                            const char* else_expected = "");
-std::filesystem::path path_of(py::handle value, const char* name);
-bool is_path(py::handle value);
 
 }  // namespace adasplats::python

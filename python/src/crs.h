@@ -26,12 +26,12 @@ void add_crs(Type& type, Of of) {
   using Object = typename Type::type;
   type.def_property_readonly(
           "crs", [of](const Object& object) { return of(object).name(); },
-          "The coordinate system of the world by codes and names, as the files said it\n"
-          "(\"EPSG:32632 (WGS 84 / UTM zone 32N)\"); empty: none is said.")
+          "Code and name of the coordinate system, as in the input files\n"
+          "(\"EPSG:32632 (WGS 84 / UTM zone 32N)\"); empty: none in the files.")
       .def_property_readonly(
           "crs_wkt", [of](const Object& object) { return of(object).wkt; },
-          "The coordinate system as well-known text; empty where none is said, or as GeoTIFF\n"
-          "keys.");
+          "The coordinate system as well-known text; empty: none in the files, or given as\n"
+          "GeoTIFF keys.");
 }
 
 }  // namespace adasplats::python

@@ -9,9 +9,10 @@ namespace {
 
 constexpr const char* kArrayDoc =
     "An array in GPU memory that other libraries read without a copy through DLPack:\n"
-    "torch.from_dlpack(array), cupy.from_dlpack(array). It lives as long as anyone looks at it.";
+    "torch.from_dlpack(array), cupy.from_dlpack(array). The memory is freed with the last "
+    "reference.";
 
-/// What a consumer holds.
+/// The tensor that a consumer owns.
 struct Exported {
   dlpack::ManagedTensor managed;
   DeviceArray array;
@@ -21,7 +22,7 @@ void free_exported(dlpack::ManagedTensor* managed) {
   delete static_cast<Exported*>(managed->owner);
 }
 
-/// Frees what no consumer took.
+/// Frees a tensor that no consumer took.
 void free_capsule(PyObject* capsule) {
   if (PyCapsule_IsValid(capsule, dlpack::kFresh) == 0) return;
   auto* managed =
@@ -33,7 +34,7 @@ dlpack::ManagedTensor* exported(const DeviceArray& array) {
   auto made = std::make_unique<Exported>();
   made->array = array;
   dlpack::Tensor& tensor = made->managed.tensor;
-  // DLPack has no const: consumers are asked not to write.
+  // DLPack has no const; consumers must not write.
   tensor.data = const_cast<void*>(array.data);
   tensor.device = {dlpack::DeviceType::cuda, array.device};
   tensor.axes = static_cast<std::int32_t>(made->array.shape.size());
@@ -45,7 +46,7 @@ dlpack::ManagedTensor* exported(const DeviceArray& array) {
   return &made.release()->managed;
 }
 
-/// `stream` is the consumer's: the values are complete before this returns, for every stream.
+/// `stream`: the consumer's, not needed, since the values are complete when this returns.
 py::object to_dlpack(const DeviceArray& array, const py::object& /*stream*/) {
   if (array.wait) {
     const py::gil_scoped_release released;
@@ -65,16 +66,16 @@ py::object to_dlpack(const DeviceArray& array, const py::object& /*stream*/) {
 void add_device_arrays(SceneClass& type) {
   py::class_<DeviceArray>(type, "DeviceArray", kArrayDoc)
       .def("__dlpack__", &to_dlpack, py::kw_only(), py::arg("stream") = py::none(),
-           "A capsule with the array; its values are there when this returns.")
+           "A DLPack capsule of the array; the values are complete when this returns.")
       .def(
           "__dlpack_device__",
           [](const DeviceArray& array) {
             return py::make_tuple(static_cast<int>(dlpack::DeviceType::cuda), array.device);
           },
-          "(2, number of the GPU).")
+          "(2, index of the GPU).")
       .def_property_readonly(
           "shape", [](const DeviceArray& array) { return py::tuple(py::cast(array.shape)); },
-          "As NumPy has it.")
+          "Shape, as in NumPy.")
       .def_property_readonly(
           "pointer",
           [](const DeviceArray& array) { return reinterpret_cast<std::uintptr_t>(array.data); },

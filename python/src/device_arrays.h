@@ -12,15 +12,15 @@
 
 namespace adasplats::python {
 
-/// An array in GPU memory that Python hands on through DLPack.
+/// An array in GPU memory that Python exports through DLPack.
 struct DeviceArray {
-  std::shared_ptr<void> keep;  ///< what its memory lives in; may be freed without the GIL
+  std::shared_ptr<void> keep;  ///< owner of the memory; may be freed without the GIL
   const void* data = nullptr;
-  int device = 0;  ///< CUDA's number
+  int device = 0;  ///< CUDA device index
   dlpack::DataType type;
   std::vector<std::int64_t> shape;
   std::vector<std::int64_t> strides;  ///< in elements
-  std::function<void()> wait;         ///< until its values are there; none: they are
+  std::function<void()> wait;         ///< waits for the values; empty: they are complete
 };
 
 /// Adds the class to Scene.

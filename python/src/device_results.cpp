@@ -16,16 +16,17 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kDeviceResultsDoc =
-    "Cast the rays of a LiDAR at poses and leave the hits in GPU memory.\n\n"
-    "sensor, poses, motion, rolling_shutter: as simulate() takes them. depth: hits a ray. Without\n"
-    "noise, returns and attributes; several GPUs: the first casts. Raises RuntimeError where the\n"
-    "scene is on the CPU.";
+    R"(Cast the rays of a LiDAR at poses and leave the hits in GPU memory.
+
+sensor, poses, motion, rolling_shutter: as in simulate(). depth: maximum number of hits per ray. No
+noise, returns or attributes are simulated; of several GPUs the first is used. Returns DeviceHits.
+Raises TypeError, ValueError, OSError, RuntimeError (the scene is on the CPU).)";
 
 constexpr const char* kHitsDoc =
-    "Hits in GPU memory, made by Scene.cast_on_device(): (scans, firings), or (scans, firings,\n"
-    "depth) for a depth above 1.";
+    R"(Hits in GPU memory, made by Scene.cast_on_device(): arrays have shape (scans, firings), or
+(scans, firings, depth) for a depth above 1.)";
 
-/// Hits and what they live in; may be freed without the GIL.
+/// Hits and the owners of their memory; may be freed without the GIL.
 struct DeviceResults {
   std::shared_ptr<SceneObject> scene;
   std::unique_ptr<GpuScanner> scanner;
@@ -33,7 +34,7 @@ struct DeviceResults {
   int depth = 1;
 
   ~DeviceResults() {
-    // Who holds the lock may wait for the GIL.
+    // The holder of the lock may be waiting for the GIL.
     std::optional<py::gil_scoped_release> released;
     if (PyGILState_Check() == 1) released.emplace();
     const std::scoped_lock lock(scene->gpu);
@@ -55,16 +56,13 @@ struct DeviceArguments {
 
 Results cast_on_device(const std::shared_ptr<SceneObject>& object, py::handle sensor,
                        py::handle poses, const py::kwargs& kwargs) {
-  Keywords keywords("cast_on_device", kwargs);
-  DeviceArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<DeviceArguments>("cast_on_device", kwargs);
   if (arguments.depth < 1 || arguments.depth > kMaxDepth)
     throw py::value_error("depth must be 1 to " + std::to_string(kMaxDepth));
   const GpuScene* const gpu = object->scene->gpu();
   if (gpu == nullptr)
     throw Error(ErrorKind::unavailable,
-                "the scene is on the CPU: results in GPU memory need Scene(..., device='cuda')");
+                "the scene is on the CPU; results in GPU memory need Scene(..., device='cuda')");
   const LidarModel model = sensor_of(sensor);
   const std::vector<ScanMotion> scans = arguments.drive.scans_at(poses, model);
   auto results = std::make_shared<DeviceResults>();
@@ -104,21 +102,16 @@ void add_device_results(SceneClass& type) {
           [](const Results& r) {
             return member_of(r, offsetof(Hit, t), dlpack::TypeCode::floating);
           },
-          "float32, m; inf where nothing is hit.")
+          "float32, m; inf for rays that hit nothing.")
       .def_property_readonly(
           "primitives",
           [](const Results& r) {
             return member_of(r, offsetof(Hit, primitive), dlpack::TypeCode::unsigned_integer);
           },
-          "uint32; NO_PRIMITIVE where nothing is hit.");
-  const std::string doc = documented(
-      "cast_on_device", "self, sensor, poses",
-      [](Keywords& keywords) {
-        DeviceArguments arguments;
-        arguments.take(keywords);
-      },
-      kDeviceResultsDoc);
-  type.def("cast_on_device", &cast_on_device, py::arg("sensor"), py::arg("poses"), doc.c_str());
+          "uint32: index of the splat or triangle; NO_PRIMITIVE for rays that hit nothing.");
+  type.def("cast_on_device", &cast_on_device, py::arg("sensor"), py::arg("poses"),
+           documented<DeviceArguments>("cast_on_device", "self, sensor, poses", kDeviceResultsDoc)
+               .c_str());
 }
 
 }  // namespace adasplats::python

@@ -20,30 +20,20 @@
 namespace adasplats::python {
 namespace {
 
-/// Two positional arguments and the keywords of `Arguments`, the result as a dict.
+/// Adds a function of two positional arguments and the keywords of `Arguments`; it returns a dict.
 template <class Arguments>
-void define(py::module_& module, const char* name, const char* first, const char* second,
-            const char* text) {
-  const std::string doc = documented(
-      name, (std::string(first) + ", " + second).c_str(),
-      [](Keywords& keywords) {
-        Arguments arguments;
-        arguments.take(keywords);
-      },
-      text);
+void define(py::module_& module, const char* name, const char* first, const char* second) {
+  const std::string leading = std::string(first) + ", " + second;
   module.def(
       name,
-      [name = std::string(name)](py::handle a, py::handle b, const py::kwargs& kwargs) {
-        Keywords keywords(name, kwargs);
-        Arguments arguments;
-        arguments.take(keywords);
-        keywords.finish();
-        return arguments.run(a, b);
+      [name](py::handle a, py::handle b, const py::kwargs& kwargs) {
+        return arguments_of<Arguments>(name, kwargs).run(a, b);
       },
-      py::arg(first), py::arg(second), doc.c_str());
+      py::arg(first), py::arg(second),
+      documented<Arguments>(name, leading.c_str(), Arguments::kDoc).c_str());
 }
 
-/// Work's result through to_json().
+/// Runs f(session) and converts its report to a dict.
 template <class F>
 py::object reported(const WorkOptions& options, F&& f) {
   Work work(options);
@@ -51,6 +41,13 @@ py::object reported(const WorkOptions& options, F&& f) {
 }
 
 struct CloudArguments {
+  static constexpr const char* kDoc =
+      R"(Compare two clouds: C2C distances (as in the paper), Chamfer distance, F-scores, completeness.
+
+simulated, original: PointClouds or paths. by_class: also compare each class by itself; labels names
+the scheme, as in label_scheme(). nearest_classes: give each simulated point the class of the
+nearest original point and ignore its own. Raises ValueError, OSError.)";
+
   bool by_class = false, nearest_classes = false;
   std::string labels;
   WorkOptions work{.has_device = false};
@@ -91,19 +88,13 @@ struct CloudArguments {
   }
 };
 
-/// Nothing of None. Throws TypeError, and ValueError for a word that is no protocol.
-std::optional<HeldOutProtocol> protocol_of(const py::object& word) {
-  if (word.is_none()) return {};
-  if (!py::isinstance<py::str>(word)) throw py::type_error("protocol: expected a string or None");
-  std::string known;
-  for (const auto& [each, protocol] : kHeldOutProtocols) {
-    if (each == word.cast<std::string>()) return protocol;
-    known += (known.empty() ? "" : ", ") + std::string(each);
-  }
-  throw py::value_error("protocol: '" + word.cast<std::string>() + "', expected one of " + known);
-}
-
 struct ResimulateArguments {
+  static constexpr const char* kDoc =
+      R"(Cast the measured beams of held-out scans into a model and compare the ranges.
+
+model: a Scene or the path of a model. sequence: a SemanticKITTI folder. min_range, max_range: m.
+protocol: 'lidar4d' adds the metrics of that publication. Raises TypeError, ValueError, OSError.)";
+
   HeldOutScans scans;
   std::string labels = "semantickitti";
   ResimulateOptions options;
@@ -123,9 +114,7 @@ struct ResimulateArguments {
     keywords.take("drop_moving", options.drop_moving);
     keywords.take("drop_movable", options.drop_movable);
     keywords.take("all_poses", extras.all_poses);
-    py::object protocol = py::none();
-    keywords.take("protocol", protocol);
-    extras.protocol = protocol_of(protocol);
+    keywords.take<HeldOutProtocol>("protocol", extras.protocol, kHeldOutProtocols);
     work.take(keywords);
   }
 
@@ -149,6 +138,12 @@ struct ResimulateArguments {
 };
 
 struct TruthArguments {
+  static constexpr const char* kDoc =
+      R"(Cast the rays of a sensor into a model and into the true surface and compare the hits.
+
+model, truth, trajectory: paths of a model, a mesh and poses. sensor: a name or a file. offset: (3,)
+m, added to the positions of the poses. Raises TypeError, ValueError, OSError.)";
+
   TruthJob job;
   WorkOptions work;
 
@@ -174,6 +169,11 @@ struct TruthArguments {
 };
 
 struct PresenceArguments {
+  static constexpr const char* kDoc = R"(Find which measured points the model has a surface at.
+
+model, points: paths. within, min_range, max_range: m. The other keywords are those of read().
+Raises ValueError, OSError.)";
+
   PresenceJob job;
   WorkOptions work;
 
@@ -194,6 +194,11 @@ struct PresenceArguments {
 };
 
 struct EchoArguments {
+  static constexpr const char* kDoc =
+      R"(Compare predicted intensities and missing returns with the measured ones.
+
+model, sequence, motion: paths. drop: a file of 'adasplats fit-drop'. Raises ValueError, OSError.)";
+
   EchoInputs inputs;
   std::filesystem::path drop;
   WorkOptions work;
@@ -214,6 +219,12 @@ struct EchoArguments {
 };
 
 struct UnitArguments {
+  static constexpr const char* kDoc =
+      R"(Check how well a calibrated sensor predicts the intensities and missing returns of other scans.
+
+model, scans, motion, trajectory: paths. sensor: a file of fit_sensor(). Raises ValueError,
+OSError.)";
+
   EvaluateUnitJob job;
   WorkOptions work;
 
@@ -233,6 +244,12 @@ struct UnitArguments {
 };
 
 struct LabelArguments {
+  static constexpr const char* kDoc =
+      R"(Count the simulated points that have the class of the nearest measured point.
+
+simulated, original: SemanticKITTI folders. window: number of original scans before and after the
+one of the same time that are searched. Raises ValueError, OSError.)";
+
   LabelAgreementJob job;
   WorkOptions work{.has_device = false};
 
@@ -255,6 +272,13 @@ struct LabelArguments {
 };
 
 struct RealismArguments {
+  static constexpr const char* kDoc =
+      R"(Try to distinguish simulated from real scans of the same poses.
+
+Gives the AUC of classifiers of patches of 8 x 64 beams, and statistics of both sets of scans.
+simulated, real: paths of sequences or folders of scans of one sensor, at least 8 scans each.
+trajectory: poses of a folder without a poses.csv. Raises ValueError, OSError.)";
+
   RealismJob job;
   WorkOptions work{.has_device = false, .has_seed = true};
 
@@ -271,13 +295,13 @@ struct RealismArguments {
   }
 };
 
-/// Classes of an array of labels: their low 16 bits, as in files of labels.
+/// Classes of an array of labels: the low 16 bits, as in SemanticKITTI's .label files.
 std::vector<std::uint16_t> classes_of(py::handle labels, const char* name) {
   const py::array array = labels.is_none() ? py::array() : py::array::ensure(labels);
   if (labels.is_none() || !array)
     throw py::type_error(std::string(name) +
                          ": expected a path or an array of whole numbers, got " +
-                         std::string(py::str(py::type::of(labels).attr("__name__"))));
+                         type_name(labels));
   const auto count = static_cast<std::size_t>(array.size());
   const std::vector<std::uint32_t> numbers = whole_numbers_of<std::uint32_t>(array, count, name);
   std::vector<std::uint16_t> classes;
@@ -288,6 +312,13 @@ std::vector<std::uint16_t> classes_of(py::handle labels, const char* name) {
 }
 
 struct SegmentationArguments {
+  static constexpr const char* kDoc =
+      R"(Compare predicted classes with the true ones by intersection over union.
+
+predicted, true: paths of sequences, folders, .label files or points with classes; or integer arrays
+(N,) with the class in the low 16 bits. least_share: minimum share of a class among the true points;
+rarer classes do not count in 'miou_present'. Raises TypeError, ValueError, OSError.)";
+
   SegmentationJob job;
   WorkOptions work{.has_device = false};
 
@@ -306,10 +337,10 @@ struct SegmentationArguments {
     }
     if (job.scans != ScanRange())
       throw py::value_error("segmentation(): first_scan, scan_count and scan_stride are for paths");
-    const std::vector<std::uint16_t> has = classes_of(predicted, "predicted");
+    const std::vector<std::uint16_t> found = classes_of(predicted, "predicted");
     const std::vector<std::uint16_t> expected = classes_of(truth, "true");
     return reported(work, [&](Session& session) {
-      return evaluate_segmentation(has, expected, job.labels, job.options, session);
+      return evaluate_segmentation(found, expected, job.labels, job.options, session);
     });
   }
 };
@@ -319,63 +350,16 @@ struct SegmentationArguments {
 void bind_evaluate(py::module_& module) {
   py::module_ evaluate = module.def_submodule(
       "evaluate",
-      "How good models and scans are: dicts with the keys of 'adasplats evaluate --report'.");
-  define<CloudArguments>(
-      evaluate, "c2c", "simulated", "original",
-      "Distances between two clouds (paper: C2C), Chamfer distance, F-scores, completeness.\n\n"
-      "simulated, original: PointCloud or paths. by_class: also class by class, with labels as\n"
-      "label_scheme() takes them; nearest_classes: a simulated point is of the class of the "
-      "nearest\n"
-      "original one, whatever its own (a network's, or none). Raises ValueError, OSError.");
-  define<ResimulateArguments>(
-      evaluate, "resimulate", "model", "sequence",
-      "Cast the measured beams of held-out scans again and compare ranges.\n\n"
-      "model: a Scene or the path of a model. sequence: a SemanticKITTI folder. Ranges in metres.\n"
-      "protocol: 'lidar4d' adds the measures of that publication.\n"
-      "Raises ValueError, OSError.");
-  define<TruthArguments>(
-      evaluate, "truth", "model", "truth",
-      "Cast a sensor's rays into a model and into the true surface and compare.\n\n"
-      "model, truth, trajectory: paths (the model; a mesh; poses). sensor: a name or a file. "
-      "offset:\n"
-      "(3,) m, moves the poses. Raises TypeError, ValueError, OSError.");
-  define<PresenceArguments>(evaluate, "presence", "model", "points",
-                            "Which measured points a model has a surface at.\n\n"
-                            "model, points: paths. within, min_range, max_range: m; the other "
-                            "keywords are those of read().\n"
-                            "Raises ValueError, OSError.");
-  define<EchoArguments>(
-      evaluate, "echoes", "model", "sequence",
-      "Foretold intensities and beams without return against the measured ones.\n\n"
-      "model, sequence, motion: paths. drop: file of 'adasplats fit-drop'. Raises ValueError, "
-      "OSError.");
-  define<UnitArguments>(
-      evaluate, "unit", "model", "scans",
-      "How well a unit of a sensor, as fit_sensor() learned it, foretells other scans.\n\n"
-      "model, scans, motion, trajectory: paths. sensor: file of fit_sensor(). Intensities and lost "
-      "beams.\n"
-      "Raises ValueError, OSError.");
-  define<LabelArguments>(evaluate, "labels", "simulated", "original",
-                         "How many simulated points have the class of the nearest measured one.\n\n"
-                         "simulated, original: SemanticKITTI folders. window: original scans "
-                         "before and after the one\n"
-                         "of the same time. Raises ValueError, OSError.");
-  define<RealismArguments>(
-      evaluate, "realism", "simulated", "real",
-      "Whether simulated scans can be told from real ones of the same poses: AUC of classifiers of "
-      "patches\n"
-      "of 8 x 64 beams, and statistics side by side.\n\n"
-      "simulated, real: paths of sequences or folders of scans of one sensor, at least 8 scans "
-      "each.\n"
-      "trajectory: poses of a folder without a poses.csv. Raises ValueError, OSError.");
-  define<SegmentationArguments>(
-      evaluate, "segmentation", "predicted", "true",
-      "How well predicted classes agree with the true ones, by intersection over union.\n\n"
-      "predicted, true: paths of sequences, trees, .label files or points with classes; or arrays "
-      "(N,) of whole\n"
-      "numbers, the class in the low 16 bits. least_share: rarer classes are left out of "
-      "'miou_present'.\n"
-      "Raises TypeError, ValueError, OSError.");
+      "Metrics of models and scans: dicts with the keys of 'adasplats evaluate --report'.");
+  define<CloudArguments>(evaluate, "c2c", "simulated", "original");
+  define<ResimulateArguments>(evaluate, "resimulate", "model", "sequence");
+  define<TruthArguments>(evaluate, "truth", "model", "truth");
+  define<PresenceArguments>(evaluate, "presence", "model", "points");
+  define<EchoArguments>(evaluate, "echoes", "model", "sequence");
+  define<UnitArguments>(evaluate, "unit", "model", "scans");
+  define<LabelArguments>(evaluate, "labels", "simulated", "original");
+  define<RealismArguments>(evaluate, "realism", "simulated", "real");
+  define<SegmentationArguments>(evaluate, "segmentation", "predicted", "true");
 }
 
 }  // namespace adasplats::python

@@ -9,25 +9,20 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kCastDoc =
-    "Cast rays and find the nearest hits.\n\n"
-    "origins, directions: (N, 3), or (3,) for one that all rays share; world coordinates, metres;\n"
-    "directions of unit length. float32 and float64 arrays with any strides are read where they\n"
-    "are, in blocks: nothing is copied as a whole. Coordinates are made relative to Scene.origin "
-    "in\n"
-    "double; with local they are taken to be so already. Hits count for t_min < t <= t_max (None: "
-    "no\n"
-    "limit). depth: how many hits a ray, nearest first. Rays that are near each other in "
-    "direction\n"
-    "and stand side by side are faster. A ray that is not finite hits nothing.\n"
-    "Raises TypeError (no numbers), ValueError (shapes).";
+constexpr const char* kCastDoc = R"(Cast rays and find the nearest hits.
+
+origins, directions: (N, 3), or (3,) for one that all rays share; world coordinates, m; unit
+vectors. float32 and float64 arrays with any strides are read in blocks without a full copy.
+Coordinates are made relative to Scene.origin in float64; with local, they already are. Hits count
+for t_min < t <= t_max, m (None: no limit). depth: maximum number of hits per ray, nearest first.
+Neighbouring rays of similar directions are faster. A ray that is not finite hits nothing.
+Returns Hits. Raises TypeError (no numbers), ValueError (shapes).)";
 
 constexpr const char* kHitsDoc =
-    "What rays hit, made by Scene.cast(): shapes are (N,), or (N, depth) for a depth above 1. "
-    "ranges\n"
-    "and primitives are read-only strided views without a copy.";
+    R"(Hits of rays, made by Scene.cast(): arrays have shape (N,), or (N, depth) for a depth above 1.
+ranges and primitives are read-only strided views without a copy.)";
 
-/// Rays a block: 4 MB.
+/// Rays per block: 4 MB.
 constexpr std::size_t kBlock = std::size_t{1} << 17;
 constexpr std::size_t kGrain = std::size_t{1} << 13;
 
@@ -37,11 +32,11 @@ struct Hits {
   std::size_t rays = 0;
   std::size_t depth = 1;
 
-  /// (N,) or (N, depth), and more axes behind.
-  std::vector<py::ssize_t> shape(std::vector<py::ssize_t> behind = {}) const {
+  /// (N,) or (N, depth), followed by `last`.
+  std::vector<py::ssize_t> shape(std::vector<py::ssize_t> last = {}) const {
     std::vector<py::ssize_t> all = {static_cast<py::ssize_t>(rays)};
     if (depth > 1) all.push_back(static_cast<py::ssize_t>(depth));
-    all.insert(all.end(), behind.begin(), behind.end());
+    all.insert(all.end(), last.begin(), last.end());
     return all;
   }
 };
@@ -72,7 +67,7 @@ class RayBlocks {
     const bool fits =
         origins_.is_single() || directions_.is_single() || origins_.size() == directions_.size();
     if (!fits)
-      throw py::value_error("origins and directions: expected as many rows, got " +
+      throw py::value_error("origins and directions: expected the same number of rows, got " +
                             std::to_string(origins_.size()) + " and " +
                             std::to_string(directions_.size()));
   }
@@ -121,10 +116,7 @@ void cast_blocks(const RayBlocks& blocks, Hits& out, SceneObject& object,
 
 std::shared_ptr<Hits> cast(const std::shared_ptr<SceneObject>& object, py::handle origins,
                            py::handle directions, const py::kwargs& kwargs) {
-  Keywords keywords("cast", kwargs);
-  CastArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<CastArguments>("cast", kwargs);
   if (arguments.depth < 1 || arguments.depth > kMaxDepth)
     throw py::value_error("depth must be 1 to " + std::to_string(kMaxDepth));
   const RayBlocks blocks(origins, directions, arguments, object->scene->origin());
@@ -189,14 +181,8 @@ py::array normals(const Hits& hits) {
 }  // namespace
 
 void add_casting(SceneClass& type) {
-  const std::string doc = documented(
-      "cast", "self, origins, directions",
-      [](Keywords& keywords) {
-        CastArguments arguments;
-        arguments.take(keywords);
-      },
-      kCastDoc);
-  type.def("cast", &cast, py::arg("origins"), py::arg("directions"), doc.c_str());
+  type.def("cast", &cast, py::arg("origins"), py::arg("directions"),
+           documented<CastArguments>("cast", "self, origins, directions", kCastDoc).c_str());
 }
 
 void bind_hits(py::module_& module) {
@@ -205,15 +191,16 @@ void bind_hits(py::module_& module) {
       .def("__len__", [](const Hits& h) { return h.rays; })
       .def_property_readonly(
           "ranges", [](const py::object& self) { return view_of(self, &Hit::t); },
-          "float32, m; inf where nothing is hit.")
+          "float32, m; inf for rays that hit nothing.")
       .def_property_readonly(
           "primitives", [](const py::object& self) { return view_of(self, &Hit::primitive); },
-          "uint32: number of the splat or triangle; NO_PRIMITIVE where nothing is hit.")
-      .def_property_readonly("valid", &valid, "bool, whether something is hit: a new array.")
-      .def_property_readonly("classes", &classes,
-                             "uint16, 0 where nothing is hit: a new array; None without classes.")
+          "uint32: index of the splat or triangle; NO_PRIMITIVE for rays that hit nothing.")
+      .def_property_readonly("valid", &valid, "bool, whether the ray hits something: a new array.")
+      .def_property_readonly(
+          "classes", &classes,
+          "uint16, 0 for rays that hit nothing: a new array; None without classes.")
       .def_property_readonly("normals", &normals,
-                             "(..., 3) float32, NaN where nothing is hit: a new array.");
+                             "(..., 3) float32, NaN for rays that hit nothing: a new array.");
 }
 
 }  // namespace adasplats::python

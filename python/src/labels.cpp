@@ -24,7 +24,7 @@ const char* word_of(Mobility mobility) {
   return "";
 }
 
-/// One value a class.
+/// One value per class.
 template <class F>
 py::list of_classes(const LabelScheme& scheme, F&& f) {
   py::list values;
@@ -56,7 +56,7 @@ const SemanticClass& class_of_name(const LabelScheme& scheme, const std::string&
 using ClassFields = std::tuple<std::uint16_t, std::string, int, int, std::array<std::uint8_t, 3>>;
 constexpr const char* kPickled = "adasplats.LabelScheme";
 
-/// A scheme has no state without classes, so it is made whole.
+/// A scheme cannot be empty, so all fields are read before it is made.
 py::object pickle_of(const LabelScheme& scheme) {
   std::vector<ClassFields> classes;
   for (const SemanticClass& c : scheme.classes())
@@ -84,9 +84,9 @@ std::shared_ptr<LabelScheme> scheme_of_pickle(const py::object& pickle) {
 
 void bind_labels(py::module_& module) {
   py::class_<LabelScheme, std::shared_ptr<LabelScheme>> type(
-      module, "LabelScheme", "What the numbers of classes mean; made by label_scheme().");
-  type.def_property_readonly("name", &LabelScheme::name, "Of the scheme.")
-      .def_property_readonly("ids", &ids, "(C,) uint16, ascending: the numbers of the classes.")
+      module, "LabelScheme", "Names and properties of semantic classes, made by label_scheme().");
+  type.def_property_readonly("name", &LabelScheme::name, "Name of the scheme.")
+      .def_property_readonly("ids", &ids, "(C,) uint16, ids of the classes, ascending.")
       .def_property_readonly(
           "names",
           [](const LabelScheme& s) {
@@ -100,14 +100,14 @@ void bind_labels(py::module_& module) {
               return py::str(std::string(adasplats::name_of(c.group)));
             });
           },
-          "ground, surface, linear or non-surface, in the order of ids.")
+          "'ground', 'surface', 'linear' or 'non-surface', in the order of ids.")
       .def_property_readonly(
           "mobilities",
           [](const LabelScheme& s) {
             return of_classes(s,
                               [](const SemanticClass& c) { return py::str(word_of(c.mobility)); });
           },
-          "fixed, movable or moving, in the order of ids.")
+          "'fixed', 'movable' or 'moving', in the order of ids.")
       .def_property_readonly("colors", &colors, "(C, 3) uint8, RGB, in the order of ids.")
       .def("__len__", [](const LabelScheme& s) { return s.classes().size(); })
       .def("__repr__",
@@ -119,7 +119,7 @@ void bind_labels(py::module_& module) {
           "id_of",
           [](const LabelScheme& s, const std::string& name) { return class_of_name(s, name).id; },
           py::arg("name"),
-          documented("id_of", "self, name", "The number of a class. Raises KeyError.").c_str());
+          documented("id_of", "self, name", "The id of a class. Raises KeyError.").c_str());
   type.def(py::pickle(&pickle_of, &scheme_of_pickle));
   module.def(
       "label_scheme",
@@ -128,9 +128,10 @@ void bind_labels(py::module_& module) {
             load_label_scheme(path_of(name_or_path, "name_or_path").string()));
       },
       py::arg("name_or_path"),
-      documented("label_scheme", "name_or_path",
-                 "'semantickitti', 'paris-carla-3d' or the path of a TOML file (docs/formats.md).\n"
-                 "Raises FileNotFoundError, ValueError.")
+      documented(
+          "label_scheme", "name_or_path",
+          "Load a label scheme: 'semantickitti', 'paris-carla-3d' or the path of a TOML file\n"
+          "(docs/formats.md). Raises TypeError, FileNotFoundError, ValueError.")
           .c_str());
 }
 

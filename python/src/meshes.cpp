@@ -29,17 +29,15 @@ void fields(Archive& archive, MeshModel& model) {
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kMeshesDoc =
-    "A place as triangles.\n\n"
-    "vertices: (V, 3), world coordinates, m. triangles: (T, 3) of vertex numbers. classes: (T,) "
-    "of\n"
-    "0 to 65535. labels: a name or file as label_scheme() takes them. origin: as of PointCloud. "
-    "The\n"
-    "arrays are read-only views without a copy. Raises TypeError, ValueError.";
+constexpr const char* kMeshesDoc = R"(A scene as triangles.
+
+vertices: (V, 3), world coordinates, m. triangles: (T, 3) integers, vertex indices. classes: (T,)
+integers from 0 to 65535. labels: a name or file as in label_scheme(). origin: as in PointCloud.
+Arrays are read-only views without a copy. Raises TypeError, ValueError.)";
 
 std::vector<std::array<std::uint32_t, 3>> triangles_of(py::handle value, std::size_t vertices) {
   const py::array flat = py::array::ensure(value);
-  if (!flat) throw py::type_error("triangles: expected an array of whole numbers");
+  if (!flat) throw py::type_error("triangles: expected an array of integers");
   if (flat.size() > 0 && (flat.ndim() != 2 || flat.shape(1) != 3))
     throw py::value_error("triangles: expected shape (T, 3)");
   const auto count = static_cast<std::size_t>(flat.size());
@@ -96,14 +94,16 @@ void bind_meshes(py::module_& module) {
   type.def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("labels") = py::none(),
            py::arg("origin") = py::none(), init_doc.c_str())
-      .def_static("load", &load_mesh_object, py::arg("path"),
-                  documented("load", "path",
-                             "Read a PLY, OBJ or glTF 2.0. Raises FileNotFoundError, ValueError.")
-                      .c_str())
+      .def_static(
+          "load", &load_mesh_object, py::arg("path"),
+          documented(
+              "load", "path",
+              "Read a PLY, OBJ or glTF 2.0. Raises TypeError, FileNotFoundError,\nValueError.")
+              .c_str())
       .def("save", &save_mesh, py::arg("path"),
-           documented(
-               "save", "self, path",
-               "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")
+           documented("save", "self, path",
+                      "Write a .ply; no partial file remains after an error.\n"
+                      "Raises TypeError, OSError, ValueError (another extension).")
                .c_str())
       .def("__len__", &MeshModel::size)
       .def("__repr__",
@@ -116,7 +116,7 @@ void bind_meshes(py::module_& module) {
             return array_view(self.cast<const MeshModel&>().mesh.vertices, self);
           },
           "(V, 3) float32, m, relative to origin.")
-      .def_property_readonly("triangles", &triangle_view, "(T, 3) uint32, vertex numbers.")
+      .def_property_readonly("triangles", &triangle_view, "(T, 3) uint32, vertex indices.")
       .def_property_readonly(
           "classes",
           [](const py::object& self) {
@@ -128,7 +128,7 @@ void bind_meshes(py::module_& module) {
           "origin", [](const MeshModel& m) { return array_of(m.origin); },
           "(3,) float64, world coordinates of the local origin, m.")
       .def_readonly("labels", &MeshModel::label_scheme,
-                    "Name or path of the label scheme; empty where there is none.");
+                    "Name or path of the label scheme; empty: none.");
   add_crs(type, [](const MeshModel& m) -> const Crs& { return m.crs; });
   add_pickling<MeshModel>(type, "Mesh");
 }

@@ -69,45 +69,41 @@ void fields(Archive& archive, ModelObject& object) {
 
 namespace {
 
-constexpr const char* kModelDoc =
-    "Make a model of splats from points.\n\n"
-    "points: a PointCloud, or a path or paths as read() takes them (which needs less memory, as\n"
-    "nothing is kept twice). labels: a name or a file as label_scheme() takes them, for the "
-    "method\n"
-    "'semantic' and for removing what moves; sequence folders have 'semantickitti' by default. "
-    "segment:\n"
-    "a network gives the points classes of SemanticKITTI, in place of labels that they have;\n"
-    "network: its file, else the one that comes with adasplats. The\n"
-    "other keywords are the options of 'adasplats model' by name; lengths in metres. Scales are\n"
-    "three factors, on neighbours, radius and error bound. device: 'auto', 'cpu', 'cuda'. "
-    "progress:\n"
-    "a function of (step: str, done: int, total: int), 0 where the total is not known.\n"
-    "The result depends on the set of points alone, not on order or threads; Model.report tells "
-    "what\n"
-    "was done. Raises ValueError, OSError, RuntimeError (a GPU that is not there, segment without\n"
-    "OpenBLAS).";
+constexpr const char* kModelDoc = R"(Make a splat model from points.
 
-constexpr const char* kModelsClassDoc =
-    "A place as oriented disks.\n\n"
-    "centers: (N, 3), world coordinates, m. normals: (N, 3), of unit length. radii: (N,), m, > 0.\n"
-    "classes: (N,) of 0 to 65535. intensities: (N,). labels: a name or file as label_scheme() "
-    "takes\n"
-    "them. origin: as of PointCloud. The arrays are read-only views without a copy (centers, "
-    "normals\n"
-    "and radii are strided). Raises TypeError, ValueError.";
+points: a PointCloud, or a path or paths as in read() (these need less memory). labels: a name or a
+file as in label_scheme(), for the method 'semantic' and for removing movable objects; sequence
+folders have 'semantickitti' by default. segment: a network predicts classes of SemanticKITTI and
+replaces existing labels; network: its file; None: the one that comes with adasplats. The other
+keywords are the options of 'adasplats model'; lengths are in metres. Scales: (3,) factors of
+neighbours, radius and error bound. device: 'auto', 'cpu', 'cuda'. progress: a function of (step:
+str, done: int, total: int); total is 0 if unknown. The result depends only on the set of points,
+not on their order or the number of threads. Model.report holds the report. Raises TypeError,
+ValueError, OSError, RuntimeError (the GPU is missing; segment without OpenBLAS).)";
 
-/// Loading has words of its own; `load` is for paths alone.
-void take_model(Keywords& keywords, ModelJob& job, MethodChoice& recipe, WorkOptions& work) {
-  keywords.take("labels", job.labels);
-  take_settings(keywords, job.segment);
-  take_settings(keywords, recipe);
-  keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
-  keywords.take("reflectance", job.build.reflectances);
-  take_settings(keywords, job.calibration);
-  take_load_options(keywords, job.load);
-  work.has_seed = true;
-  work.take(keywords);
-}
+constexpr const char* kModelsClassDoc = R"(A scene as oriented disks (splats).
+
+centers: (N, 3), world coordinates, m. normals: (N, 3), unit vectors. radii: (N,), m, > 0. classes:
+(N,) integers from 0 to 65535. intensities: (N,), NaN if unknown. labels: a name or file as in
+label_scheme(). origin: as in PointCloud. Arrays are read-only views without a copy (centers,
+normals and radii are strided). Raises TypeError, ValueError.)";
+
+struct ModelArguments {
+  ModelJob job;
+  MethodChoice method;
+  WorkOptions work{.has_seed = true};
+
+  void take(Keywords& keywords) {
+    keywords.take("labels", job.labels);
+    take_settings(keywords, job.segment);
+    take_settings(keywords, method);
+    keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
+    keywords.take("reflectance", job.build.reflectances);
+    take_settings(keywords, job.calibration);
+    take_load_options(keywords, job.load);
+    work.take(keywords);
+  }
+};
 
 std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made) {
   auto object = std::make_shared<ModelObject>();
@@ -117,22 +113,18 @@ std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made)
 }
 
 std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) {
-  Keywords keywords("model", kwargs);
-  ModelJob job;
-  WorkOptions options;
-  MethodChoice recipe;
-  take_model(keywords, job, recipe, options);
-  keywords.finish();
-  refuse_unused(unused_settings(recipe), kwargs);
-  refuse_unused(unused_settings(job.segment), kwargs);
-  job.build.recipe = recipe.recipe();
+  auto arguments = arguments_of<ModelArguments>("model", kwargs);
+  ModelJob& job = arguments.job;
+  reject_unused(unused_settings(arguments.method), kwargs);
+  reject_unused(unused_settings(job.segment), kwargs);
+  job.build.recipe = arguments.method.recipe();
   job.removal_is_asked = kwargs.contains("remove");
   job.build.trust_origins = job.load.trust_origins;
   const bool in_memory = py::isinstance<PointCloud>(points);
   if (!in_memory) job.inputs = paths_of(points, "points", "a PointCloud, ");
   const auto cloud =
       in_memory ? points.cast<std::shared_ptr<PointCloud>>() : std::shared_ptr<PointCloud>();
-  Work work(options);
+  Work work(arguments.work);
   return finished(work.run([&](Session& session) {
     return in_memory ? make_model(*cloud, job, session) : make_model(job, session);
   }));
@@ -245,7 +237,7 @@ void add_arrays(ModelClass& type) {
             const SplatModel& model = model_of(self);
             return vectors_view(&first_disk(model)->normal, model.size(), sizeof(Disk), self);
           },
-          "(N, 3) float32, of unit length.")
+          "(N, 3) float32, unit vectors.")
       .def_property_readonly(
           "radii",
           [](const py::object& self) {
@@ -268,29 +260,32 @@ void add_arrays(ModelClass& type) {
           [](const py::object& self) {
             return optional_view(model_of(self).intensities, model_of(self).size(), self);
           },
-          "(N,) float32: reflectances where there is a response, else as measured; or None.");
+          "(N,) float32: reflectances if there is a response, else as measured; or None.");
 }
 
 void add_properties(ModelClass& type) {
   type.def_property_readonly(
           "origin", [](const ModelObject& o) { return array_of(o.model.origin); },
           "(3,) float64, world coordinates of the local origin, m.")
-      .def_property_readonly("bounds", &world_bounds,
-                             "(2, 3) float64: least and greatest world coordinates of the disks.")
+      .def_property_readonly(
+          "bounds", &world_bounds,
+          "(2, 3) float64: minimum and maximum world coordinates of the disks, m.")
       .def_property_readonly(
           "labels", [](const ModelObject& o) { return o.model.label_scheme; },
-          "Name or path of the label scheme; empty where there is none.")
+          "Name or path of the label scheme; empty: none.")
       .def_property_readonly(
           "network_sha256", [](const ModelObject& o) { return o.model.network_sha256; },
-          "SHA-256 of the file of the network that gave the points classes; empty: none did.")
+          "SHA-256 of the file of the network that predicted the classes; empty: none.")
       .def_property_readonly(
-          "method", [](const ModelObject& o) { return o.model.method; }, "How it was made.")
-      .def_property_readonly("response", &response,
-                             "How intensity depends on range and incidence: a dict of arrays "
-                             "ranges_m, range_gains, cos_incidences, incidence_gains; or None.")
+          "method", [](const ModelObject& o) { return o.model.method; },
+          "The method that made the model.")
+      .def_property_readonly(
+          "response", &response,
+          "Intensity as a function of range and incidence: a dict of float32 arrays "
+          "ranges_m, range_gains, cos_incidences, incidence_gains; or None.")
       .def_property_readonly(
           "report", [](const ModelObject& o) { return o.report; },
-          "What model() did, with the keys of 'adasplats model --report'; None if loaded.");
+          "Report of model(), with the keys of 'adasplats model --report'; None if loaded.");
 }
 
 }  // namespace
@@ -311,28 +306,20 @@ void bind_models(py::module_& module) {
   });
   type.def_static("load", &load_model_object, py::arg("path"),
                   documented("load", "path",
-                             "Read a PLY of splats: x y z nx ny nz radius and what else it has.\n"
-                             "Raises FileNotFoundError, ValueError.")
+                             "Read a PLY of splats: x y z nx ny nz radius and optional columns.\n"
+                             "Raises TypeError, FileNotFoundError, ValueError.")
                       .c_str());
-  type.def(
-      "save", &save_model, py::arg("path"),
-      documented("save", "self, path",
-                 "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")
-          .c_str());
+  type.def("save", &save_model, py::arg("path"),
+           documented("save", "self, path",
+                      "Write a .ply; no partial file remains after an error.\n"
+                      "Raises TypeError, OSError, ValueError (another extension).")
+               .c_str());
   add_arrays(type);
   add_properties(type);
   add_crs(type, [](const ModelObject& o) -> const Crs& { return o.model.crs; });
   add_pickling<ModelObject>(type, "Model");
-  const std::string doc = documented(
-      "model", "points",
-      [](Keywords& keywords) {
-        ModelJob job;
-        WorkOptions work;
-        MethodChoice recipe;
-        take_model(keywords, job, recipe, work);
-      },
-      kModelDoc);
-  module.def("model", &model, py::arg("points"), doc.c_str());
+  module.def("model", &model, py::arg("points"),
+             documented<ModelArguments>("model", "points", kModelDoc).c_str());
 }
 
 }  // namespace adasplats::python

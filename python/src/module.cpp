@@ -3,7 +3,7 @@
 #include "bindings.h"
 
 #ifndef ADASPLATS_VERSION
-#error "the build tells the version"
+#error "ADASPLATS_VERSION is not defined"
 #endif
 
 // NOLINTNEXTLINE(bugprone-exception-escape): pybind11 makes it an ImportError
@@ -11,7 +11,7 @@ PYBIND11_MODULE(_adasplats, module) {
   namespace py = pybind11;
   namespace bindings = adasplats::python;
   py::options options;
-  options.disable_function_signatures();  // docstrings begin with their own
+  options.disable_function_signatures();  // docstrings contain them
   module.attr("__version__") = ADASPLATS_VERSION;
   bindings::bind_errors(module);
   bindings::bind_devices(module);
@@ -29,6 +29,6 @@ PYBIND11_MODULE(_adasplats, module) {
   bindings::bind_networks(module);
   bindings::bind_evaluate(module);
   bindings::bind_synth(module);
-  bindings::bind_recipes(module);
+  bindings::bind_jobs(module);
   bindings::explain_wrong_arguments(module);
 }

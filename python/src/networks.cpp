@@ -57,9 +57,9 @@ py::array logits_of(const Network& network, py::handle points, py::handle featur
 void bind_networks(py::module_& module) {
   py::class_<Network, std::shared_ptr<Network>> type(
       module, "Network",
-      "A network that gives points semantic classes.\n\n"
-      "file: of tools/segmentation/export.py; None: the one that comes with adasplats. Raises\n"
-      "FileNotFoundError, DataError.");
+      "A network that predicts semantic classes of points.\n\n"
+      "file: written by tools/segmentation/export.py; None: the one that comes with adasplats.\n"
+      "Raises TypeError, FileNotFoundError, DataError.");
   type.def(py::init([](const py::object& file) {
              return std::make_shared<Network>(file.is_none() ? default_network()
                                                              : read_network(path_of(file, "file")));
@@ -68,13 +68,13 @@ void bind_networks(py::module_& module) {
            documented("__init__", "self, file=None", "See the class.").c_str());
   type.def_property_readonly(
           "classes", [](const Network& network) { return network.classes; },
-          "Names of what it tells apart.")
+          "Names of the classes that it distinguishes.")
       .def_property_readonly(
           "card", [](const Network& network) { return network.card; },
-          "What it was made of, and for what.")
+          "Model card: its training data and its purpose.")
       .def_property_readonly(
           "cell_m", [](const Network& network) { return network.shape.cell_m; },
-          "Side of the cells whose means it sees, m.")
+          "Side of the cells; the input points are the means of cells, m.")
       .def("__repr__",
            [](const Network& network) {
              return "<adasplats.Network of " + std::to_string(network.classes.size()) + " classes>";
@@ -82,10 +82,10 @@ void bind_networks(py::module_& module) {
       .def("logits", &logits_of, py::arg("points"), py::arg("features"), py::kw_only(),
            py::arg("threads") = 0,
            documented("logits", "self, points, features, *, threads=0",
-                      "What the network says of points, before the softmax: (N, C) float32.\n\n"
-                      "points: (N, 3), the means of cells of cell_m. features: (N, F), as the\n"
-                      "network's file lists them. For checks of networks against PyTorch.\n"
-                      "Raises ValueError, UnavailableError (built without OpenBLAS).")
+                      "Output of the network before the softmax: (N, C) float32.\n\n"
+                      "points: (N, 3), m, the means of cells of cell_m. features: (N, F), in the\n"
+                      "order of the network file. To check networks against PyTorch. Raises\n"
+                      "TypeError, ValueError, UnavailableError (built without OpenBLAS).")
                .c_str());
 }
 

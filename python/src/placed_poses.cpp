@@ -12,28 +12,29 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kPosesAtDoc =
-    "Poses at places, level, 0.1 s apart: a Trajectory for simulate().\n\n"
-    "places: (N, 2), (N, 3) or (N, 4): x, y[, z[, yaw]] in world coordinates, m and degrees; a z\n"
-    "that is missing or NaN is height above the ground of the scene there (docs/formats.md).\n"
-    "Raises ValueError (no ground at a place).";
+    R"(Make level poses at positions, 0.1 s apart: a Trajectory for simulate().
+
+places: (N, 2), (N, 3) or (N, 4): x, y[, z[, yaw]] in world coordinates, m and degrees. If z is
+missing or NaN, the pose is height (m) above the ground of the scene (docs/formats.md).
+Raises TypeError, ValueError (no ground at a position).)";
 
 constexpr const char* kPosesOnPathDoc =
-    "Poses along straight lines from corner to corner, level, height above the ground of the\n"
-    "scene, looking ahead: a Trajectory for simulate().\n\n"
-    "corners: (N, 2) x, y in world coordinates, m. speed: m/s; rate: poses a second; spacing: m\n"
-    "from pose to pose instead. Raises ValueError (no ground at a place).";
+    R"(Make level poses along a polyline above the ground, facing ahead: a Trajectory for simulate().
 
-/// Numbers in rows of `least` to `most`, at least one row. Errors: TypeError, ValueError.
-py::array_t<double> rows_of(py::handle value, const char* name, py::ssize_t least,
-                            py::ssize_t most) {
+corners: (N, 2) x, y in world coordinates, m. height: above the ground of the scene, m. speed: m/s.
+rate: poses per second. spacing: distance between poses, m, in place of rate.
+Raises TypeError, ValueError (no ground at a pose).)";
+
+/// At least one row of `min` to `max` numbers. Errors: TypeError, ValueError.
+py::array_t<double> rows_of(py::handle value, const char* name, py::ssize_t min, py::ssize_t max) {
   const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
   if (!rows) {
     PyErr_Clear();
     throw py::type_error(std::string(name) + ": expected an array of numbers");
   }
-  if (rows.ndim() != 2 || rows.shape(0) == 0 || rows.shape(1) < least || rows.shape(1) > most)
-    throw py::value_error(std::string(name) + ": expected shape (N, " + std::to_string(least) +
-                          (least == most ? ")" : ") to (N, " + std::to_string(most) + ")"));
+  if (rows.ndim() != 2 || rows.shape(0) == 0 || rows.shape(1) < min || rows.shape(1) > max)
+    throw py::value_error(std::string(name) + ": expected shape (N, " + std::to_string(min) +
+                          (min == max ? ")" : ") to (N, " + std::to_string(max) + ")"));
   return rows;
 }
 
@@ -84,7 +85,7 @@ py::object poses_on_corners(const std::shared_ptr<SceneObject>& object, py::hand
 
 }  // namespace
 
-void add_places(SceneClass& type) {
+void add_placed_poses(SceneClass& type) {
   type.def("poses_at", &poses_at_places, py::arg("places"), py::kw_only(),
            py::arg("height") = kRoofHeight_m,
            documented("poses_at", "self, places, *, height=1.73", kPosesAtDoc).c_str())

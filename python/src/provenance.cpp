@@ -13,10 +13,11 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kProvenanceDoc =
-    "Where figures measured by this process come from, as every --report tells it: a dict\n"
-    "version, commit and dirty (of the sources the module was built from; None: unknown), date\n"
-    "(UTC), command, machine (cpu, cores, memory_bytes, system, compiler) and device.\n"
-    "threads is what the work used; 0: all.";
+    R"(Describe the build and machine of this process, as every --report does.
+
+Returns a dict with version, commit and dirty (of the sources that the module was built from; None:
+unknown), date (UTC), command, machine (cpu, cores, memory_bytes, system, compiler) and device.
+threads: number of threads that the work used; 0: all.)";
 
 }  // namespace
 

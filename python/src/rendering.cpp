@@ -8,16 +8,15 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kRenderingDoc =
-    "A picture of the scene: (height, width, 3) uint8, RGB, rows from the top.\n\n"
-    "eye, target: (3,) world coordinates, m; without target the middle of the scene, without eye\n"
-    "from above, from the side that shows most. birds_eye: straight down, north up. trajectory (a "
-    "path) and pose:\n"
-    "ahead from a pose of it. fov: horizontal, degrees; None: 45 from afar, else 70. color:\n"
-    "'semantic', 'shading', 'normal', 'intensity', 'range', 'height', or 'auto' for semantic "
-    "where\n"
-    "most of the model has it, else intensity, else height. samples: rays a pixel, the square of\n"
-    "this. relief: corners and gaps are dark, splats run into each other; without it every sample\n"
-    "has its own colour alone. Raises TypeError, ValueError, OSError.";
+    R"(Render a picture of the scene: (height, width, 3) uint8, RGB, top row first.
+
+eye, target: (3,) world coordinates, m. target: None for the middle of the scene. eye: None for a
+point above, on the side that shows most. birds_eye: look straight down, north up. trajectory (a
+path) and pose (its index): look ahead from a pose. width, height: pixels. fov: horizontal, degrees;
+None: 45 from outside the scene, else 70. color: 'semantic', 'shading', 'normal', 'intensity',
+'range', 'height', or 'auto': semantic if most of the model has classes, else intensity, else
+height. samples: rays per pixel and axis, 1 to 64. relief: darken corners and gaps and blend
+splats; False: every sample has only its own colour. Raises TypeError, ValueError, OSError.)";
 
 using Color = std::optional<ImageColor>;
 constexpr std::pair<std::string_view, Color> kColors[] = {{"auto", std::nullopt},
@@ -52,10 +51,7 @@ struct RenderArguments {
 };
 
 py::array render(SceneObject& object, const py::kwargs& kwargs) {
-  Keywords keywords("render", kwargs);
-  RenderArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<RenderArguments>("render", kwargs);
   if (arguments.samples < 1 || arguments.samples > 64)
     throw py::value_error("samples must be 1 to 64");
   check(arguments.view);
@@ -76,14 +72,7 @@ py::array render(SceneObject& object, const py::kwargs& kwargs) {
 }  // namespace
 
 void add_rendering(SceneClass& type) {
-  const std::string doc = documented(
-      "render", "self",
-      [](Keywords& keywords) {
-        RenderArguments arguments;
-        arguments.take(keywords);
-      },
-      kRenderingDoc);
-  type.def("render", &render, doc.c_str());
+  type.def("render", &render, documented<RenderArguments>("render", "self", kRenderingDoc).c_str());
 }
 
 }  // namespace adasplats::python

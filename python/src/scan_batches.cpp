@@ -22,19 +22,17 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kBatchesDoc =
-    "As simulate(), in batches without a copy, made in a thread of their own while one "
-    "iterates.\n\n"
-    "fields: names of the attributes of ScanBatch that are wanted; None: all. on_device: leave "
-    "them\n"
-    "in GPU memory. On a GPU a batch has as many scans as a launch; on the CPU one. Results are\n"
-    "simulate()'s. Raises RuntimeError where on_device is asked for and the scene is on the CPU.";
+    R"(As simulate(), but an iterator of batches without copies, made in a background thread.
+
+fields: names of the attributes of ScanBatch to compute; None: all. on_device: leave the arrays in
+GPU memory. On a GPU a batch has as many scans as a launch; on the CPU it has one. The scans are the
+same as those of simulate(). Raises TypeError, ValueError, OSError, RuntimeError (on_device with a
+scene on the CPU).)";
 
 constexpr const char* kBatchDoc =
-    "Scans whose returns stand one behind the other, made by Scene.scan_batches(): those of scan "
-    "i\n"
-    "are [offsets[i], offsets[i + 1]). Arrays are read-only views, or in GPU memory DeviceArrays "
-    "for\n"
-    "DLPack (torch.from_dlpack); what was not asked for, or the scene has none of, is None.";
+    R"(Scans in consecutive arrays, made by Scene.scan_batches(): scan i has the returns offsets[i] to
+offsets[i + 1] - 1. Arrays are read-only views, or DeviceArrays in GPU memory for DLPack
+(torch.from_dlpack); attributes that were not requested or that the scene lacks are None.)";
 
 /// A batch with the scene whose GPU may hold it. May be freed without the GIL.
 struct BatchObject {
@@ -43,10 +41,10 @@ struct BatchObject {
 };
 using Batch = std::shared_ptr<BatchObject>;
 
-/// Ends a run that nobody takes batches from any more.
+/// Thrown to end the thread of an iterator that was deleted.
 struct Abandoned {};
 
-/// Makes batches in a thread, two ahead of who takes them.
+/// Makes batches in a thread, up to two in advance.
 class BatchStream {
  public:
   BatchStream(std::shared_ptr<SceneObject> scene, ScanSettings settings,
@@ -68,7 +66,7 @@ class BatchStream {
   BatchStream(const BatchStream&) = delete;
   BatchStream& operator=(const BatchStream&) = delete;
 
-  /// Null: there are no more. Errors: what ended the run.
+  /// Null: the end. Errors: those of the simulation.
   Batch next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !made_.empty() || ended_; });
@@ -124,10 +122,10 @@ class BatchStream {
   std::exception_ptr error_;
   bool ended_ = false;
   bool abandoned_ = false;
-  std::thread thread_;  ///< the last: it uses all others
+  std::thread thread_;  ///< last, because it uses all other members
 };
 
-/// What Python iterates over; forgets the stream at its end.
+/// The iterator in Python; frees the stream at its end.
 struct BatchIterator {
   std::unique_ptr<BatchStream> stream;
   PythonProgress progress;
@@ -184,10 +182,7 @@ std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& 
                                             py::handle sensor, py::handle poses,
                                             const py::kwargs& kwargs) {
   object->require_own_process();
-  Keywords keywords("scan_batches", kwargs);
-  BatchArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<BatchArguments>("scan_batches", kwargs);
   ScanSettings settings =
       arguments.simulate.scan.settings_of(sensor_of(sensor), arguments.simulate.seed);
   settings.fields = fields_of(arguments.fields);
@@ -201,7 +196,7 @@ std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& 
   return iterator;
 }
 
-/// Numbers of one value, and how many: positions have three.
+/// Element type and number of components of a value.
 template <class T>
 struct Component {
   using type = T;
@@ -246,7 +241,7 @@ py::object array_of_batch(const Batch& batch, const T* values) {
     return array_view(std::span<const T>(values, batch->batch.returns()), owner);
 }
 
-/// (scans, length[, 3]) with the first `length` returns of each scan, zeros behind them.
+/// (scans, length[, 3]) with the first `length` returns of each scan, followed by zeros.
 template <class T>
 py::array padded_array(const ScanBatch& batch, const T* values, std::size_t length) {
   using Value = typename Component<T>::type;
@@ -283,7 +278,7 @@ void bind_batch(SceneClass& type) {
   batch.def("__len__", [](const BatchObject& self) { return self.batch.scans(); })
       .def_property_readonly(
           "first", [](const BatchObject& self) { return self.batch.first; },
-          "Its first scan is that of poses[first].")
+          "Index in poses of its first scan.")
       .def_property_readonly(
           "offsets",
           [](const BatchObject& self) {
@@ -291,23 +286,25 @@ void bind_batch(SceneClass& type) {
                 std::vector<std::int64_t>(self.batch.offsets.begin(), self.batch.offsets.end()),
                 {static_cast<py::ssize_t>(self.batch.offsets.size())});
           },
-          "(scans + 1,) int64.")
+          "(scans + 1,) int64, index of the first return of each scan.")
       .def_property_readonly(
           "positions",
           [](const Batch& self) { return array_of_batch(self, self->batch.arrays.positions); },
           "(N, 3) float32, m, in the sensor's frame; or None.")
-      .def(
-          "padded", &padded, py::arg("name"), py::arg("length"),
-          documented("padded", "self, name, length",
-                     "(scans, length) or (scans, length, 3): the first returns of each scan, zeros "
-                     "behind them;\na new array. Raises ValueError for batches in GPU memory.")
-              .c_str());
+      .def("padded", &padded, py::arg("name"), py::arg("length"),
+           documented(
+               "padded", "self, name, length",
+               "A new array (scans, length) or (scans, length, 3) of the attribute: the first "
+               "returns\nof each scan, followed by zeros. Raises ValueError (no such attribute; "
+               "GPU memory).")
+               .c_str());
   for_each_scan_attribute([&](const auto& attribute) {
     const auto of = attribute.of;
+    using Value = std::remove_cvref_t<decltype(*of(std::declval<const ReturnArrays&>()))>;
     batch.def_property_readonly(
         attribute.name,
         [of](const Batch& self) { return array_of_batch(self, of(self->batch.arrays)); },
-        (std::string("(N,), ") + attribute.about + "; or None.").c_str());
+        (shape_and_type<Value>() + attribute.about + "; or None.").c_str());
   });
 }
 
@@ -315,17 +312,11 @@ void bind_batch(SceneClass& type) {
 
 void add_scan_batches(SceneClass& type) {
   bind_batch(type);
-  py::class_<BatchIterator>(type, "BatchIterator", "Gives the batches of Scene.scan_batches().")
+  py::class_<BatchIterator>(type, "BatchIterator", "Iterator of Scene.scan_batches().")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &BatchIterator::next);
-  const std::string doc = documented(
-      "scan_batches", "self, sensor, poses",
-      [](Keywords& keywords) {
-        BatchArguments arguments;
-        arguments.take(keywords);
-      },
-      kBatchesDoc);
-  type.def("scan_batches", &scan_batches, py::arg("sensor"), py::arg("poses"), doc.c_str());
+  type.def("scan_batches", &scan_batches, py::arg("sensor"), py::arg("poses"),
+           documented<BatchArguments>("scan_batches", "self, sensor, poses", kBatchesDoc).c_str());
 }
 
 }  // namespace adasplats::python

@@ -30,7 +30,7 @@ void fields(Archive& archive, Scan& scan) {
 
 namespace adasplats::python {
 
-/// The scans and the labels are objects of Python's, which pickle themselves.
+/// The scans and the labels are Python objects, which pickle themselves.
 static void fields(FieldWriter& archive, ScanList& list) {
   py::object scans = py::cast(list.scans);
   py::object labels = py::none();
@@ -53,18 +53,17 @@ static void fields(FieldReader& archive, ScanList& list) {
 namespace {
 
 constexpr const char* kScanDoc =
-    "The returns of one revolution of a LiDAR, in the order of its firings. Arrays are read-only\n"
-    "views without a copy; what the scene has none of is None.";
+    R"(The returns of one revolution of a LiDAR, in firing order. Arrays are read-only views without a copy;
+attributes that the scene lacks are None.)";
 
-constexpr const char* kSaveDoc =
-    "Write the scans into a folder, which is made where it is not there.\n\n"
-    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las', 'laz',\n"
-    "'range-image', 'mcap' (FOLDER/scans.mcap), 'kitti-raw', 'pandaset' or\n"
-    "'nuscenes': docs/formats.md.\n"
-    "point_order, of trees of data sets: 'kitti', as their own files, or 'firing', as here.\n"
-    "Raises OSError, ValueError.";
+constexpr const char* kSaveDoc = R"(Write the scans into a folder, which is created if missing.
 
-/// An attribute of every scan, or one that a scan may lack.
+format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las', 'laz',
+'range-image', 'mcap' (FOLDER/scans.mcap), 'kitti-raw', 'pandaset' or 'nuscenes': docs/formats.md.
+point_order (formats of data sets): 'kitti', as in their own files, or 'firing', as in Scan.
+Raises TypeError, OSError, ValueError.)";
+
+/// Adds a property for an attribute, None if a scan lacks it.
 template <class Attribute>
 void bind_attribute(py::class_<Scan, std::shared_ptr<Scan>>& type, const Attribute& attribute) {
   const auto of = attribute.of;
@@ -87,22 +86,18 @@ void bind_scan(py::module_& module) {
            [](const Scan& scan) {
              return "<adasplats.Scan of " + std::to_string(scan.size()) + " points>";
            })
-      .def_property_readonly(
-          "positions",
-          [](const py::object& self) {
-            return array_view(self.cast<const Scan&>().positions, self);
-          },
-          "(N, 3) float32, m, in the sensor's frame.")
+      .def_property_readonly("positions", view_getter(&Scan::positions),
+                             "(N, 3) float32, m, in the sensor's frame.")
       .def_property_readonly(
           "pose", [](const Scan& scan) { return matrix_of(scan.world_from_sensor); },
           "(4, 4) float64, world_from_sensor.")
       .def_readonly("time", &Scan::time_s,
-                    "Of the pose, s; the middle of the revolution, where the sensor moved.")
+                    "Time of the pose, s: the middle of the revolution if the sensor moves.")
       .def_property_readonly(
           "begin", [](const Scan& scan) { return ScanView(scan).begin_s(); },
-          "When the revolution began, s, which times count from; of a sensor that stood still,\n"
-          "whose points have no motion to take out, the same as time.")
-      .def_readonly("rays", &Scan::rays, "How many firings the revolution had.");
+          "Start of the revolution, s: the zero of times. The same as time if the sensor does\n"
+          "not move.")
+      .def_readonly("rays", &Scan::rays, "Number of firings in the revolution.");
   for_each_scan_attribute([&](const auto& attribute) { bind_attribute(type, attribute); });
   add_pickling<Scan>(type, "Scan");
 }
@@ -110,7 +105,7 @@ void bind_scan(py::module_& module) {
 std::shared_ptr<Scan> scan_at(const ScanList& list, py::ssize_t index) {
   const auto count = static_cast<py::ssize_t>(list.scans.size());
   if (index < 0) index += count;
-  if (index < 0 || index >= count) throw py::index_error("no scan of that number");
+  if (index < 0 || index >= count) throw py::index_error("scan index out of range");
   return list.scans[static_cast<std::size_t>(index)];
 }
 
@@ -123,22 +118,23 @@ ScanList scans_of(const ScanList& list, const py::slice& slice) {
   return part;
 }
 
-void take_format(Keywords& keywords, ScanFormat& format, PointOrder& order) {
-  keywords.take<ScanFormat>("format", format, kScanFormats);
-  keywords.take<PointOrder>("point_order", order, kPointOrders);
-}
-
-void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
-  Keywords keywords("save", kwargs);
+struct SaveArguments {
   ScanFormat format = ScanFormat::semantickitti;
   ScanWriterOptions writing;
-  take_format(keywords, format, writing.order);
-  keywords.finish();
+
+  void take(Keywords& keywords) {
+    keywords.take<ScanFormat>("format", format, kScanFormats);
+    keywords.take<PointOrder>("point_order", writing.order, kPointOrders);
+  }
+};
+
+void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
+  auto [format, writing] = arguments_of<SaveArguments>("save", kwargs);
   const std::filesystem::path path = path_of(folder, "folder");
   if (format == ScanFormat::pcap)
     throw Error(ErrorKind::usage,
-                "packets need the sensor that measured the scans: 'adasplats simulate --format "
-                "pcap' writes them");
+                "packets need the sensor that measured the scans; use 'adasplats simulate --format "
+                "pcap'");
   const py::gil_scoped_release released;
   std::filesystem::create_directories(path);
   writing.image_size = list.image_size;
@@ -159,14 +155,6 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
 
 void bind_scans(py::module_& module) {
   bind_scan(module);
-  const std::string doc = documented(
-      "save", "self, folder",
-      [](Keywords& keywords) {
-        ScanFormat format = ScanFormat::semantickitti;
-        PointOrder order = PointOrder::kitti;
-        take_format(keywords, format, order);
-      },
-      kSaveDoc);
   py::class_<ScanList, std::shared_ptr<ScanList>> type(
       module, "Scans", "The scans of one drive: a sequence of Scan, made by Scene.simulate().");
   type.def("__len__", [](const ScanList& list) { return list.scans.size(); })
@@ -182,7 +170,8 @@ void bind_scans(py::module_& module) {
            [](const ScanList& list) {
              return "<adasplats.Scans: " + std::to_string(list.scans.size()) + ">";
            })
-      .def("save", &save_scans, py::arg("folder"), doc.c_str());
+      .def("save", &save_scans, py::arg("folder"),
+           documented<SaveArguments>("save", "self, folder", kSaveDoc).c_str());
   add_pickling<ScanList>(type, "Scans");
 }
 

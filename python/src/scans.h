@@ -12,11 +12,11 @@
 
 namespace adasplats::python {
 
-/// Scans of one drive, as a sequence, with what range images need besides.
+/// Scans of one drive, with the size of their range images.
 struct ScanList {
   std::vector<std::shared_ptr<Scan>> scans;
   ImageSize image_size;                       ///< of the sensor
-  std::shared_ptr<const LabelScheme> labels;  ///< null where they are not known
+  std::shared_ptr<const LabelScheme> labels;  ///< null: none
 };
 
 }  // namespace adasplats::python

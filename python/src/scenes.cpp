@@ -10,16 +10,13 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kScenesDoc =
-    "A place that rays are cast into, on the CPU or on GPUs.\n\n"
-    "model: a Model, a Mesh, or the path of a model, of a mesh (PLY, OBJ, glTF) or of a world "
-    "file.\n"
-    "A Model or Mesh is copied. device: 'auto' (a GPU where there is one), 'cpu', 'cuda', "
-    "'optix';\n"
-    "gpus: their numbers. threads: 0 for all that the process may use. labels: what the classes\n"
-    "mean; what the model says where it is None. May be used by several threads at a time; the "
-    "work\n"
-    "is done without the GIL. Raises ValueError, OSError, RuntimeError (a GPU that is not there).";
+constexpr const char* kScenesDoc = R"(A scene that rays are cast into, on the CPU or on GPUs.
+
+model: a Model, a Mesh, or the path of a model, of a mesh (PLY, OBJ, glTF) or of a world file. A
+Model or Mesh is copied. device: 'auto' (a GPU if there is one), 'cpu', 'cuda', 'optix'. gpus: GPU
+indices. threads: 0 for all that the process may use. labels: the label scheme, a name or a file;
+None: that of the model. Several threads may use a scene at the same time; methods release the GIL
+while they work. Raises TypeError, ValueError, OSError, RuntimeError (the GPU is missing).)";
 
 struct SceneArguments {
   std::string labels;
@@ -33,12 +30,12 @@ struct SceneArguments {
 
 std::unique_ptr<ModelScene> scene_of(py::handle model, const std::string& labels,
                                      SceneObject& object, PythonProgress& progress) {
-  std::optional<AnyModel> place;
+  std::optional<AnyModel> in_memory;
   std::filesystem::path file;
   if (py::isinstance<ModelObject>(model)) {
-    place = model.cast<const ModelObject&>().model;
+    in_memory = model.cast<const ModelObject&>().model;
   } else if (py::isinstance<MeshModel>(model)) {
-    place = model.cast<const MeshModel&>();
+    in_memory = model.cast<const MeshModel&>();
   } else {
     file = path_of(model, "model");
   }
@@ -46,15 +43,13 @@ std::unique_ptr<ModelScene> scene_of(py::handle model, const std::string& labels
   std::optional<LabelScheme> scheme;
   if (!labels.empty() && file.empty()) scheme = load_label_scheme(labels);
   Session session{object.executor, progress, 1, object.device};
-  if (place) return std::make_unique<ModelScene>(*std::move(place), std::move(scheme), session);
+  if (in_memory)
+    return std::make_unique<ModelScene>(*std::move(in_memory), std::move(scheme), session);
   return std::make_unique<ModelScene>(file, labels, session, WorldFiles::taken);
 }
 
 std::shared_ptr<SceneObject> make_scene(py::handle model, const py::kwargs& kwargs) {
-  Keywords keywords("Scene", kwargs);
-  SceneArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<SceneArguments>("Scene", kwargs);
   PythonProgress progress(arguments.work.progress);
   auto object = std::make_shared<SceneObject>(checked_threads(arguments.work.threads));
   object->device = choose_device(arguments.work.device);
@@ -72,15 +67,9 @@ py::object labels_of(const SceneObject& object) {
 }  // namespace
 
 void bind_scenes(py::module_& module) {
-  const std::string doc = documented(
-      "__init__", "self, model",
-      [](Keywords& keywords) {
-        SceneArguments arguments;
-        arguments.take(keywords);
-      },
-      "See the class.");
   SceneClass type(module, "Scene", kScenesDoc);
-  type.def(py::init(&make_scene), py::arg("model"), doc.c_str())
+  type.def(py::init(&make_scene), py::arg("model"),
+           documented<SceneArguments>("__init__", "self, model", "See the class.").c_str())
       .def("__len__", [](const SceneObject& o) { return o.scene->view().primitive_count(); })
       .def("__repr__",
            [](const SceneObject& o) {
@@ -92,13 +81,14 @@ void bind_scenes(py::module_& module) {
           "(3,) float64, world coordinates of the local origin, m.")
       .def_property_readonly(
           "device", [](const SceneObject& o) { return device_key(o.device); },
-          "What casts: 'cpu', or 'cuda' or 'optix' and the names of GPUs.")
+          "The device that casts rays: 'cpu', or 'cuda' or 'optix' and the names of GPUs.")
       .def_property_readonly(
-          "threads", [](const SceneObject& o) { return o.executor.threads(); }, "Of the CPU.")
+          "threads", [](const SceneObject& o) { return o.executor.threads(); },
+          "Number of CPU threads.")
       .def_property_readonly("labels", &labels_of, "The LabelScheme of its classes, or None.");
   add_casting(type);
   add_simulation(type);
-  add_places(type);
+  add_placed_poses(type);
   add_rendering(type);
   add_device_arrays(type);
   add_device_results(type);

@@ -16,26 +16,27 @@
 
 namespace adasplats::python {
 
-/// A place that rays are cast into, with the threads that do it. Holds nothing of Python's: results
-/// on a GPU keep it alive, and may be freed without the GIL.
+/// A scene that rays are cast into, with its threads. Holds no Python objects: results on a GPU
+/// keep it alive and may be freed without the GIL.
 struct SceneObject {
   Executor executor;
   DeviceChoice device;
   std::unique_ptr<ModelScene> scene;
   std::mutex gpu;  ///< a GpuScene is for one thread at a time
 
-  const ::pid_t process = ::getpid();  ///< that made it
+  const ::pid_t process = ::getpid();  ///< the process that made the scene
 
   explicit SceneObject(int threads) : executor(threads) {}
-  /// A fork has neither the threads nor the GPU of the process that it was. Errors: unavailable.
+  /// A forked process has neither the threads nor the GPU. Errors: unavailable.
   void require_own_process() const {
     if (::getpid() == process) return;
-    throw Error(ErrorKind::unavailable,
-                "the scene was made before this process was forked, which has none of its threads "
-                "and no GPU: start workers with the method 'spawn' or 'forkserver', or make the "
-                "scene in the worker");
+    throw Error(
+        ErrorKind::unavailable,
+        "the scene was made before this process was forked, and a fork has neither its threads "
+        "nor its GPU: start workers with the method 'spawn' or 'forkserver', or make the "
+        "scene in the worker");
   }
-  /// Holds off other threads where they must; to be taken without the GIL. Errors: those of
+  /// Locks the GPU, if the scene is on one; call it without the GIL. Errors: those of
   /// require_own_process().
   std::unique_lock<std::mutex> lock() {
     require_own_process();
@@ -48,12 +49,12 @@ using SceneClass = py::class_<SceneObject, std::shared_ptr<SceneObject>>;
 /// Each adds methods to Scene.
 void add_casting(SceneClass& type);
 void add_simulation(SceneClass& type);
-void add_places(SceneClass& type);
+void add_placed_poses(SceneClass& type);
 void add_rendering(SceneClass& type);
 void add_device_results(SceneClass& type);
 void add_scan_batches(SceneClass& type);
 
-/// The scans of a sensor at poses: what simulate() has in its keywords.
+/// The keywords of simulate() that give the motion of the sensor.
 struct DriveArguments {
   py::object motion = py::none();
   bool rolling_shutter = false;

@@ -10,14 +10,15 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kSegmentDoc =
-    "Give points semantic classes by a network (kernel point convolutions, KPConv).\n\n"
-    "points: a PointCloud. network: a file; None: the one that comes with adasplats. tile: side\n"
-    "of the squares that are looked at one after the other, m; margin: how much around each is\n"
-    "looked at, too, m. intensity: the points' intensities are used, where they have some.\n"
-    "device: 'auto', 'cpu', 'cuda'. Gives (N,) uint16, ids of the label scheme 'semantickitti',\n"
-    "in the order of the points; with confidences a tuple of these and (N,) float32, 0 to 1.\n"
-    "Both are new arrays. The same on any number of threads. Raises TypeError, ValueError (what\n"
-    "is in the file), OSError, RuntimeError (built without OpenBLAS).";
+    R"(Predict semantic classes of points with a network (kernel point convolutions, KPConv).
+
+points: a PointCloud. network: a file; None: the one that comes with adasplats. tile: side of the
+squares that are processed one by one, m. margin: width of the surroundings that the network also
+sees, m. intensity: use the intensities of the points, if any. device: 'auto', 'cpu', 'cuda'.
+Returns (N,) uint16, ids of the label scheme 'semantickitti' in the order of the points; with
+confidences, a tuple of them and (N,) float32 from 0 to 1. Both are new arrays. The result does not
+depend on the number of threads. Raises TypeError, ValueError (wrong content of the network file),
+OSError, RuntimeError (built without OpenBLAS).)";
 
 struct SegmentCall {
   std::filesystem::path network;
@@ -39,10 +40,7 @@ py::array array_of_points(std::vector<T>&& values) {
 }
 
 py::object segment(const std::shared_ptr<PointCloud>& points, const py::kwargs& kwargs) {
-  Keywords keywords("segment", kwargs);
-  SegmentCall call;
-  call.take(keywords);
-  keywords.finish();
+  const auto call = arguments_of<SegmentCall>("segment", kwargs);
   Work work(call.work);
   PointClasses found = work.run([&](Session& session) {
     check_settings(call.options);
@@ -56,9 +54,8 @@ py::object segment(const std::shared_ptr<PointCloud>& points, const py::kwargs& 
 }  // namespace
 
 void bind_segmentation(py::module_& module) {
-  const std::string doc = documented(
-      "segment", "points", [](Keywords& keywords) { SegmentCall().take(keywords); }, kSegmentDoc);
-  module.def("segment", &segment, py::arg("points"), doc.c_str());
+  module.def("segment", &segment, py::arg("points"),
+             documented<SegmentCall>("segment", "points", kSegmentDoc).c_str());
 }
 
 }  // namespace adasplats::python

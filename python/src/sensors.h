@@ -7,7 +7,7 @@
 
 namespace adasplats::python {
 
-/// A Sensor of Python's, or what load_lidar_model() makes of a name or a path. Errors: TypeError.
+/// A Python Sensor, or load_lidar_model() of a name or a path. Errors: TypeError.
 LidarModel sensor_of(py::handle value);
 
 }  // namespace adasplats::python

@@ -8,7 +8,7 @@
 
 namespace adasplats::python {
 
-/// The keywords of simulate() and what gives the same scans.
+/// The keywords of simulate(), iter_scans() and scan_batches().
 struct SimulateArguments {
   ScanChoice scan;
   DriveArguments drive;

@@ -15,39 +15,33 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kSimulateDoc =
-    "Drive a LiDAR through the scene; one Scan a pose.\n\n"
-    "sensor: a Sensor, or what Sensor() takes. poses: a Trajectory, or world_from_sensor (N, 4, 4) "
-    "or\n"
-    "(4, 4), 0.1 s apart. rolling_shutter: the sensor moves while it turns, as motion (a "
-    "Trajectory)\n"
-    "or else the poses tell; points: 'raw' as measured, or 'deskewed'. noise: of the sensor;\n"
-    "range_noise (its standard deviation on ranges, m), min_range, max_range (m), rotation_rate\n"
-    "(Hz): instead of the sensor's. depth: splats along "
-    "a\n"
-    "ray whose weighted mean is the echo. sub_rays: rays over the cross-section of a beam. "
-    "returns:\n"
-    "most a firing; return_mode: 'strongest', 'first' or 'last'. ray_drop: file of 'adasplats\n"
-    "fit-drop'. rain, snow: mm/h; fog: visibility, m. seed names the noise; scan i has the number\n"
-    "first_number + i. Results do not depend on threads or device. Raises TypeError, ValueError,\n"
-    "OSError.";
+constexpr const char* kSimulateDoc = R"(Simulate one Scan at each pose.
+
+sensor: a Sensor, or a name or file as in Sensor(). poses: a Trajectory, or world_from_sensor
+(N, 4, 4) or (4, 4), 0.1 s apart. rolling_shutter: the sensor moves during a revolution, along
+motion (a Trajectory; None: poses). points: 'raw', as measured, or 'deskewed'. noise: apply the
+noise of the sensor. range_noise (standard deviation, m), min_range, max_range (m) and rotation_rate
+(Hz) replace those of the sensor. depth: number of splats along a ray; their weighted mean is the
+echo. sub_rays: rays across the cross-section of a beam. returns: maximum per firing. return_mode:
+'strongest', 'first' or 'last'. ray_drop: a file of 'adasplats fit-drop'. rain, snow: mm/h. fog:
+visibility, m. seed: of all random numbers. first_number: number of the first scan, which random
+numbers depend on. Results do not depend on threads or device. Returns Scans. Raises TypeError,
+ValueError, OSError.)";
 
 constexpr const char* kIterDoc =
-    "As simulate(), but gives scan by scan while one iterates, with the memory of a few scans.";
+    R"(As simulate(), but an iterator that makes the scans on demand and holds only a few in memory.)";
 
-/// Scans at once where launches and copies overlap.
+/// Scans per call on a GPU, for overlapping launches and copies.
 constexpr std::size_t kGpuBatch = 16;
 
-/// Sensor, keywords and poses of a call.
+/// The arguments of a call: settings and motion of every scan.
 struct Drive {
   SimulateArguments arguments;
   ScanSettings settings;
   std::vector<ScanMotion> scans;
 
   Drive(const char* function, py::handle sensor, py::handle poses, const py::kwargs& kwargs) {
-    Keywords keywords(function, kwargs);
-    arguments.take(keywords);
-    keywords.finish();
+    arguments = arguments_of<SimulateArguments>(function, kwargs);
     settings = arguments.scan.settings_of(sensor_of(sensor), arguments.seed);
     scans = arguments.drive.scans_at(poses, settings.sensor);
   }
@@ -73,7 +67,7 @@ std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, p
   return list;
 }
 
-/// Gives the scans of a drive one by one.
+/// Makes the scans of a drive one by one.
 class ScanIterator {
  public:
   ScanIterator(std::shared_ptr<SceneObject> object, Drive&& drive)
@@ -106,8 +100,8 @@ class ScanIterator {
 
   void simulate_batch() {
     const auto lock = object_->lock();
-    const std::size_t most = object_->scene->on_gpu() ? kGpuBatch : 1;
-    const std::size_t count = std::min(most, scans_.size() - taken_);
+    const std::size_t max_count = object_->scene->on_gpu() ? kGpuBatch : 1;
+    const std::size_t count = std::min(max_count, scans_.size() - taken_);
     simulator_.run(std::span(scans_).subspan(taken_, count), first_number_ + taken_,
                    [this](std::size_t, Scan scan) {
                      ready_.push_back(std::make_shared<Scan>(std::move(scan)));
@@ -127,13 +121,7 @@ class ScanIterator {
 };
 
 std::string doc_of(const char* name, const char* text) {
-  return documented(
-      name, "self, sensor, poses",
-      [](Keywords& keywords) {
-        SimulateArguments arguments;
-        arguments.take(keywords);
-      },
-      text);
+  return documented<SimulateArguments>(name, "self, sensor, poses", text);
 }
 
 }  // namespace
@@ -146,19 +134,18 @@ void DriveArguments::take(Keywords& keywords) {
 std::vector<ScanMotion> DriveArguments::scans_at(py::handle poses, const LidarModel& sensor) const {
   const Trajectory at = trajectory_of(poses, "poses");
   if (!rolling_shutter) {
-    if (!motion.is_none())
-      throw py::value_error("motion is of use with rolling_shutter=True alone");
+    if (!motion.is_none()) throw py::value_error("motion needs rolling_shutter=True");
     return still_scans(at);
   }
   const Trajectory moves = motion.is_none() ? at : trajectory_of(motion, "motion");
   if (moves.size() < 2)
-    throw py::value_error("a rolling shutter needs at least two poses to know the motion");
+    throw py::value_error("rolling_shutter needs at least two poses for the motion");
   return moving_scans(at, moves, 1 / sensor.rotation_hz);
 }
 
 void add_simulation(SceneClass& type) {
   py::class_<ScanIterator, std::shared_ptr<ScanIterator>>(type, "ScanIterator",
-                                                          "Gives the scans of Scene.iter_scans().")
+                                                          "Iterator of Scene.iter_scans().")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &ScanIterator::next);
   type.def("simulate", &simulate, py::arg("sensor"), py::arg("poses"),

@@ -14,14 +14,13 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kSynthDoc =
-    "Make a procedural street with labels and its recordings, for trying things out.\n\n"
-    "Writes into folder, which is made where it is not there: mapping.ply, "
-    "mapping_trajectory.csv,\n"
-    "sequences/00 (SemanticKITTI), mesh.ply (the truth) and the true trajectories. points: how "
-    "many\n"
-    "the mapping cloud has, to 10 %. length: of the road, m; 0 for what suits. Returns the keys "
-    "of\n"
-    "'adasplats synth street --report'. Raises ValueError, OSError.";
+    R"(Make a procedural street with labels and simulated recordings, for trials and tests.
+
+folder: where to write, created if missing: mapping.ply, mapping_trajectory.csv, sequences/00
+(SemanticKITTI), mesh.ply (the true surface) and the true trajectories. points: size of the mapping
+cloud, within 10 %. length: of the road, m; 0: chosen from the number of points. range_noise:
+standard deviation, m. driving_spacing: distance between the driving scans, m; 0: none. Returns a
+dict with the keys of 'adasplats synth street --report'. Raises TypeError, ValueError, OSError.)";
 
 struct StreetArguments {
   StreetOptions street{.seed = 1, .length_m = 0};
@@ -42,10 +41,7 @@ struct StreetArguments {
 };
 
 py::object synth_street(py::handle folder, const py::kwargs& kwargs) {
-  Keywords keywords("synth_street", kwargs);
-  StreetArguments arguments;
-  arguments.take(keywords);
-  keywords.finish();
+  const auto arguments = arguments_of<StreetArguments>("synth_street", kwargs);
   const std::filesystem::path path = path_of(folder, "folder");
   Work work(arguments.work);
   const StreetReport report = work.run([&](Session& session) {
@@ -58,14 +54,8 @@ py::object synth_street(py::handle folder, const py::kwargs& kwargs) {
 }  // namespace
 
 void bind_synth(py::module_& module) {
-  const std::string doc = documented(
-      "synth_street", "folder",
-      [](Keywords& keywords) {
-        StreetArguments arguments;
-        arguments.take(keywords);
-      },
-      kSynthDoc);
-  module.def("synth_street", &synth_street, py::arg("folder"), doc.c_str());
+  module.def("synth_street", &synth_street, py::arg("folder"),
+             documented<StreetArguments>("synth_street", "folder", kSynthDoc).c_str());
 }
 
 }  // namespace adasplats::python

@@ -13,7 +13,7 @@
 namespace adasplats::python {
 namespace {
 
-/// A class of its own: pybind11 would make a list of a vector.
+/// A wrapper, because pybind11 converts a vector to a list.
 struct TrajectoryObject {
   Trajectory poses;
 };
@@ -23,13 +23,13 @@ void fields(Archive& archive, TrajectoryObject& trajectory) {
   archive("poses", trajectory.poses);
 }
 
-constexpr double kPeriod_s = 0.1;  // as read_trajectory has it for poses without times
+constexpr double kPeriod_s = 0.1;  // as in read_trajectory() for poses without times
 
-constexpr const char* kTrajectoriesDoc =
-    "Where a sensor was when.\n\n"
-    "poses: (N, 4, 4) or (4, 4), world_from_sensor: x forward, y left, z up, metres. times: (N,)\n"
-    "ascending, s; None: 0.1 s apart. Raises TypeError, ValueError (a matrix that is no rotation\n"
-    "and translation, times that do not ascend).";
+constexpr const char* kTrajectoriesDoc = R"(Poses of a sensor over time.
+
+poses: (N, 4, 4) or (4, 4), world_from_sensor: x forward, y left, z up, m. times: (N,), s, ascending;
+None: 0.1 s apart. Raises TypeError, ValueError (a matrix that is not a rotation and translation;
+times that do not ascend).)";
 
 Trajectory make_trajectory(py::handle poses, py::handle times) {
   const std::vector<RigidTransform> transforms = transforms_of(poses, "poses");
@@ -60,7 +60,7 @@ py::array times_of(const TrajectoryObject& trajectory) {
 TrajectoryObject resampled(const TrajectoryObject& trajectory, std::optional<double> rate_hz,
                            std::optional<double> spacing_m) {
   if (rate_hz.has_value() == spacing_m.has_value())
-    throw py::type_error("resampled() takes rate_hz or spacing_m, one of them");
+    throw py::type_error("resampled() needs either rate_hz or spacing_m");
   return {rate_hz ? resampled_by_time(trajectory.poses, *rate_hz)
                   : resampled_by_distance(trajectory.poses, *spacing_m)};
 }
@@ -70,7 +70,7 @@ TrajectoryObject taken(const TrajectoryObject& trajectory, const py::slice& slic
   if (!slice.compute(trajectory.poses.size(), &start, &stop, &step, &count))
     throw py::error_already_set();
   if (static_cast<py::ssize_t>(step) < 1)
-    throw py::value_error("a trajectory goes forward: the step must be positive");
+    throw py::value_error("the step of a slice of a trajectory must be positive");
   TrajectoryObject part;
   for (std::size_t k = 0; k < count; ++k) part.poses.push_back(trajectory.poses[start + k * step]);
   return part;
@@ -83,13 +83,13 @@ py::array pose_at_time(const TrajectoryObject& trajectory, double time_s) {
 
 using TrajectoryClass = py::class_<TrajectoryObject>;
 
-/// Other ways made of a way.
-void add_ways(TrajectoryClass& type) {
+/// Methods that make another trajectory or a pose.
+void add_transformations(TrajectoryClass& type) {
   type.def("resampled", &resampled, py::kw_only(), py::arg("rate_hz") = py::none(),
            py::arg("spacing_m") = py::none(),
            documented("resampled", "self, *, rate_hz=None, spacing_m=None",
-                      "Poses at a rate, or so far apart on the way; interpolated. Raises "
-                      "ValueError.")
+                      "A Trajectory of interpolated poses, rate_hz per second or spacing_m apart "
+                      "along the path.\nRaises TypeError, ValueError.")
                .c_str())
       .def(
           "shifted",
@@ -98,7 +98,8 @@ void add_ways(TrajectoryClass& type) {
           },
           py::arg("offset"),
           documented("shifted", "self, offset",
-                     "Every pose moved by (3,) m along the world's axes.")
+                     "A Trajectory with every pose moved by offset, (3,) m, along the world axes.\n"
+                     "Raises TypeError, ValueError.")
               .c_str())
       .def(
           "mounted",
@@ -110,11 +111,14 @@ void add_ways(TrajectoryClass& type) {
           },
           py::arg("vehicle_from_sensor"),
           documented("mounted", "self, vehicle_from_sensor",
-                     "The poses of a sensor at (4, 4) on what drives along this trajectory.")
+                     "The Trajectory of a sensor mounted on a vehicle with this trajectory.\n"
+                     "vehicle_from_sensor: (4, 4). Raises TypeError, ValueError.")
               .c_str())
       .def("interpolate", &pose_at_time, py::arg("time"),
-           documented("interpolate", "self, time",
-                      "(4, 4) at a time in s; before the first and after the last pose, those.")
+           documented(
+               "interpolate", "self, time",
+               "The pose at a time (s): (4, 4) float64, interpolated; the first or last pose "
+               "outside\nthe times of the trajectory. Raises ValueError (an empty trajectory).")
                .c_str());
 }
 
@@ -143,11 +147,11 @@ void bind_trajectories(py::module_& module) {
           "read",
           [](py::handle path) { return TrajectoryObject{load_trajectory(path_of(path, "path"))}; },
           py::arg("path"),
-          documented(
-              "read", "path",
-              "A KITTI poses.txt, a CSV with the first line time,x,y,z,qw,qx,qy,qz, TUM with its\n"
-              "line of names, or a sequence folder.\n"
-              "Raises FileNotFoundError, ValueError.")
+          documented("read", "path",
+                     "Read a KITTI poses.txt, a CSV with the first line time,x,y,z,qw,qx,qy,qz, a "
+                     "TUM file\n"
+                     "with its header line, or a sequence folder.\n"
+                     "Raises TypeError, FileNotFoundError, ValueError.")
               .c_str())
       .def(
           "save",
@@ -158,19 +162,19 @@ void bind_trajectories(py::module_& module) {
           },
           py::arg("path"),
           documented("save", "self, path",
-                     "Write a .csv, 9 digits behind the point. Raises OSError, "
-                     "ValueError\n(another ending).")
+                     "Write a .csv with 9 decimals. Raises TypeError, OSError, ValueError\n"
+                     "(another extension).")
               .c_str())
       .def("__len__", [](const TrajectoryObject& t) { return t.poses.size(); })
       .def("__repr__",
            [](const TrajectoryObject& t) {
              return "<adasplats.Trajectory of " + std::to_string(t.poses.size()) + " poses>";
            })
-      .def("__getitem__", &taken, py::arg("slice"), "The poses of a slice, as a Trajectory.")
+      .def("__getitem__", &taken, py::arg("slice"), "A slice, as a Trajectory.")
       .def_property_readonly("poses", &poses_of,
                              "(N, 4, 4) float64, world_from_sensor: a new array.")
       .def_property_readonly("times", &times_of, "(N,) float64, s: a new array.");
-  add_ways(type);
+  add_transformations(type);
   add_pickling<TrajectoryObject>(type, "Trajectory");
 }
 

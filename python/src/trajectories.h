@@ -7,11 +7,11 @@
 
 namespace adasplats::python {
 
-/// A Trajectory of Python's, or an array of world_from_sensor (N, 4, 4) or (4, 4) whose poses are
+/// A Python Trajectory, or an array of world_from_sensor (N, 4, 4) or (4, 4) whose poses are
 /// 0.1 s apart. Errors: TypeError, ValueError.
 Trajectory trajectory_of(py::handle value, const char* name);
 
-/// A Trajectory of Python's.
+/// A Python Trajectory.
 py::object trajectory_object(Trajectory poses);
 
 }  // namespace adasplats::python

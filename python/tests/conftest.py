@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests share: a small street, its model, and the program to check against."""
+"""Fixtures: a small street, its model, and the program to check against."""
 import json
 import os
 import subprocess

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs pytest on the given files; exit code 77 (skipped) where pytest or NumPy is missing.
 
-Where ADASPLATS_TEST_RESULTS names a folder, python_NAME.xml there tells which cases were skipped.
+If ADASPLATS_TEST_RESULTS is a folder, python_NAME.xml lists the skipped cases.
 """
 import os
 import sys

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What goes in and comes out: kinds of arrays, and views."""
+"""Conversion of array arguments, and array views."""
 import gc
 import pickle
 
@@ -164,8 +164,8 @@ def test_wrong_type(wall, bad):
             call()
 
 
-def test_rows_must_be_as_many(wall):
-    with pytest.raises(ValueError, match="as many rows"):
+def test_row_counts_must_match(wall):
+    with pytest.raises(ValueError, match="same number of rows"):
         wall.cast(np.zeros((2, 3)), np.ones((3, 3)))
     with pytest.raises(ValueError, match="expected shape"):
         adasplats.PointCloud(POINTS, classes=[1, 2])
@@ -181,7 +181,7 @@ def test_not_finite_names_the_first_row(value):
         adasplats.PointCloud(points)
     with pytest.raises(ValueError, match="sensor_positions: row 1"):
         adasplats.PointCloud(POINTS, sensor_positions=points)
-    if np.isnan(value):  # not known
+    if np.isnan(value):  # unknown
         assert np.isnan(adasplats.PointCloud(POINTS, intensities=[1, 2, value]).intensities[2])
         return
     with pytest.raises(ValueError, match=r"intensities\[2\] is not finite"):
@@ -196,7 +196,7 @@ def test_classes_are_checked(values, error):
         adasplats.PointCloud(POINTS, classes=values)
 
 
-def test_attributes_come_back():
+def test_attributes_round_trip():
     attributes = {"classes": np.array([1, 2, 65535]), "instances": np.array([0, 1, 2], np.uint8),
                   "intensities": np.array([0.5, 1, 1.5]), "sensor_positions": POINTS + 1,
                   "scan_indices": np.array([0, 1, 4000000000], np.uint64)}
@@ -246,7 +246,7 @@ def test_views_are_read_only_and_no_copies(wall):
     assert hits.ranges.strides == (8,)
 
 
-def test_arrays_outlive_what_they_are_of(scene, poses):
+def test_arrays_outlive_their_owners(scene, poses):
     ranges = scene.simulate("hdl-32-paper", poses)[0].ranges
     kept = ranges.copy()
     centers = adasplats.Model([[1.0, 2, 3]], [[0, 0, 1.0]], [1.0]).centers
@@ -269,15 +269,15 @@ def test_arrays_pickle_and_dlpack(scene, poses):
         exported = np.from_dlpack(array)
         np.testing.assert_array_equal(exported, array)
         assert exported.shape == array.shape and exported.dtype == array.dtype
-    # Oracle: who does not know of read-only arrays gets memory of their own, or an error.
-    numpy_tells = tuple(map(int, np.__version__.split(".")[:2])) >= (2, 1)
-    assert np.shares_memory(np.from_dlpack(scan.ranges), scan.ranges) == numpy_tells
+    # Oracle: without a read-only flag the consumer gets a copy, or an error.
+    has_readonly_flag = tuple(map(int, np.__version__.split(".")[:2])) >= (2, 1)
+    assert np.shares_memory(np.from_dlpack(scan.ranges), scan.ranges) == has_readonly_flag
     with pytest.raises(BufferError, match=r"hand over array\.copy\(\)"):
         scan.ranges.__dlpack__(copy=False)
     assert np.shares_memory(np.from_dlpack(scan.ranges.copy()), scan.ranges) is False
 
 
-def test_views_are_arrays_like_others(scene, poses):
+def test_views_behave_like_arrays(scene, poses):
     ranges = scene.simulate("hdl-32-paper", poses)[0].ranges
     assert isinstance(ranges, np.ndarray) and not ranges.flags.writeable
     for plain in (ranges + 1, np.exp(ranges), np.array(ranges), ranges > 5):
@@ -292,10 +292,10 @@ def test_poses_are_checked(scene):
     good = np.eye(4)
     assert len(scene.simulate("hdl-32-paper", good)) == 1
     assert len(scene.simulate("hdl-32-paper", np.zeros((0, 4, 4)))) == 0
-    for matrix, says in ((2 * good, "last row"), (np.diag([1, 1, -1.0, 1]), "orthonormal"),
+    for matrix, message in ((2 * good, "last row"), (np.diag([1, 1, -1.0, 1]), "orthonormal"),
                          (np.diag([2, 2, 2.0, 1]), "orthonormal"),
                          (np.diag([np.nan, 1, 1, 1]), "not finite")):
-        with pytest.raises(ValueError, match=says):
+        with pytest.raises(ValueError, match=message):
             scene.simulate("hdl-32-paper", [good, matrix])
     for bad in (np.eye(3), np.zeros((2, 3, 4)), np.zeros(16)):
         with pytest.raises(ValueError, match=r"expected shape \(N, 4, 4\)"):
@@ -307,12 +307,12 @@ def test_poses_are_checked(scene):
 def test_models_from_arrays_are_checked():
     good = ([[0.0, 0, 0]], [[0, 0, 1.0]], [1.0])
     assert len(adasplats.Model(*good)) == 1
-    for centers, normals, radii, says in ((good[0], [[0, 0, 2.0]], good[2], "unit length"),
+    for centers, normals, radii, message in ((good[0], [[0, 0, 2.0]], good[2], "unit length"),
                                           (good[0], good[1], [0.0], "greater than 0"),
                                           (good[0], good[1], [np.nan], "not finite"),
                                           (good[0], good[1], [1.0, 2], "expected shape"),
                                           ([[np.nan, 0, 0]], good[1], good[2], "row 0")):
-        with pytest.raises(ValueError, match=says):
+        with pytest.raises(ValueError, match=message):
             adasplats.Model(centers, normals, radii)
     with pytest.raises(ValueError, match="no splats"):
         adasplats.Scene(adasplats.Model(np.zeros((0, 3)), np.zeros((0, 3)), []))

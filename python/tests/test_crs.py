@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Coordinate systems go along; parts of the points of a file."""
+"""Coordinate systems are kept; reading parts of a file."""
 import pickle
 
 import numpy as np
@@ -22,7 +22,7 @@ def cloud():
                                 crs_wkt=WKT)
 
 
-def test_they_go_from_points_to_models_and_files(cloud, tmp_path):
+def test_crs_of_models_and_files(cloud, tmp_path):
     assert (cloud.crs, cloud.crs_wkt) == (NAME, WKT)
     assert adasplats.PointCloud(np.zeros((1, 3))).crs == ""
     assert pickle.loads(pickle.dumps(cloud)).crs_wkt == WKT

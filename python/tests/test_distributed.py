@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Cities by Dask's workers. Oracle: the bytes that the program makes in one process."""
+"""Cities on Dask workers. Oracle: the bytes that the program writes in one process."""
 import builtins
 import contextlib
 import hashlib
@@ -81,7 +81,7 @@ class Killer(threading.Thread):
 
 @needs_dask
 def test_workers_are_killed(street, whole, tmp_path):
-    # Tasks that take a second on any machine, so that there is something to kill.
+    # Tasks that take a second on any machine, so that workers can be killed during a task.
     program = tmp_path / "slow adasplats"
     program.write_text('#!/bin/sh\ncase "$*" in *--only-tile*) sleep 0.7;; esac\n'
                        f'exec "{shutil.which(PROGRAM)}" "$@"\n')
@@ -98,7 +98,7 @@ def test_workers_are_killed(street, whole, tmp_path):
     assert killer.killed >= 3
     assert tree_digest(tmp_path / "city") == whole
     assert sorted(path.name for path in tmp_path.iterdir()) == ["city", program.name]
-    # All tiles were made by tasks but one, by which the sensor is known.
+    # Tasks made all tiles but one, which make_city() makes itself to estimate the sensor.
     assert report["tiles"] == report["tiles_resumed"] > 8
     assert counts == [("tasks", done, report["tiles"] - 1) for done in range(report["tiles"])]
 
@@ -121,8 +121,8 @@ def test_processes_of_this_machine(street, whole, tmp_path, capfd, monkeypatch):
 
 @needs_dask
 def test_each_card_has_one_worker(tmp_path):
-    """A program that says which card it sees stands for one that computes there."""
-    program = tmp_path / "says cards"
+    """Oracle: a fake program that prints the card that it sees."""
+    program = tmp_path / "print cards"
     program.write_text('#!/bin/sh\nsleep 0.3\necho "$CUDA_VISIBLE_DEVICES" > "$2"\n')
     program.chmod(0o755)
     plan = "".join(f"adasplats of '{tmp_path}/{k}'\n" for k in range(8))
@@ -136,7 +136,7 @@ def test_each_card_has_one_worker(tmp_path):
 
 @needs_dask
 def test_tasks_that_fail(tmp_path):
-    """They are run again as often as asked for; then what they said is the error."""
+    """Tasks are retried `retries` times; then their message is the error."""
     program = tmp_path / "fails at first"
     program.write_text('#!/bin/sh\necho x >> "$2"\n[ $(wc -l < "$2") -ge 3 ] && exit 0\n'
                        'echo "no luck with $2" >&2\nexit 65\n')
@@ -151,7 +151,7 @@ def test_tasks_that_fail(tmp_path):
         with pytest.raises(distributed.TaskError, match=f"adasplats of .*: no luck with {tmp_path}/b"):
             run("b", 1)
         assert (tmp_path / "b").read_text() == "x\n" * 2
-        with pytest.raises(distributed.TaskError, match="no such program in the PATH"):
+        with pytest.raises(distributed.TaskError, match="not found in PATH"):
             distributed.run_plan("adasplats of c\n", client=client, retries=0, program="no-such",
                                  progress=False)
 
@@ -211,7 +211,7 @@ def test_without_dask(monkeypatch):
 def test_arguments(tmp_path):
     with pytest.raises(ValueError, match="--report"):
         distributed.make_city(["a.ply"], tmp_path / "b", tile=64, options=["--report=c.json"])
-    with pytest.raises(distributed.TaskError, match="no-such: there is no such program"):
+    with pytest.raises(distributed.TaskError, match="no-such: not found in PATH"):
         distributed.make_city(["a.ply"], tmp_path / "b", tile=64, program="no-such")
     with pytest.raises(distributed.TaskError, match="a.ply"):
         distributed.make_city([tmp_path / "a.ply"], tmp_path / "b", tile=64, program=PROGRAM)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Errors: the class of Python's own, the text of the library, one clear line."""
+"""Errors: built-in base class, message of the library, one line."""
 import numpy as np
 import pytest
 
@@ -70,7 +70,7 @@ def test_names_say_what_is_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("keywords, error, says", [
+@pytest.mark.parametrize("keywords, error, message", [
     ({"neighbours": 3}, TypeError, "keyword argument 'neighbours', did you mean 'neighbors'"),
     ({"completely_wrong": 3}, TypeError, "unexpected keyword argument 'completely_wrong'$"),
     ({"neighbors": 3.5}, TypeError, "neighbors must be a whole number, not float"),
@@ -91,9 +91,9 @@ def test_names_say_what_is_written(tmp_path):
     ({"gpus": "0"}, TypeError, "gpus must be a list of whole numbers"),
     ({"method": "semantic"}, ValueError, "labels"),
 ])
-def test_keywords(keywords, error, says):
+def test_keywords(keywords, error, message):
     cloud = adasplats.PointCloud(np.random.default_rng(1).normal(size=(100, 3)))
-    with pytest.raises(error, match=says):
+    with pytest.raises(error, match=message):
         adasplats.model(cloud, **keywords)
 
 
@@ -106,7 +106,7 @@ def test_numpy_scalars_are_numbers():
     np.testing.assert_array_equal(a.centers, b.centers)
 
 
-def test_a_gpu_that_is_not_there():
+def test_a_missing_gpu():
     if adasplats.devices():
         pytest.skip("there is a GPU")
     assert adasplats.why_no_gpu()
@@ -119,15 +119,15 @@ def test_a_gpu_that_is_not_there():
         scene.cast_on_device("hdl-32-paper", np.eye(4))
 
 
-def test_warnings_are_pythons(street):
+def test_warnings_are_python_warnings(street):
     with pytest.warns(UserWarning, match="labels"):
         adasplats.model(street.cloud)
 
 
-@pytest.mark.parametrize("call, says", [
+@pytest.mark.parametrize("call, message", [
     (lambda: adasplats.Sensor(name_of_file="x"),
      r"Sensor\(\) got an unexpected keyword argument 'name_of_file', did you mean 'name_or_file'"),
-    (lambda: adasplats.Sensor(), r"Sensor\(\) misses the argument 'name_or_file'"),
+    (lambda: adasplats.Sensor(), r"Sensor\(\) is missing the argument 'name_or_file'"),
     (lambda: adasplats.Sensor("hdl-64-paper", 1),
      r"Sensor\(\) takes at most 1 positional arguments, but 2 were given"),
     (lambda: adasplats.Sensor("hdl-64-paper").firings(scan_idx=1),
@@ -137,21 +137,21 @@ def test_warnings_are_pythons(street):
     (lambda: adasplats.Trajectory(np.eye(4)).resampled(rate=1),
      r"resampled\(\) got an unexpected keyword argument 'rate', did you mean 'rate_hz'"),
     (lambda: adasplats.PointCloud([[0.0, 0, 0]], class_ids=[1]), r"PointCloud\(\).*'classes'"),
-    (lambda: adasplats.PointCloud(), r"PointCloud\(\) misses the argument 'positions'"),
+    (lambda: adasplats.PointCloud(), r"PointCloud\(\) is missing the argument 'positions'"),
     (lambda: adasplats.PointCloud([[0.0, 0, 0]], positions=1), "several values"),
     (lambda: adasplats.label_scheme(name="semantickitti"), "did you mean 'name_or_path'"),
-    (lambda: adasplats.evaluate.c2c("a"), r"c2c\(\) misses the argument"),
+    (lambda: adasplats.evaluate.c2c("a"), r"c2c\(\) is missing the argument"),
 ])
-def test_wrong_arguments_are_told_in_words(call, says):
-    """Oracle: no word of the text is of C++."""
-    with pytest.raises(TypeError, match=says) as told:
+def test_wrong_arguments_are_explained(call, message):
+    """Oracle: no C++ terms in the message."""
+    with pytest.raises(TypeError, match=message) as error:
         call()
     for word in ("incompatible", "pybind11", "handle", "std::", "arg0"):
-        assert word not in str(told.value)
+        assert word not in str(error.value)
 
 
-def test_messages_name_the_keywords_that_take_them(street):
-    """Those of the library name settings; as the command line's options they would help nobody."""
+def test_messages_name_keywords(street):
+    """Messages of the library name settings, which must become keywords, not options."""
     with pytest.raises(ValueError, match="^max_distance_m is -1, expected more than 0$"):
         adasplats.read(street.cloud, max_distance_m=-1)
     with pytest.raises(ValueError, match="^own_body_m is inf, expected 0 or more$"):

@@ -29,19 +29,19 @@ def test_numpy_cloud_to_scans(tmp_path):
     assert len(list(tmp_path.glob("0000??.npy"))) == 20
 
 
-def only_tells_of_the_path(errors):
-    """The street has cars where the vehicle drove; points of these are left out, and that is said."""
+def has_only_driven_path_warnings(errors):
+    """The street has cars in the driven path; their points are removed with a warning."""
     return errors.count("Warning: ") == errors.count("are in the driven path of the recording vehicle")
 
 
 def test_sensor_from_csv(tmp_path):
     code, out, errors = run("sensor_from_csv.py")
-    assert code == 0 and only_tells_of_the_path(errors), errors
+    assert code == 0 and has_only_driven_path_warnings(errors), errors
     assert "20000 rays in 0.100 s" in out and "road" in out
     rays = tmp_path / "rays.csv"
     rays.write_text("azimuth_deg,elevation_deg\n0,-5\n10,-5\n")
     code, out, errors = run("sensor_from_csv.py", rays)
-    assert code == 0 and only_tells_of_the_path(errors) and "2 rays" in out, errors
+    assert code == 0 and has_only_driven_path_warnings(errors) and "2 rays" in out, errors
 
 
 def test_torch_dataset():
@@ -64,7 +64,7 @@ def test_torch_live_scans():
     assert last >= first + 10, out  # it learns
 
 
-def test_what_the_documentation_shows(tmp_path, monkeypatch):
+def test_code_blocks_of_the_documentation(tmp_path, monkeypatch):
     """The blocks of docs/python.md run, one after the other, in one folder."""
     text = (EXAMPLES.parent / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = [part.split("```")[0] for part in text.split("```python\n")[1:]]

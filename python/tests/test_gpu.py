@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A GPU gives the CPU's bits, and its results stay in its memory."""
+"""GPU results equal those of the CPU bit for bit and can stay in GPU memory."""
 import ctypes
 import ctypes.util
 import gc
@@ -22,7 +22,7 @@ def gpu_scene(street):
 
 
 def from_gpu(pointer, count):
-    """So many 32-bit words at an address of the GPU's, by the driver: no CUDA library is needed."""
+    """32-bit words at a GPU address, read through the driver, without a CUDA library."""
     driver = ctypes.CDLL(ctypes.util.find_library("cuda") or "libcuda.so.1")
     context = ctypes.c_void_p()
     assert driver.cuInit(0) == 0
@@ -76,7 +76,7 @@ class Tensor(ctypes.Structure):
 
 
 def taken(array):
-    """What a consumer does with __dlpack__: takes the tensor out of its capsule."""
+    """Takes the tensor out of the capsule of __dlpack__, as a consumer does."""
     api = ctypes.pythonapi
     api.PyCapsule_GetPointer.restype = ctypes.c_void_p
     api.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
@@ -115,7 +115,7 @@ def test_hits_that_stay_on_the_gpu(scene, gpu_scene, poses, depth):
     del kept
 
 
-def test_a_capsule_that_nobody_takes(gpu_scene, poses):
+def test_unused_capsules_are_freed(gpu_scene, poses):
     hits = gpu_scene.cast_on_device("hdl-32-paper", poses)
     for _ in range(100):
         hits.ranges.__dlpack__()
@@ -123,7 +123,7 @@ def test_a_capsule_that_nobody_takes(gpu_scene, poses):
     gc.collect()
 
 
-def test_torch_takes_it(gpu_scene, poses):
+def test_torch_reads_device_arrays(gpu_scene, poses):
     torch = pytest.importorskip("torch")
     if not torch.cuda.is_available():
         pytest.skip("PyTorch has no CUDA")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Nothing is copied that need not be, and nothing is left behind."""
+"""No needless copies, no leaks."""
 import gc
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Objects go from process to process."""
+"""Pickling of all objects."""
 import copy
 import multiprocessing
 import pickle
@@ -12,18 +12,18 @@ import adasplats
 
 
 def content_of(value):
-    """Everything that an object tells, as something that can be compared."""
-    told = {}
+    """All properties of an object in a form that can be compared."""
+    content = {}
     for name in dir(type(value)):
         member = getattr(type(value), name)
         if name.startswith("_") or not isinstance(member, property):
             continue
-        told[name] = getattr(value, name)
-        if isinstance(told[name], np.ndarray):
-            told[name] = (told[name].shape, told[name].dtype, told[name].tobytes())
-    if isinstance(told.get("response"), dict):
-        told["response"] = {key: each.tobytes() for key, each in told["response"].items()}
-    return told
+        content[name] = getattr(value, name)
+        if isinstance(content[name], np.ndarray):
+            content[name] = (content[name].shape, content[name].dtype, content[name].tobytes())
+    if isinstance(content.get("response"), dict):
+        content["response"] = {key: each.tobytes() for key, each in content["response"].items()}
+    return content
 
 
 def objects(street, scene, poses):
@@ -55,7 +55,7 @@ def test_pickles_and_copies_are_equal(street, scene, poses):
             assert not hasattr(value, "__len__") or len(again) == len(value), name
 
 
-def test_a_sensor_of_a_pickle_casts_the_same_rays():
+def test_unpickled_sensors_have_the_same_rays():
     for name in adasplats.sensors():
         sensor = adasplats.Sensor(name)
         again = pickle.loads(pickle.dumps(sensor))
@@ -64,7 +64,7 @@ def test_a_sensor_of_a_pickle_casts_the_same_rays():
                                           sensor.firings(scan_index).directions)
 
 
-def test_scans_of_a_pickle_are_saved_alike(scene, poses, street, tmp_path):
+def test_unpickled_scans_save_the_same_files(scene, poses, street, tmp_path):
     scans = scene.simulate(street.sensor, poses[:2])
     scans.save(tmp_path / "a", format="range-image")
     pickle.loads(pickle.dumps(scans)).save(tmp_path / "b", format="range-image")
@@ -80,7 +80,7 @@ def simulated(arguments):
     return adasplats.Scene(model, device="cpu", threads=1).simulate(sensor, poses, seed=3)[0]
 
 
-def test_processes_hand_them_to_one_another(street, poses):
+def test_objects_pass_between_processes(street, poses):
     model = adasplats.Model.load(street.model)
     sensor = adasplats.Sensor(street.sensor)
     work = [(model, sensor, poses[:1]), (model, sensor, poses[1:2])]
@@ -90,21 +90,21 @@ def test_processes_hand_them_to_one_another(street, poses):
         np.testing.assert_array_equal(scan.positions, simulated(arguments).positions)
 
 
-def test_other_pickles_are_refused():
+def test_wrong_pickles_are_rejected():
     sensor = adasplats.Sensor("hdl-64-paper")
     name, version, fields = sensor.__getstate__()
     fresh = adasplats.Sensor.__new__
-    for state, says in (((name, version + 1, fields), f"has version {version + 1}.*reads version"),
-                        (("adasplats.Scan", version, fields), "is one of adasplats.Scan"),
+    for state, message in (((name, version + 1, fields), f"has version {version + 1}.*reads version"),
+                        (("adasplats.Scan", version, fields), "is of adasplats.Scan"),
                         ((name, version), "is damaged"), ("text", "is damaged"),
                         ((name, version, {}), "has no field 'name'"),
-                        ((name, version, {**fields, "columns": b"1"}), "is cut in columns"),
-                        ((name, version, {**fields, "elevations_rad": b"1"}), "is cut in"),
-                        ((name, version, {**fields, "name": 1}), "of another kind")):
-        with pytest.raises(ValueError, match=says):
+                        ((name, version, {**fields, "columns": b"1"}), "is truncated in columns"),
+                        ((name, version, {**fields, "elevations_rad": b"1"}), "is truncated in"),
+                        ((name, version, {**fields, "name": 1}), "of another type")):
+        with pytest.raises(ValueError, match=message):
             fresh(adasplats.Sensor).__setstate__(state)
 
 
-def test_what_cannot_be_pickled_says_so(scene):
+def test_scenes_cannot_be_pickled(scene):
     with pytest.raises(TypeError, match="Scene"):
         pickle.dumps(scene)

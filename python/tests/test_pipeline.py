@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every function against the command line on the same data: the same bytes, the same keys."""
+"""Every function against the command line on the same data: same bytes, same keys."""
 import re
 import struct
 import warnings
@@ -12,7 +12,7 @@ from conftest import report_of, run_program
 
 import adasplats
 
-# What a report says of the run, not of the result.
+# Keys of a report that describe the run, not the result.
 OF_THE_RUN = {"program", "version", "command", "provenance", "parameters", "threads", "device", "warnings",
               "peak_memory_bytes", "seconds", "seconds_of_load"}
 
@@ -30,15 +30,15 @@ def files_of(folder):
 def png_pixels(path):
     """A PNG of 8-bit RGB; oracle of the pictures. PNG specification, sections 5 and 9."""
     data = path.read_bytes()
-    place, packed = 8, b""
-    while place < len(data):
-        length, kind = struct.unpack(">I4s", data[place:place + 8])
-        body = data[place + 8:place + 8 + length]
+    offset, packed = 8, b""
+    while offset < len(data):
+        length, kind = struct.unpack(">I4s", data[offset:offset + 8])
+        body = data[offset + 8:offset + 8 + length]
         if kind == b"IHDR":
             width, height = struct.unpack(">II", body[:8])
         if kind == b"IDAT":
             packed += body
-        place += 12 + length
+        offset += 12 + length
     raw = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
     pixels = np.zeros((height + 1, width + 1, 3), np.int64)
     for y in range(height):
@@ -183,7 +183,7 @@ def test_simulate(street, poses, tmp_path, options):
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
-def test_batches_hold_the_scans(street, scene, poses):
+def test_batches_equal_scans(street, scene, poses):
     scans = scene.simulate(street.sensor, poses)
     names = ["positions", "intensities", "classes", "instances", "rings", "columns", "times",
              "ranges", "return_indices"]
@@ -273,7 +273,7 @@ def test_scene_of_a_model_in_memory(street, scene, poses):
     assert len(mesh.simulate(street.sensor, poses)[0]) > 0
 
 
-def test_cast_gives_what_simulate_gives(street, scene, poses):
+def test_cast_equals_simulate(street, scene, poses):
     """Without noise a scan is the hits of its firings."""
     sensor = adasplats.Sensor(street.sensor)
     scan = scene.simulate(sensor, poses[:1], noise=False)[0]
@@ -355,13 +355,13 @@ def test_resimulate(street, scene):
     assert adasplats.evaluate.resimulate(scene, street.sequence) == result
 
 
-def test_resimulate_by_a_protocol(street, scene):
+def test_resimulate_with_a_protocol(street, scene):
     expected = report_of(street.folder, "evaluate", "resimulate", street.model, street.sequence,
                          "--protocol", "lidar4d")
     result = adasplats.evaluate.resimulate(scene, street.sequence, protocol="lidar4d")
     assert result == without_times(expected)
     assert result["lidar4d"]["scans"] > 0
-    with pytest.raises(ValueError, match="expected one of lidar4d"):
+    with pytest.raises(ValueError, match="protocol must be 'lidar4d'"):
         adasplats.evaluate.resimulate(scene, street.sequence, protocol="lidarrf")
     with pytest.raises(TypeError, match="protocol"):
         adasplats.evaluate.resimulate(scene, street.sequence, protocol=4)
@@ -408,10 +408,10 @@ def test_segmentation(street, tmp_path):
     result = adasplats.evaluate.segmentation(predicted, true)
     assert result == adasplats.evaluate.segmentation(*files, threads=1)
     assert result == without_times(report_of(street.folder, "evaluate", "segmentation", *files))
-    judged = ~np.isin(true, [0, 1, 52, 99])
-    assert result["points"] == judged.sum()
-    is_road, told_road = np.isin(true, [40, 60]), predicted == 40
-    expected = (is_road & told_road).sum() / (judged & (is_road | told_road)).sum()
+    is_counted = ~np.isin(true, [0, 1, 52, 99])
+    assert result["points"] == is_counted.sum()
+    is_road, is_predicted_road = np.isin(true, [40, 60]), predicted == 40
+    expected = (is_road & is_predicted_road).sum() / (is_counted & (is_road | is_predicted_road)).sum()
     np.testing.assert_allclose(result["iou"]["road"], expected)
     assert adasplats.evaluate.segmentation(true, true)["miou_present"] == 1
 
@@ -465,7 +465,7 @@ def test_sensors_from_arrays(scene, poses, street):
     np.testing.assert_array_equal(*ranges)
     with pytest.raises(ValueError, match="topmost"):
         adasplats.Sensor.from_beams([-0.1, 0.1])
-    with pytest.raises(ValueError, match="row 1 has no length"):
+    with pytest.raises(ValueError, match="row 1 has length 0"):
         adasplats.Sensor.from_rays([[1.0, 0, 0], [0, 0, 0]])
     with pytest.raises(ValueError, match="rotation_hz"):
         sensor.replaced(rotation_hz=0)
@@ -473,7 +473,7 @@ def test_sensors_from_arrays(scene, poses, street):
         sensor.replaced(max_range=3)
 
 
-def test_a_divergence_says_what_it_measures():
+def test_divergence_needs_its_definition():
     """Oracle: a Gaussian beam has half its intensity at sqrt(ln 2 / 2) of its 1/e^2 radius."""
     ouster = adasplats.Sensor("ouster-os1-128")
     full = 2 / np.sqrt(2 * np.log(2))

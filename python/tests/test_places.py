@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses that nobody recorded: above the ground of a scene."""
+"""Poses above the ground of a scene, without a recording."""
 import numpy as np
 import pytest
 

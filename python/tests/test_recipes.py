@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whole recipes from Python: the same bytes as the command line's, the same refusals."""
+"""Jobs called from Python: the same bytes and the same errors as on the command line."""
 import json
 
 import numpy as np
@@ -30,13 +30,13 @@ def test_mesh_of_a_file_and_of_points(street, tmp_path):
 
 def test_export(street, tmp_path):
     run_program("export", street.model, "-o", tmp_path / "cli.ply", "--format", "gaussian-2d")
-    told = adasplats.export(street.model, tmp_path / "here.ply", format="gaussian-2d")
+    report = adasplats.export(street.model, tmp_path / "here.ply", format="gaussian-2d")
     assert (tmp_path / "here.ply").read_bytes() == (tmp_path / "cli.ply").read_bytes()
-    assert told == {"splats": len(adasplats.Model.load(street.model)), "points_dropped": 0,
+    assert report == {"splats": len(adasplats.Model.load(street.model)), "points_dropped": 0,
                     "bytes": (tmp_path / "here.ply").stat().st_size}
     adasplats.export(street.cloud, tmp_path / "cloud.glb", color="height", labels="semantickitti")
     assert (tmp_path / "cloud.glb").stat().st_size > 0
-    with pytest.raises(ValueError, match="format must be one of 'gaussian-3d', "):
+    with pytest.raises(ValueError, match="format must be 'gaussian-3d', "):
         adasplats.export(street.model, tmp_path / "x.ply", format="gauss")
     with pytest.raises(ValueError, match="mcap"):
         adasplats.export(street.model, tmp_path / "x.mcap")
@@ -44,7 +44,7 @@ def test_export(street, tmp_path):
 
 
 def hall_drive(folder):
-    """Scans of KITTI's sensor in a hall, and a wave in their poses."""
+    """Scans of KITTI's sensor in a hall, with a sine error in the poses."""
     quads = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
     corners = [[(-20, 20)[k & 1], (-14, 14)[k >> 1 & 1], (0, 10)[k >> 2]] for k in range(8)]
     text = "".join("v {} {} {}\n".format(*corner) for corner in corners)
@@ -67,12 +67,12 @@ def hall_drive(folder):
 def test_calibrate(tmp_path):
     sequence = hall_drive(tmp_path)
     run_program("calibrate", sequence, "-o", tmp_path / "cli", "--own-body", 0)
-    told = adasplats.calibrate(sequence, tmp_path / "here", own_body_m=0)
+    report = adasplats.calibrate(sequence, tmp_path / "here", own_body_m=0)
     assert files_of(tmp_path / "here") == files_of(tmp_path / "cli")
-    assert told == json.loads((tmp_path / "here" / "report.json").read_text(encoding="utf-8"))
-    assert told["applied"] and told["largest_shift_m"] > 0.03
+    assert report == json.loads((tmp_path / "here" / "report.json").read_text(encoding="utf-8"))
+    assert report["applied"] and report["largest_shift_m"] > 0.03
     sensor = adasplats.Sensor(tmp_path / "here" / "sensor.toml")
-    np.testing.assert_allclose(sensor.range_offsets_m, told["lasers"]["range_offset_m"], atol=1e-5)
+    np.testing.assert_allclose(sensor.range_offsets_m, report["lasers"]["range_offset_m"], atol=1e-5)
     assert len(adasplats.Trajectory.read(tmp_path / "here" / "trajectory.csv")) == 8
     with pytest.raises(OSError, match="not empty"):
         adasplats.calibrate(sequence, tmp_path / "here")
@@ -90,8 +90,8 @@ def test_fit_sensor(street, tmp_path):
     scene.simulate("velodyne-hdl-64e-kitti", poses, seed=3).save(scans)
     expected = report_of(tmp_path, "fit-sensor", street.model, scans, "-o", tmp_path / "cli.toml",
                          "--scans", "0:4")
-    told = adasplats.fit_sensor(street.model, scans, tmp_path / "here.toml", scan_count=4)
-    assert told == without_times(expected)
+    report = adasplats.fit_sensor(street.model, scans, tmp_path / "here.toml", scan_count=4)
+    assert report == without_times(expected)
     assert (tmp_path / "here.toml").read_bytes() == (tmp_path / "cli.toml").read_bytes()
     assert adasplats.Sensor(tmp_path / "here.toml").rings == 64
 
@@ -99,23 +99,23 @@ def test_fit_sensor(street, tmp_path):
 def test_simkitti32(street, tmp_path):
     expected = report_of(tmp_path, "simkitti32", street.sequence, "-o", tmp_path / "cli", "--sensor",
                          street.sensor, "--scans", "0:3", "--depth", 3, "--offset", "0,0,-0.4")
-    told = adasplats.simkitti32(street.sequence, tmp_path / "here", sensor=street.sensor, scan_count=3,
+    report = adasplats.simkitti32(street.sequence, tmp_path / "here", sensor=street.sensor, scan_count=3,
                                 depth=3, offset=(0, 0, -0.4), device="cpu")
     assert files_of(tmp_path / "here") == files_of(tmp_path / "cli")
-    assert set(told) <= set(expected) and told["scans"] == 3
+    assert set(report) <= set(expected) and report["scans"] == 3
     left_out = {"model", "seconds", "seconds_simulated", "scans_per_second"}
-    assert ({k: v for k, v in told.items() if k not in left_out}
-            == {k: v for k, v in without_times(expected).items() if k in told and k not in left_out})
+    assert ({k: v for k, v in report.items() if k not in left_out}
+            == {k: v for k, v in without_times(expected).items() if k in report and k not in left_out})
     points = sum(np.fromfile(scan, np.float32).size // 4
                  for scan in (tmp_path / "here").rglob("*.bin"))
-    assert points == told["points"] > 0
+    assert points == report["points"] > 0
     with pytest.raises(ValueError, match="depth is 0, expected 1 to 64"):
         adasplats.simkitti32(street.sequence, tmp_path / "no", depth=0)
     with pytest.raises(OSError):
         adasplats.simkitti32(street.sequence, tmp_path / "here")
 
 
-def test_simkitti32_takes_a_model(street, tmp_path):
+def test_simkitti32_with_a_model(street, tmp_path):
     def make(name, **options):
         return adasplats.simkitti32(street.sequence, tmp_path / name, sensor=street.sensor,
                                     scan_count=2, device="cpu", **options)
@@ -129,7 +129,7 @@ def test_simkitti32_takes_a_model(street, tmp_path):
         make("no", model=model, model_every=2)
 
 
-def test_simkitti32_has_the_weather_and_the_drop_of_simulate(street, tmp_path):
+def test_simkitti32_with_weather_and_ray_drop(street, tmp_path):
     def points(name, **options):
         return adasplats.simkitti32(street.sequence, tmp_path / name, sensor=street.sensor,
                                     scan_count=2, device="cpu", **options)["points"]
@@ -139,22 +139,22 @@ def test_simkitti32_has_the_weather_and_the_drop_of_simulate(street, tmp_path):
     drop = tmp_path / "drop.toml"
     drop.write_text("usual_reflectance = 0.3\nweights = [0, 0.1, 0, 0, 0, 0, 0, 0]\n")
     assert points("drop", ray_drop=drop) < 0.8 * clear
-    told = (tmp_path / "clear" / "adasplats.json").read_text()
-    assert '"fog_visibility_m": null' in told and '"rain_mm_h": 0.0' in told
+    report = (tmp_path / "clear" / "adasplats.json").read_text()
+    assert '"fog_visibility_m": null' in report and '"rain_mm_h": 0.0' in report
 
 
-def test_what_is_wrong_is_said_before_long_work(street, tmp_path):
-    def refuse(text, **options):
+def test_arguments_are_checked_before_the_work_starts(street, tmp_path):
+    def rejects(text, **options):
         with pytest.raises(ValueError, match=text):
             adasplats.simkitti32(street.sequence, tmp_path / "none", sensor=street.sensor, **options)
         assert list(tmp_path.glob("*none*")) == []
 
     drop = tmp_path / "drop.toml"
     drop.write_text("garbage = 1\n")
-    refuse("garbage", ray_drop=drop)
-    refuse("stride is 0", scan_stride=0)
-    refuse("moving_radius has no effect", moving=False, moving_radius=0.2)
-    refuse("rain is -1, expected 0 to 3000", rain=-1)
+    rejects("garbage", ray_drop=drop)
+    rejects("stride is 0", scan_stride=0)
+    rejects("moving_radius has no effect", moving=False, moving_radius=0.2)
+    rejects("rain is -1, expected 0 to 3000", rain=-1)
     with pytest.raises(ValueError, match="first_scan has no effect on a splat model"):
         adasplats.export(street.model, tmp_path / "x.glb", first_scan=3)
 
@@ -166,36 +166,36 @@ def test_what_is_wrong_is_said_before_long_work(street, tmp_path):
     ({"rotation_rate": 0}, "rotation_rate is 0, expected 0.001 to 10000"),
     ({"sub_rays": 65}, "sub_rays is 65, expected 1 to 64"),
 ])
-def test_ranges_of_a_sensor(scene, poses, options, text):
+def test_overrides_of_a_sensor_are_checked(scene, poses, options, text):
     with pytest.raises(ValueError, match=text):
         scene.simulate("velodyne-vlp-16", poses, **options)
 
 
 
-# What differs from run to run, and what names the own folder or process.
-OF_ONE_RUN = {"command", "provenance", "made_by", "date", "seconds", "step_seconds",
+# Keys that differ from run to run or contain paths.
+RUN_KEYS = {"command", "provenance", "made_by", "date", "seconds", "step_seconds",
               "peak_memory_bytes", "images_per_second", "scans_per_second", "trajectory"}
 
 
-def of_any_run(results):
+def without_run_keys(results):
     """compare.json without times and commands."""
     if isinstance(results, list):
-        return [of_any_run(each) for each in results]
+        return [without_run_keys(each) for each in results]
     if isinstance(results, dict):
-        return {key: of_any_run(value) for key, value in results.items() if key not in OF_ONE_RUN}
+        return {key: without_run_keys(value) for key, value in results.items() if key not in RUN_KEYS}
     return results
 
 
 def test_compare(street, tmp_path):
     run_program("compare", street.folder / "street", "-o", tmp_path / "cli", "--methods", "basic",
                 "--picture-width", 64, "--every", 40, "--held-out-scans", "0:2", "--device", "cpu")
-    told = adasplats.compare(street.folder / "street", tmp_path / "here", methods=["basic"],
+    report = adasplats.compare(street.folder / "street", tmp_path / "here", methods=["basic"],
                              picture_width=64, every=40, held_out_scan_count=2, device="cpu",
                              program=PROGRAM)
     here, cli = (json.loads((tmp_path / name / "compare.json").read_text(encoding="utf-8"))
                  for name in ("here", "cli"))
-    assert told == here
-    assert of_any_run(here) == of_any_run(cli)
+    assert report == here
+    assert without_run_keys(here) == without_run_keys(cli)
     entry = here["competitors"][0]
     assert (entry["name"], entry["state"]) == ("basic", "done")
     assert "--device cpu" in entry["generate"]["command"]
@@ -203,30 +203,30 @@ def test_compare(street, tmp_path):
         assert entry["made_by"][step]["commit"] == made_by["commit"]
     for report in ("report.md", "report.html"):
         assert (tmp_path / "here" / report).stat().st_size > 1000
-    # Again: nothing is run, so that the dates of the steps stay.
+    # A second call runs no step, so the dates of the steps do not change.
     again = adasplats.compare(street.folder / "street", tmp_path / "here", methods=["basic"],
                               picture_width=64, every=40, held_out_scan_count=2, device="cpu",
                               program=PROGRAM)
     assert again["competitors"] == here["competitors"]
 
 
-def test_compare_refuses(street, tmp_path, monkeypatch):
-    def refuse(error, text, **options):
+def test_compare_rejects_wrong_arguments(street, tmp_path, monkeypatch):
+    def rejects(error, text, **options):
         with pytest.raises(error, match=text):
             adasplats.compare(street.folder / "street", tmp_path / "none",
                               **{"program": PROGRAM, **options})
         assert not (tmp_path / "none" / "compare.json").exists()
 
-    refuse(ValueError, "'basics' is not known, did you mean 'basic'", methods=["basics"])
-    refuse(TypeError, "methods must be None or a list of strings", methods="basic")
-    refuse(TypeError, "meshes must be None or a dict", meshes=["a.ply"])
-    refuse(ValueError, "'a b' must consist of letters", meshes={"a b": street.mesh})
-    refuse(FileNotFoundError, "none.ply", meshes={"artist": tmp_path / "none.ply"})
-    refuse(ValueError, "time_limit is 0, expected more than 0", time_limit=0)
-    refuse(ValueError, "poisson_depth has no effect without the method poisson",
+    rejects(ValueError, "'basics' is not known, did you mean 'basic'", methods=["basics"])
+    rejects(TypeError, "methods must be None or a list of strings", methods="basic")
+    rejects(TypeError, "meshes must be None or a dict", meshes=["a.ply"])
+    rejects(ValueError, "'a b' must consist of letters", meshes={"a b": street.mesh})
+    rejects(FileNotFoundError, "none.ply", meshes={"artist": tmp_path / "none.ply"})
+    rejects(ValueError, "time_limit is 0, expected more than 0", time_limit=0)
+    rejects(ValueError, "poisson_depth has no effect without the method poisson",
            methods=["basic"], poisson_depth=9)
-    refuse(ValueError, "preset must be 'none', 'paper-pc3d'", preset="kitti")
-    refuse(FileNotFoundError, "cannot be started", program=tmp_path / "no program")
-    refuse(ValueError, "is not adasplats", program="true")
+    rejects(ValueError, "preset must be 'none', 'paper-pc3d'", preset="kitti")
+    rejects(FileNotFoundError, "cannot be started", program=tmp_path / "no program")
+    rejects(ValueError, "is not adasplats", program="true")
     monkeypatch.setenv("PATH", str(tmp_path))
-    refuse(FileNotFoundError, "adasplats: the program .* not on PATH; install", program=None)
+    rejects(FileNotFoundError, "adasplats: the program .* not on PATH; install", program=None)

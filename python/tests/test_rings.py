@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""bench/compare_rings.py: only the scans that are asked for count."""
+"""bench/compare_rings.py: only the requested scans count."""
 import json
 import subprocess
 import sys
@@ -51,11 +51,11 @@ def test_only_the_chosen_scans_count(tmp_path):
     assert (tmp_path / "p_ranges.png").exists()
 
 
-def test_scans_must_be_told_and_be_there(tmp_path):
-    for words, says in (((), "--scans"), (("--scans", "1:2:0"), "FIRST:COUNT[:STRIDE]"),
+def test_scans_are_required_and_must_exist(tmp_path):
+    for words, message in (((), "--scans"), (("--scans", "1:2:0"), "FIRST:COUNT[:STRIDE]"),
                         (("--scans", "odd"), "FIRST:COUNT[:STRIDE]"),
                         (("--scans", "1:3:2"), "has 4 scans"),
                         (("--scans", "1:2:2", "--scan", "2"), "not one of")):
-        refused = compare(tmp_path, *words)
-        assert refused.returncode != 0
-        assert says in refused.stderr
+        rejected = compare(tmp_path, *words)
+        assert rejected.returncode != 0
+        assert message in rejected.stderr

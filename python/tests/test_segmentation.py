@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Semantic classes by a network: the command line's, as arrays and in models."""
+"""Semantic classes of a network, as arrays and in models, against the command line."""
 import hashlib
 import json
 import pickle
@@ -17,7 +17,7 @@ HEIGHT_M = 1.13
 
 
 def write_network(path, classes=("road", "car")):
-    """What is higher than HEIGHT_M above the ground is of the second class."""
+    """Points higher than HEIGHT_M above the ground belong to the second class."""
     layer = {"kind": "unary", "level": 0, "input": 0, "output": 1, "weight": 0, "bias": 1}
     header = {"version": 1, "card": "a test", "values": 2, "kernel": [[0, 0, 0]],
               "shape": {"cell_m": 0.1, "levels": 1, "radius": 2.5, "neighbors": 8, "sigma": 1.2,
@@ -43,7 +43,7 @@ def network(tmp_path):
 
 @pytest.fixture
 def cloud():
-    """A road and a wall beside it, without labels."""
+    """A road and a wall next to it, without labels."""
     draw = np.random.default_rng(1)
     road = np.stack([draw.uniform(0, 12, 4000), draw.uniform(-4, 4, 4000), np.zeros(4000)], 1)
     wall = np.stack([draw.uniform(0, 12, 2000), np.full(2000, 4.0), draw.uniform(0, 3, 2000)], 1)
@@ -71,11 +71,11 @@ def test_classes_and_confidences(cloud, network):
     classes[0] = 7  # an array of its own
 
 
-def test_classes_are_the_commands(cloud, network, tmp_path):
+def test_classes_equal_those_of_the_command(cloud, network, tmp_path):
     cloud.save(tmp_path / "cloud.ply")
     run_program("segment", tmp_path / "cloud.ply", "-o", tmp_path / "cli.ply", "--network", network)
-    told = adasplats.read(tmp_path / "cli.ply")
-    np.testing.assert_array_equal(adasplats.segment(told, network=network), told.classes)
+    labelled_cloud = adasplats.read(tmp_path / "cli.ply")
+    np.testing.assert_array_equal(adasplats.segment(labelled_cloud, network=network), labelled_cloud.classes)
 
 
 def test_a_model_by_classes_of_a_network(cloud, network, tmp_path):
@@ -106,7 +106,7 @@ def test_labels_are_replaced_with_a_warning(cloud, network):
     assert 50 not in model.classes
 
 
-def test_what_is_wrong(cloud, network, tmp_path):
+def test_wrong_arguments(cloud, network, tmp_path):
     with pytest.raises(ValueError, match="network has no effect without segmentation"):
         adasplats.model(cloud, network=network)
     with pytest.raises(ValueError, match="labels has no effect with segment"):

@@ -34,7 +34,7 @@ def needs_torch():
 
 
 def tool(name, *arguments, code=0):
-    """Runs a script; what it says."""
+    """Runs a script; returns its exit code and output."""
     path = os.pathsep.join([str(Path(adasplats.__file__).parent.parent),
                             os.environ.get("PYTHONPATH", "")])
     result = subprocess.run([sys.executable, "-B", TOOLS / name, *map(str, arguments)],
@@ -53,7 +53,7 @@ def world(tmp_path_factory):
 
 
 def random_network(classes, seed=1):
-    """Weights by chance, normalisations as after a training."""
+    """Random weights, normalisations as after training."""
     import torch
     from network import Network
     torch.manual_seed(seed)
@@ -73,7 +73,7 @@ def saved(network, classes, file):
     return file
 
 
-def test_the_network_that_comes_with_it():
+def test_default_network():
     network = adasplats.Network()
     assert len(network.classes) == 19 and network.card
     assert network.cell_m == pytest.approx(0.1)
@@ -99,7 +99,7 @@ def test_the_program_gives_the_logits_of_pytorch(tmp_path):
     assert read.classes == classes and read.card == "random"
 
 
-def test_a_check_that_fails_says_so(tmp_path, monkeypatch):
+def test_failing_checks_are_reported(tmp_path, monkeypatch):
     needs_torch()
     needs_products()
     import export
@@ -140,7 +140,7 @@ def test_places_of_own_classes(tmp_path, world):
     assert np.array_equal(np.load(tmp_path / "c.npz")["names"], a["names"])
 
 
-@pytest.mark.parametrize("text, says", [
+@pytest.mark.parametrize("text, message", [
     ("street 40\n", "map.txt:1: expected CLASS = NUMBER"),
     ("\nstreet = wall\n", "map.txt:2: expected numbers"),
     ("street = 70000\n", "map.txt:1: expected numbers"),
@@ -148,11 +148,11 @@ def test_places_of_own_classes(tmp_path, world):
     ("street = 40\nlane = 40\n", "number 40 is 'street' and 'lane'"),
     ("unknown = 3\n", "0 classes"),
 ])
-def test_class_maps_that_are_wrong(tmp_path, text, says):
+def test_wrong_class_maps(tmp_path, text, message):
     own = tmp_path / "map.txt"
     own.write_text(text)
     out = tool("prepare.py", tmp_path / "a.npz", tmp_path, "--class-map", own, code=1)
-    assert says in out and "Traceback" not in out
+    assert message in out and "Traceback" not in out
 
 
 def test_fine_tuning_in_one_command(tmp_path, world):
@@ -178,8 +178,8 @@ def test_fine_tuning_in_one_command(tmp_path, world):
     labelled = tmp_path / "labelled"
     run_program("segment", world, "-o", labelled, "--network", tmp_path / "own.network",
                 "--class-map", own)
-    told = json.loads((labelled / "adasplats.json").read_text())
-    assert [c["id"] for c in told["classes"]] == [40, 50]
+    manifest = json.loads((labelled / "adasplats.json").read_text())
+    assert [c["id"] for c in manifest["classes"]] == [40, 50]
     tool("prepare.py", tmp_path / "b.npz", world)
     assert "different classes in" in tool("train.py", tmp_path / "no", tmp_path / "a.npz",
                                       tmp_path / "b.npz", code=1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The stubs say what the module does: names, arguments, defaults; all have docstrings."""
+"""The stubs match the module: names, arguments, defaults, docstrings."""
 import ast
 import inspect
 from pathlib import Path
@@ -85,7 +85,7 @@ def public(owner):
     return {name for name in vars(owner) if not name.startswith("_")}
 
 
-def test_nothing_is_missing_in_the_stubs():
+def test_stubs_are_complete():
     classes = {name for name, nodes in INIT.items() if isinstance(nodes[0], ast.ClassDef)}
     stated = {name for name in INIT if "." not in name}
     constants = {"NO_PRIMITIVE", "__version__", "evaluate"}
@@ -113,7 +113,7 @@ def test_everything_has_a_docstring():
         assert "Raises" in getattr(adasplats.evaluate, name).__doc__
 
 
-def test_stubs_tell_of_arrays_what_the_docstrings_do():
+def test_array_types_of_stubs_match_docstrings():
     """A property whose docstring begins with a shape has an array type in the stub."""
     for name, nodes in INIT.items():
         node = nodes[0]
@@ -123,6 +123,19 @@ def test_stubs_tell_of_arrays_what_the_docstrings_do():
                 if f") {dtype}" in text[:20]:
                     assert f"NDArray[np.{dtype}]" in ast.unparse(node.returns), name
             assert ast.get_docstring(node), name
+
+
+def test_docstrings_of_stubs_match_the_module():
+    """Stubs have the docstrings of properties and the first paragraph of those of classes."""
+    for name, nodes in INIT.items():
+        node, value = nodes[0], resolved(adasplats, name)
+        if isinstance(node, ast.ClassDef) and not issubclass(value, Exception):
+            expected = inspect.getdoc(value).split("\n\n")[0]
+        elif isinstance(node, ast.FunctionDef) and is_property(node):
+            expected = inspect.getdoc(value)
+        else:
+            continue
+        assert (ast.get_docstring(node) or "").split() == expected.split(), name
 
 
 def test_package_is_typed():

@@ -17,7 +17,7 @@ import adasplats
 
 
 def count_while(work):
-    """How often another thread of Python's runs while `work` does, and for how long."""
+    """How often another Python thread runs during `work`, and the duration of `work` in s."""
     done = threading.Event()
     counted = []
 
@@ -38,7 +38,7 @@ def count_while(work):
     return counted[0], seconds
 
 
-def test_others_run_during_long_calls(street, scene, poses):
+def test_long_calls_release_the_gil(street, scene, poses):
     rays = unit_rays(3_000_000)
     many = np.repeat(poses.poses[:1], 100, axis=0)
     for work in (lambda: scene.cast([0.0, 0, 2], rays),
@@ -113,14 +113,14 @@ def test_breaking_out_of_an_iterator_leaves_nothing(scene, poses):
     assert len(os.listdir("/proc/self/task")) <= before[1]
 
 
-def test_progress_is_told(street, scene, poses):
+def test_progress_is_reported(street, scene, poses):
     heard = []
     adasplats.model(street.cloud, labels="semantickitti",
                     progress=lambda step, done, total: heard.append((step, done, total)))
     assert len({step for step, _, _ in heard}) > 5
-    assert all(list(map(type, told)) == [str, int, int] for told in heard)
+    assert all(list(map(type, call)) == [str, int, int] for call in heard)
     heard.clear()
-    scene.simulate("hdl-32-paper", poses, progress=lambda *told: heard.append(told))
+    scene.simulate("hdl-32-paper", poses, progress=lambda *call: heard.append(call))
     assert heard[0] == ("simulate", 0, len(poses))
     assert heard[-1] == ("simulate", len(poses), len(poses))
 
@@ -195,21 +195,21 @@ def test_interrupt(street, tmp_path, name):
         process.communicate()
 
 
-def test_a_forked_worker_is_told(street, scene, poses):
-    """Its threads are not there: it must not wait for them for ever."""
+def test_forked_workers_get_an_error(street, scene, poses):
+    """A fork has no threads and must not wait for them."""
     origins, directions = np.zeros(3), unit_rays(10)
     calls = [lambda: scene.cast(origins, directions), lambda: scene.simulate(street.sensor, poses),
              lambda: scene.iter_scans(street.sensor, poses),
              lambda: scene.scan_batches(street.sensor, poses), lambda: scene.render(width=8, height=8)]
     child = os.fork()
     if child == 0:
-        told = 0
+        errors = 0
         for call in calls:
             try:
                 call()
             except RuntimeError as error:
-                told += "'spawn'" in str(error)
-        os._exit(told)
+                errors += "'spawn'" in str(error)
+        os._exit(errors)
     deadline = time.time() + 60
     while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0):
         if time.time() > deadline:

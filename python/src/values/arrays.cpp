@@ -23,15 +23,14 @@ std::string shape_text(const py::array& array) {
   throw py::value_error(name + ": expected shape " + expected + ", got " + shape_text(array));
 }
 
-/// What NumPy makes of it, if it is real numbers.
+/// The value as a NumPy array. Errors: TypeError if its elements are not real numbers.
 py::array number_array(py::handle value, const std::string& name) {
   py::array array = py::array::ensure(value);
   if (!array) {
-    throw py::type_error(name + ": expected an array of numbers, got " +
-                         std::string(py::str(py::type::of(value).attr("__name__"))));
+    throw py::type_error(name + ": expected an array of numbers, got " + type_name(value));
   }
   const char kind = array.dtype().kind();
-  // An empty list is an array of float64 for NumPy; an empty array of objects is still wrong.
+  // NumPy makes an empty list float64; an empty array of objects is still an error.
   if (kind != 'f' && kind != 'i' && kind != 'u')
     throw py::type_error(name + ": expected an array of numbers, got dtype " +
                          std::string(py::str(array.dtype())));
@@ -42,7 +41,7 @@ py::array as_float64(const py::array& array) {
   return py::array_t<double, py::array::forcecast>::ensure(array);
 }
 
-/// A value of a one-dimensional array, which may be unaligned (a field of packed records, say).
+/// An element of a one-dimensional array, which may be unaligned (a field of packed records).
 template <class T>
 T value_at(const py::array& array, std::size_t index) {
   T value;
@@ -57,9 +56,11 @@ bool holds(const py::array& array) {
 
 }  // namespace
 
+std::string type_name(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
+
 py::array array_view(const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
                      std::vector<py::ssize_t> strides, py::handle owner) {
-  // pybind11 copies where there is no base.
+  // Without a base, pybind11 copies the data.
   py::array array(type, std::move(shape), std::move(strides), data, owner);
   array.attr("flags").attr("writeable") = false;
   return array.attr("view")(py::module_::import("adasplats._views").attr("ArrayView"));
@@ -112,7 +113,7 @@ Vec3d vector_of(py::handle value, const char* name) {
   return rows.vector(0);
 }
 
-std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count, std::uint64_t most,
+std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count, std::uint64_t max,
                                             const char* name) {
   if (value.is_none()) return {};
   const py::array given = number_array(value, name);
@@ -123,7 +124,7 @@ std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count,
                          std::string(py::str(given.dtype())));
   const auto out_of_range = [&](std::size_t i) {
     return py::value_error(std::string(name) + "[" + std::to_string(i) + "] is not in 0 to " +
-                           std::to_string(most));
+                           std::to_string(max));
   };
   std::vector<std::uint64_t> numbers(count);
   const bool is_signed = given.dtype().kind() == 'i';
@@ -132,7 +133,7 @@ std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count,
   for (std::size_t i = 0; i < count; ++i) {
     if (is_signed && value_at<std::int64_t>(wide, i) < 0) throw out_of_range(i);
     numbers[i] = value_at<std::uint64_t>(wide, i);
-    if (numbers[i] > most) throw out_of_range(i);
+    if (numbers[i] > max) throw out_of_range(i);
   }
   return numbers;
 }
@@ -158,14 +159,14 @@ namespace {
 
 RigidTransform transform_of(const std::byte* matrix, std::size_t index, const std::string& name) {
   std::array<double, 16> m;
-  std::memcpy(m.data(), matrix, sizeof(m));  // it may be unaligned
+  std::memcpy(m.data(), matrix, sizeof(m));  // may be unaligned
   const auto fail = [&](const std::string& what) {
     return py::value_error(name + ": matrix " + std::to_string(index) + " " + what);
   };
   for (const double value : m)
     if (!std::isfinite(value)) throw fail("is not finite");
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
-    throw fail("has another last row than 0 0 0 1");
+    throw fail("does not have the last row 0 0 0 1");
   const Mat3d rotation{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}};
   if (!(orthonormality_error(rotation) <= 1e-3))
     throw fail("has a rotation that is not orthonormal to 0.001");

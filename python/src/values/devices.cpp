@@ -8,9 +8,8 @@ namespace adasplats::python {
 namespace {
 
 constexpr const char* kDevicesDoc =
-    "The GPUs that can be used: a list of dicts index, name, compute (major, minor), "
-    "memory_bytes.\n"
-    "Empty where there is none; why_no_gpu() says why.";
+    R"(The usable GPUs: a list of dicts with index, name, compute (major, minor) and memory_bytes.
+Empty without a GPU; why_no_gpu() gives the reason.)";
 
 py::list devices() {
   py::list found;
@@ -32,7 +31,7 @@ void bind_devices(py::module_& module) {
   module.def(
       "why_no_gpu", [] { return find_gpus().reason; },
       documented("why_no_gpu", "",
-                 "Why no GPU can be used and what to do about it; empty where one can.")
+                 "Why no GPU is usable and what to do about it; empty if one is usable.")
           .c_str());
 }
 

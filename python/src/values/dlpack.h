@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-/// DLPack, the exchange of arrays between libraries, as NumPy, PyTorch, CuPy and JAX read it: the
-/// structures of version 0.x, which every consumer takes. Source: DLPack specification,
-/// dmlc.github.io/dlpack (C API), and the Python array API standard's __dlpack__.
+/// DLPack, for sharing arrays with NumPy, PyTorch, CuPy and JAX: the structures of version 0.x,
+/// which every consumer accepts. Source: DLPack specification, dmlc.github.io/dlpack (C API), and
+/// the Python array API standard's __dlpack__.
 namespace adasplats::dlpack {
 
 enum class DeviceType : std::int32_t { cpu = 1, cuda = 2 };
@@ -42,7 +42,7 @@ struct ManagedTensor {
 };
 static_assert(sizeof(Tensor) == 48 && sizeof(ManagedTensor) == 64);
 
-/// Names of the capsule before and after a consumer has taken what is in it.
+/// Names of the capsule before and after a consumer has taken the tensor.
 inline constexpr const char* kFresh = "dltensor";
 inline constexpr const char* kUsed = "used_dltensor";
 

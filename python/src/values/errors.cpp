@@ -10,12 +10,12 @@
 namespace adasplats::python {
 namespace {
 
-/// What Python raises for each kind; made once and never freed, as modules are not.
+/// The Python class of each kind; never freed, like modules.
 std::array<PyObject*, 8> classes_of_kinds{};
 
 PyObject*& class_of(ErrorKind kind) { return classes_of_kinds[static_cast<std::size_t>(kind)]; }
 
-/// A class that is both ours and Python's own.
+/// A class derived from adasplats.Error and a built-in exception.
 PyObject* make_class(py::module_& module, const char* name, const char* doc, const py::object& ours,
                      PyObject* theirs) {
   const py::tuple bases = py::make_tuple(ours, py::handle(theirs));
@@ -30,11 +30,12 @@ PyObject* make_class(py::module_& module, const char* name, const char* doc, con
 
 void bind_errors(py::module_& module) {
   const auto base = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
-      "adasplats.Error", "What every error of adasplats is besides the class of Python's own.",
+      "adasplats.Error",
+      "Base of all errors of adasplats; each also derives from a built-in exception.",
       PyExc_Exception, nullptr));
   module.attr("Error") = base;
   class_of(ErrorKind::usage) =
-      make_class(module, "UsageError", "Arguments that are wrong or do not fit together.", base,
+      make_class(module, "UsageError", "Arguments are wrong or contradict each other.", base,
                  PyExc_ValueError);
   class_of(ErrorKind::data) =
       make_class(module, "DataError", "The content of an input is wrong.", base, PyExc_ValueError);
@@ -46,12 +47,12 @@ void bind_errors(py::module_& module) {
   class_of(ErrorKind::io) = class_of(ErrorKind::cannot_create) =
       make_class(module, "OutputError",
                  "Reading or writing failed, or an output cannot be created.", base, PyExc_OSError);
-  class_of(ErrorKind::unavailable) =
-      make_class(module, "UnavailableError",
-                 "A GPU, a program or a library is not on this machine.", base, PyExc_RuntimeError);
+  class_of(ErrorKind::unavailable) = make_class(
+      module, "UnavailableError", "A GPU, a program or a library is missing on this machine.", base,
+      PyExc_RuntimeError);
   class_of(ErrorKind::software) =
-      make_class(module, "SoftwareError", "A bug of adasplats.", base, PyExc_RuntimeError);
-  // NOLINTNEXTLINE(performance-unnecessary-value-param): as pybind11 calls it
+      make_class(module, "SoftwareError", "A bug in adasplats.", base, PyExc_RuntimeError);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): signature required by pybind11
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -8,8 +8,8 @@
 
 namespace adasplats::python {
 
-/// The same value as dict, list, str, int, float, bool or None; numbers that are not finite are
-/// None, as they are null in a --report.
+/// The same value as dict, list, str, int, float, bool or None. Numbers that are not finite become
+/// None, as they become null in a --report.
 py::object python_of(const nlohmann::ordered_json& json);
 
 }  // namespace adasplats::python

@@ -13,9 +13,7 @@
 namespace adasplats::python {
 namespace {
 
-std::string type_name(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
-
-/// Whole numbers of Python's and NumPy's, but no truth values.
+/// Whether it is an integer of Python or NumPy; bool is not one.
 bool is_whole(py::handle value) {
   return !PyBool_Check(value.ptr()) && PyIndex_Check(value.ptr()) == 1;
 }
@@ -32,7 +30,7 @@ double number_of(py::handle value) {
   return number;
 }
 
-/// None, or a list of its values, as a default in a signature.
+/// A default in a signature: the value, or None.
 template <class T>
 py::object default_of(const std::optional<T>& value) {
   return value ? py::object(py::cast(*value)) : py::none();
@@ -102,7 +100,7 @@ void Keywords::take(const char* name, std::uint64_t& value) {
 void Keywords::take(const char* name, double& value) {
   const auto given = find(name, given_ || std::isfinite(value) ? py::object(py::float_(value))
                                                                : py::object(py::none()));
-  // None stands for the infinite default: Python has no literal of it.
+  // None means the infinite default, for which Python has no literal.
   if (!given || (given->is_none() && !std::isfinite(value))) return;
   if (!is_number(*given)) wrong_type(name, "a number", *given);
   value = number_of(*given);
@@ -154,12 +152,8 @@ void Keywords::take(const char* name, std::string& value) {
 void Keywords::take(const char* name, std::filesystem::path& value) {
   const auto given = find(name, py::none());
   if (!given || given->is_none()) return;
-  if (!PyUnicode_Check(given->ptr()) && !PyBytes_Check(given->ptr()) &&
-      !py::hasattr(*given, "__fspath__"))
-    wrong_type(name, "a path", *given);
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(given->ptr(), &bytes) == 0) throw py::error_already_set();
-  value = std::string(py::reinterpret_steal<py::bytes>(bytes));
+  if (!is_path(*given)) wrong_type(name, "a path", *given);
+  value = path_of(*given, name);
 }
 
 void Keywords::take(const char* name, Vec3d& value) {
@@ -221,8 +215,9 @@ void Keywords::take(const char* name, py::object& value) {
 
 std::size_t Keywords::take_word(const char* name, std::size_t chosen,
                                 const std::vector<std::string>& known) {
-  const auto given = find(name, py::str(known[chosen]));
-  if (!given) return chosen;
+  const bool has_word = chosen < known.size();
+  const auto given = find(name, has_word ? py::object(py::str(known[chosen])) : py::none());
+  if (!given || (given->is_none() && !has_word)) return chosen;
   if (!PyUnicode_Check(given->ptr())) wrong_type(name, "a string", *given);
   const std::string word = py::str(*given);
   const auto found = std::find(known.begin(), known.end(), word);
@@ -242,27 +237,48 @@ void Keywords::finish() const {
   }
 }
 
+bool is_path(py::handle value) {
+  return PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
+         py::hasattr(value, "__fspath__");
+}
+
+std::filesystem::path path_of(py::handle value, const char* name) {
+  if (!is_path(value))
+    throw py::type_error(std::string(name) + ": expected a path, got " + type_name(value));
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
+  return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected) {
+  std::vector<std::filesystem::path> paths;
+  if (is_path(value)) {
+    paths.push_back(path_of(value, name));
+    return paths;
+  }
+  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
+    throw py::type_error(std::string(name) + ": expected " + else_expected +
+                         "a path or a list of paths, got " + type_name(value));
+  for (const py::handle item : value) paths.push_back(path_of(item, name));
+  if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");
+  return paths;
+}
+
 std::string with_keywords(std::string_view message) {
   return with_settings_as(message, [](const std::string& name) -> std::string {
-    // Those of loading are taken by their keys, with the unit.
+    // Keywords for loading are the keys of the settings, which include the unit.
     for (const Setting& setting : settings_of<LoadOptions>())
       if (name == setting.name) return setting.key;
     return name;
   });
 }
 
-void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given) {
+void reject_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given) {
   for (const auto& [setting, why] : unused) {
     if (given.contains(setting.name))
       throw py::value_error(std::string(setting.name) + " has no effect " + why);
   }
-}
-
-std::string documented(const char* name, const char* leading,
-                       const std::function<void(Keywords&)>& take_all, const char* text) {
-  Keywords keywords;
-  take_all(keywords);
-  return documented(name, (std::string(leading) + ", *" + keywords.signature()).c_str(), text);
 }
 
 std::string documented(const char* name, const char* signature, const char* text) {

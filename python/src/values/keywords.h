@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,13 +30,13 @@ namespace py = pybind11;
 /// signature, so names and defaults are written once.
 class Keywords {
  public:
-  /// Of a call.
+  /// For a call.
   Keywords(std::string function, const py::kwargs& given);
-  /// Without a call: notes what is taken, with its default.
+  /// Without a call: records the names and their defaults.
   Keywords() = default;
 
-  /// Replaces `value` by the argument of that name, if it was given. Errors: TypeError that says
-  /// what is expected, ValueError (out of range, an unknown word).
+  /// Replaces `value` by the argument of that name, if it was given. Errors: TypeError with the
+  /// expected type, ValueError (out of range, an unknown word).
   void take(const char* name, bool& value);
   void take(const char* name, int& value);
   void take(const char* name, std::uint32_t& value);
@@ -55,6 +54,14 @@ class Keywords {
   void take(const char* name, std::vector<int>& value);       ///< None: none
   void take(const char* name, py::object& value);
 
+  /// None: no value.
+  template <class T>
+  void take(const char* name, std::optional<T>& value, Words<T> words) {
+    std::vector<std::string> known;
+    for (const auto& [word, meaning] : words) known.emplace_back(word);
+    const std::size_t chosen = take_word(name, known.size(), known);
+    if (chosen < words.size()) value = words[chosen].second;
+  }
   template <class T>
   void take(const char* name, T& value, Words<T> words) {
     std::vector<std::string> known;
@@ -72,12 +79,13 @@ class Keywords {
   /// To be called when everything was taken. Errors: TypeError.
   void finish() const;
 
-  /// ", name=default" of everything that was taken; "" where nothing was.
+  /// ", name=default" of every keyword that was taken; empty without keywords.
   const std::string& signature() const { return signature_; }
 
  private:
-  /// The argument of that name, or nothing; notes the name and the default.
+  /// The argument of that name, if it was given; records the name and the default.
   std::optional<py::object> find(const char* name, const py::object& default_value);
+  /// Index of the given word in `known`; `chosen` by default (known.size(): the default is None).
   std::size_t take_word(const char* name, std::size_t chosen,
                         const std::vector<std::string>& known);
   [[noreturn]] void wrong_type(const char* name, const char* expected, py::handle got) const;
@@ -88,7 +96,7 @@ class Keywords {
   std::string signature_;
 };
 
-/// Takes all settings of a subject by their names, or by their keys.
+/// Takes all settings of a struct by their names, or by their keys.
 template <class Settings>
 void take_settings(Keywords& keywords, Settings& settings,
                    const char* Setting::*word = &Setting::name) {
@@ -102,16 +110,41 @@ void take_settings(Keywords& keywords, Settings& settings,
   });
 }
 
-/// A message of the library with the names of settings as the keywords that take them.
+/// A message of the library with the names of settings replaced by those of Python keywords.
 std::string with_keywords(std::string_view message);
 
-/// Errors: ValueError, of a keyword that was given and changes nothing beside the others.
-void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given);
+/// Errors: ValueError for a keyword that was given and has no effect with the others.
+void reject_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given);
 
-/// A docstring that begins with the signature, as inspect.signature wants it: `leading` are the
-/// arguments before the keywords, `take_all` takes every keyword.
-std::string documented(const char* name, const char* leading,
-                       const std::function<void(Keywords&)>& take_all, const char* text);
+/// Whether a value is a str, bytes or os.PathLike.
+bool is_path(py::handle value);
+/// Errors: TypeError.
+std::filesystem::path path_of(py::handle value, const char* name);
+/// One path or several; `else_expected` ("a PointCloud, ") goes into the message. Errors:
+/// TypeError, ValueError (no path).
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected = "");
+
+/// The keyword arguments of a call, which Arguments::take(keywords) lists. Errors: TypeError,
+/// ValueError.
+template <class Arguments>
+Arguments arguments_of(const char* function, const py::kwargs& given) {
+  Keywords keywords(function, given);
+  Arguments arguments;
+  arguments.take(keywords);
+  keywords.finish();
+  return arguments;
+}
+
+/// A docstring that begins with the signature, as inspect.signature() reads it.
 std::string documented(const char* name, const char* signature, const char* text);
+/// The same for a function with the keywords of Arguments; `leading`: the arguments before them.
+template <class Arguments>
+std::string documented(const char* name, const char* leading, const char* text) {
+  Keywords keywords;
+  Arguments arguments;
+  arguments.take(keywords);
+  return documented(name, (std::string(leading) + ", *" + keywords.signature()).c_str(), text);
+}
 
 }  // namespace adasplats::python

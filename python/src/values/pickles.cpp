@@ -6,14 +6,14 @@ namespace adasplats::python {
 
 void wrong_pickle(const std::string& type, const std::string& what) {
   throw py::value_error("the pickle of an " + type + " " + what +
-                        "; save() and the functions that read files keep data for longer");
+                        "; use save() for data that is kept longer");
 }
 
 py::dict fields_of_pickle(const std::string& type, const py::object& pickle) {
   if (!py::isinstance<py::tuple>(pickle) || py::len(pickle) != 3) wrong_pickle(type, "is damaged");
   const auto parts = py::reinterpret_borrow<py::tuple>(pickle);
   const std::string found = py::str(parts[0]);
-  if (found != type) wrong_pickle(type, "is one of " + found);
+  if (found != type) wrong_pickle(type, "is of " + found);
   const std::string version = py::str(parts[1]);
   if (version != std::to_string(kPickleVersion))
     wrong_pickle(type, "has version " + version + ", this adasplats (" + ADASPLATS_VERSION +

@@ -15,14 +15,14 @@ namespace adasplats::python {
 
 namespace py = pybind11;
 
-/// Pickles, for processes that hand objects to one another. A pickle is (class, version, fields);
-/// numbers are bytes as this machine has them. A class names its fields once, in a function
-/// `fields(archive, object)`, which is called to write and to read.
+/// Pickles, for passing objects between processes. A pickle is (class, version, fields); numbers
+/// are bytes in native order. A class lists its fields once, in a function `fields(archive,
+/// object)` that both reads and writes.
 
-/// Of all classes together: to be raised where the fields of one change.
+/// Version of all classes: raise it when the fields of any class change.
 inline constexpr int kPickleVersion = 8;
 
-/// Throws ValueError.
+/// Errors: ValueError.
 [[noreturn]] void wrong_pickle(const std::string& type, const std::string& what);
 /// The fields of a pickle of `type`. Errors: ValueError (another class, another version).
 py::dict fields_of_pickle(const std::string& type, const py::object& pickle);
@@ -82,7 +82,7 @@ class FieldReader {
  private:
   std::string bytes_of(const char* name, const py::object& packed) const {
     if (!py::isinstance<py::bytes>(packed))
-      wrong_pickle(type_, std::string("has a field '") + name + "' of another kind");
+      wrong_pickle(type_, std::string("has a field '") + name + "' of another type");
     return std::string(py::reinterpret_borrow<py::bytes>(packed));
   }
 
@@ -95,7 +95,7 @@ class FieldReader {
     } else if constexpr (IsVector<T>::value) {
       constexpr std::size_t kSize = sizeof(typename T::value_type);
       const std::string bytes = bytes_of(name, packed);
-      if (bytes.size() % kSize != 0) wrong_pickle(type_, std::string("is cut in ") + name);
+      if (bytes.size() % kSize != 0) wrong_pickle(type_, std::string("is truncated in ") + name);
       value.resize(bytes.size() / kSize);
       if (!bytes.empty()) std::memcpy(value.data(), bytes.data(), bytes.size());
     } else if constexpr (IsOptional<T>::value) {
@@ -103,11 +103,11 @@ class FieldReader {
       unpack(name, packed, value.emplace());
     } else if constexpr (std::is_trivially_copyable_v<T>) {
       const std::string bytes = bytes_of(name, packed);
-      if (bytes.size() != sizeof(T)) wrong_pickle(type_, std::string("is cut in ") + name);
+      if (bytes.size() != sizeof(T)) wrong_pickle(type_, std::string("is truncated in ") + name);
       std::memcpy(&value, bytes.data(), sizeof(T));
     } else {
       if (!py::isinstance<py::dict>(packed))
-        wrong_pickle(type_, std::string("has a field '") + name + "' of another kind");
+        wrong_pickle(type_, std::string("has a field '") + name + "' of another type");
       FieldReader inner(type_, py::reinterpret_borrow<py::dict>(packed));
       fields(inner, value);
     }
@@ -117,7 +117,7 @@ class FieldReader {
   py::dict dict_;
 };
 
-/// Makes a class with `fields` one that can be pickled and copied.
+/// Adds pickling and copying to a class with fields().
 template <class T, class Class>
 void add_pickling(Class& type, const std::string& name) {
   type.def(py::pickle(

@@ -17,7 +17,7 @@ void SignalCheck::operator()() const {
   const Clock::rep now = Clock::now().time_since_epoch().count();
   Clock::rep last = last_->load();
   if (now - last < Clock::duration(kMinInterval).count()) return;
-  if (!last_->compare_exchange_strong(last, now)) return;  // another thread does it
+  if (!last_->compare_exchange_strong(last, now)) return;  // another thread checks
   const py::gil_scoped_acquire acquired;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -35,24 +35,24 @@ PythonProgress::PythonProgress(py::object callable) : callable_(std::move(callab
 void PythonProgress::begin_step(std::string_view name, std::uint64_t total) {
   name_ = name;
   total_ = total;
-  tell(0);
+  report(0);
 }
 
 void PythonProgress::advance(std::uint64_t done) {
-  if (std::chrono::steady_clock::now() - told_ >= kMinInterval) tell(done);
+  if (std::chrono::steady_clock::now() - reported_at_ >= kMinInterval) report(done);
 }
 
-void PythonProgress::end_step() { tell(total_); }
+void PythonProgress::end_step() { report(total_); }
 
-void PythonProgress::tell(std::uint64_t done) {
-  told_ = std::chrono::steady_clock::now();
+void PythonProgress::report(std::uint64_t done) {
+  reported_at_ = std::chrono::steady_clock::now();
   const py::gil_scoped_acquire acquired;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (!callable_.is_none()) callable_(name_, done, total_);
 }
 
 void PythonProgress::warn(std::string_view message) {
-  // Work that is done again on another device says the same again.
+  // Work that is repeated on another device repeats its warnings.
   if (std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end())
     warnings_.emplace_back(message);
 }
@@ -75,8 +75,8 @@ void WorkOptions::take(Keywords& keywords) {
 }
 
 Work::Work(const WorkOptions& options)
-    : told_(options.progress),
-      progress_(told_),
+    : python_progress_(options.progress),
+      progress_(python_progress_),
       executor_(checked_threads(options.threads), SignalCheck(), &progress_),
       seed_(options.seed),
       device_(options.has_device ? choose_device(options.device) : DeviceChoice{}) {}

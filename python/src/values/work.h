@@ -18,11 +18,11 @@
 
 namespace adasplats::python {
 
-/// Hears of progress without the GIL; takes it at most every 50 ms to see to signals (Ctrl-C) and
-/// to inform a Python callable, progress(step, done, total). What these raise ends the work.
+/// Receives progress without the GIL. At most every 50 ms it acquires the GIL, checks for signals
+/// (Ctrl-C) and calls progress(step, done, total). An exception of either ends the work.
 class PythonProgress final : public ProgressSink {
  public:
-  /// `callable`: None for none. Errors: TypeError.
+  /// `callable`: may be None. Errors: TypeError.
   explicit PythonProgress(py::object callable);
 
   void begin_step(std::string_view name, std::uint64_t total) override;
@@ -30,21 +30,21 @@ class PythonProgress final : public ProgressSink {
   void end_step() override;
   void warn(std::string_view message) override;
 
-  /// Gives the warnings to Python. With the GIL.
+  /// Issues the warnings as UserWarning. Needs the GIL.
   void issue_warnings();
 
  private:
-  void tell(std::uint64_t done);
+  void report(std::uint64_t done);
 
   py::object callable_;
   std::string name_;
   std::uint64_t total_ = 0;
-  std::chrono::steady_clock::time_point told_;
+  std::chrono::steady_clock::time_point reported_at_;
   std::vector<std::string> warnings_;
 };
 
-/// Sees to signals (Ctrl-C) at most every 50 ms, with or without the GIL; what they raise ends the
-/// loop of the Executor that it is the interruption of.
+/// Interruption check of an Executor: checks for signals (Ctrl-C) at most every 50 ms, with or
+/// without the GIL. An exception of a signal handler ends the loop.
 class SignalCheck {
  public:
   void operator()() const;
@@ -54,7 +54,7 @@ class SignalCheck {
   std::shared_ptr<std::atomic<Clock::rep>> last_ = std::make_shared<std::atomic<Clock::rep>>(0);
 };
 
-/// What a function computes with: its keywords device, gpus, threads, seed and progress.
+/// The keywords device, gpus, threads, seed and progress.
 struct WorkOptions {
   DeviceOptions device;
   bool has_device = true;
@@ -80,7 +80,7 @@ class Work {
   ProgressSink& progress() { return progress_; }
   const DeviceChoice& device() const { return device_; }
 
-  /// f(session) while other Python threads go on. Then the warnings are issued.
+  /// Runs f(session) without the GIL, then issues the warnings.
   template <class F>
   auto run(F&& f) {
     auto result = [&] {
@@ -88,12 +88,12 @@ class Work {
       Session session_now = session();
       return f(session_now);
     }();
-    told_.issue_warnings();
+    python_progress_.issue_warnings();
     return result;
   }
 
  private:
-  PythonProgress told_;
+  PythonProgress python_progress_;
   ProgressMeter progress_;
   Executor executor_;
   std::uint64_t seed_;

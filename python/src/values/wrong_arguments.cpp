@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What Python says of arguments that fit no function: pybind11's own text lists C++ types. Every
-// function is wrapped in one that calls it and, where that text comes, says what is wrong instead.
+// Errors for arguments that fit no overload: pybind11's own text lists C++ types. Every function is
+// wrapped in one that calls it and replaces such a text by one in terms of the Python signature.
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "arrays.h"
 #include "bindings.h"
 
 namespace adasplats::python {
@@ -44,7 +45,8 @@ std::vector<std::string> parts_of(const std::string& inner) {
   return parts;
 }
 
-/// What the docstring's first line says; `text` as Python shows it: "($self, name, *, other=1)".
+/// The parsed first line of a docstring; `text` as in __text_signature__: "($self, name, *,
+/// other=1)".
 Signature signature_of(const std::string& function, const std::string& text) {
   Signature signature;
   signature.function = function;
@@ -66,9 +68,7 @@ Signature signature_of(const std::string& function, const std::string& text) {
   return signature;
 }
 
-std::string shown_type(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
-
-/// What is wrong with arguments that no overload took; `given` without self.
+/// The error of arguments that no overload accepts; `given` without self.
 std::string fault_of(const Signature& signature, const std::vector<py::handle>& given,
                      const py::kwargs& keywords) {
   std::vector<std::string> names;
@@ -89,17 +89,17 @@ std::string fault_of(const Signature& signature, const std::vector<py::handle>& 
     if (i < given.size() && is_named)
       return " got several values for the argument '" + parameter.name + "'";
     if (i >= given.size() && !is_named && !parameter.has_default)
-      return " misses the argument '" + parameter.name + "'";
+      return " is missing the argument '" + parameter.name + "'";
   }
   std::string types;
-  for (const py::handle value : given) types += (types.empty() ? "" : ", ") + shown_type(value);
+  for (const py::handle value : given) types += (types.empty() ? "" : ", ") + type_name(value);
   for (const auto& [key, value] : keywords)
-    types += (types.empty() ? "" : ", ") + std::string(py::str(key)) + ": " + shown_type(value);
+    types += (types.empty() ? "" : ", ") + std::string(py::str(key)) + ": " + type_name(value);
   return signature.text + " does not take (" + types + ")";
 }
 
 /// Whether pybind11 found no overload for the arguments.
-bool is_raw_refusal(const py::error_already_set& error) {
+bool is_overload_error(const py::error_already_set& error) {
   if (!error.matches(PyExc_TypeError)) return false;
   const std::string text = py::str(error.value());
   return text.find("incompatible ") != std::string::npos &&
@@ -111,7 +111,7 @@ py::object called(const py::object& original, const Signature& signature, bool h
   try {
     return original(*args, **kwargs);
   } catch (const py::error_already_set& error) {
-    if (!is_raw_refusal(error)) throw;
+    if (!is_overload_error(error)) throw;
   }
   std::vector<py::handle> given;
   for (std::size_t i = has_self ? 1 : 0; i < args.size(); ++i) given.emplace_back(args[i]);
@@ -121,12 +121,12 @@ py::object called(const py::object& original, const Signature& signature, bool h
 
 enum class Kind : std::uint8_t { function, method, static_method };
 
-/// Puts a function in the place of `original`, which `owner` has under `name`. One without a
-/// signature in its docstring stays as it is.
+/// Replaces owner.name, which is `original`, by its wrapper. Functions without a signature in their
+/// docstring are left alone.
 void wrap(const py::object& owner, const std::string& name, const py::object& original, Kind kind) {
   const py::object text = py::getattr(original, "__text_signature__", py::none());
   if (text.is_none()) return;
-  // A constructor goes by its class: pybind11 treats functions of the name __init__ as its own.
+  // A constructor gets the name of its class: pybind11 treats functions named __init__ specially.
   const std::string shown =
       name == "__init__" ? std::string(py::str(owner.attr("__name__"))) : name;
   const std::string signature = py::str(text);
