@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scans as they come: the newest is shown, and the server told when the page is ready for more.
+// Live scans: shows the newest and requests the next.
 
 import { Live, type LiveEvents } from './server/live';
 import { showBanner } from './panels/notices';
@@ -11,8 +11,8 @@ import { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';
 
 const kAliveMs = 1500;
-/** Scans a second that a page takes without having drawn them. */
-const kEnoughPerSecond = 12;
+/** Below this rate, scans are requested before the last one was drawn. */
+const kSlowScansPerSecond = 12;
 
 export class LiveScans {
   readonly live: Live;
@@ -20,7 +20,7 @@ export class LiveScans {
   readonly rate = new ScanRate();
   private newest: ScanPacket | null = null;
   private lastFrameMs = 0;
-  /** Scans for which the server has not been told that the page is ready again. */
+  /** Received scans for which no 'ready' message has been sent. */
   private owed = 0;
 
   constructor(
@@ -40,7 +40,7 @@ export class LiveScans {
     });
   }
 
-  /** In each frame: shows what came since the last. Whether something did. */
+  /** Called in each frame: shows the newest scan. Returns whether a new one arrived. */
   step(): boolean {
     this.lastFrameMs = performance.now();
     const scan = this.newest;
@@ -53,7 +53,7 @@ export class LiveScans {
   }
 
   private connection(connected: boolean) {
-    showBanner(connected ? null : 'Not connected: trying again');
+    showBanner(connected ? null : 'Connection lost, reconnecting');
     document.body.classList.toggle('offline', !connected);
     this.rate.restart();
     this.owed = 0;
@@ -66,9 +66,9 @@ export class LiveScans {
     this.newest = scan;
     this.view.invalidate();
     ++this.owed;
-    // A page that draws slowly need not make the LiDAR slow, nor be flooded; one that does not
-    // draw at all (in the background) takes nothing.
-    const slow = this.rate.perSecond(now) < kEnoughPerSecond;
+    // A slow page must not slow the LiDAR down, nor receive more scans than it can handle. A page
+    // in the background, which does not draw at all, requests none.
+    const slow = this.rate.perSecond(now) < kSlowScansPerSecond;
     if (slow && now - this.lastFrameMs < kAliveMs) this.payReady();
   }
 

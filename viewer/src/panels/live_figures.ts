@@ -20,7 +20,7 @@ export function showLiveFigures(
     Simulated: `${(1000 * packet.seconds).toFixed(1)} ms`,
     Points: grouped(packet.points),
     Rays: grouped(packet.rays),
-    'Points a ray': `${hits.toFixed(1)} %`,
+    'Hit rate': `${hits.toFixed(1)} %`,
     Scan: grouped(packet.number),
   };
   const table = make(

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What lies under a click, told on a card.
+// A card with the properties of the clicked splat or echo.
 
 import { Vector3 } from 'three';
 import { button, fill, grouped, make } from './dom';
@@ -31,7 +31,7 @@ export class PickCard {
     return !this.element.hidden;
   }
 
-  /** `sensor`: where the LiDAR is, in the layers' coordinates. */
+  /** `sensor`: position of the LiDAR in the layers' coordinates. */
   show(found: PickedMessage | null, echo: Echo | null, sensor: Vector3) {
     const lines: Line[] = [];
     if (echo) lines.push(...this.echoLines(echo));
@@ -70,7 +70,7 @@ export class PickCard {
     const range = new Vector3(...found.position).distanceTo(sensor);
     if (found.class !== undefined)
       lines.push([echo ? 'Splat class' : 'Class', this.className(found.class, found.class_name)]);
-    if (!echo) lines.push(['From the sensor', `${range.toFixed(3)} m`]);
+    if (!echo) lines.push(['Distance to sensor', `${range.toFixed(3)} m`]);
     lines.push(['Splat', grouped(found.primitive)], ['Radius', `${found.radius_m.toFixed(3)} m`]);
     if (!echo) lines.push(['Position', this.world(found.position)]);
     lines.push(['Normal', triple(found.normal, 3)]);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The bar below the scene by which a recording is played.
+// The playback bar below the scene.
 
 import {
   button,
   byId,
-  choice,
+  dropdown,
   fill,
   icon,
   make,
@@ -17,7 +17,7 @@ import {
 import { kScanSources, type Playback, type ScanSource } from '../playback';
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** Positions of the slider. */
+/** Steps of the slider. */
 const kSteps = 10_000;
 
 export class TimelinePanel {
@@ -38,7 +38,7 @@ export class TimelinePanel {
       this.show();
     });
     this.place.id = 'time';
-    const speed = choice(
+    const speed = dropdown(
       'Speed',
       kSpeeds.map((s) => ({ value: String(s), text: `${s} ×` })),
       '1',
@@ -48,13 +48,13 @@ export class TimelinePanel {
     );
     speed.id = 'speed';
     this.sources = segments(
-      'Scans that are shown',
+      'Scans to show',
       kScanSources.map((s) => ({ value: s, text: s[0].toUpperCase() + s.slice(1) })),
       playback.source,
       (source) => playback.choose(source as ScanSource),
     );
     this.sources.id = 'scan-source';
-    const track = choice(
+    const track = dropdown(
       'Recording',
       tracks.map((t, i) => ({ value: String(i), text: t.name })),
       '0',
@@ -64,9 +64,9 @@ export class TimelinePanel {
     bar.hidden = timeline === null;
     fill(
       bar,
-      iconButton('back', 'One scan back (,)', () => this.stepBy(-1)),
+      iconButton('back', 'Previous scan (,)', () => this.stepBy(-1)),
       this.play,
-      iconButton('forward', 'One scan on (.)', () => this.stepBy(1)),
+      iconButton('forward', 'Next scan (.)', () => this.stepBy(1)),
       this.place,
       this.facts,
       speed,
@@ -91,7 +91,7 @@ export class TimelinePanel {
     this.playback.choose(source);
   }
 
-  /** Where it is now. */
+  /** Shows the current time. */
   show() {
     const { timeline } = this.playback;
     if (!timeline) return;

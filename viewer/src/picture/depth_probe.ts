@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The depth of one pixel of the model's picture.
+// Reads the depth of one pixel of the model's picture.
 
 import {
   BufferAttribute,
@@ -38,7 +38,7 @@ export class DepthProbe {
     this.quad.frustumCulled = false;
   }
 
-  /** 0 at the near plane, 1 where nothing is; the pixel counts from the lower left corner. */
+  /** 0 at the near plane, 1 for background; x and y from the lower left corner. */
   read(depths: Texture | null, x: number, y: number): number {
     const { uniforms } = this.quad.material;
     uniforms.depths.value = depths;
