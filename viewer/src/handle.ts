@@ -12,13 +12,13 @@ import type { DrivenSensor } from './driving/driven_sensor';
 import type { SidePanel } from './panels/side_panel';
 import type { LidarPanel } from './panels/lidar_panel';
 import type { Live } from './server/live';
-import { kScanPointWords, type ScanPacket } from './server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from './server/binary';
 import type { Pose } from './server/protocol';
 import type { Playback } from './playback';
 import type { Tools } from './tools/tools';
 import type { WorldObjects } from './picture/world_objects';
 import type { ScanCloud } from './picture/scan_cloud';
-import type { ScanRate } from './panels/scan_rate';
+import type { ScanRate } from './live_scans';
 import type { SceneView } from './picture/scene_view';
 import { kColorModes } from './picture/shaders';
 
@@ -89,8 +89,8 @@ function workState({ view, playback, tools, objects }: HandleParts) {
 }
 
 function scanState(packet: ScanPacket) {
-  const { words, number, points, rings, columns, rays, seconds, pose } = packet;
-  const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+  const { number, points, rings, columns, rays, seconds, pose } = packet;
+  const floats = floatsOf(packet);
   let maxRange_m = 0;
   for (let i = 0; i < floats.length; i += kScanPointWords)
     maxRange_m = Math.max(maxRange_m, floats[i] ** 2 + floats[i + 1] ** 2 + floats[i + 2] ** 2);
@@ -118,8 +118,7 @@ function actionsOf(parts: HandleParts) {
     echoesNear: (position: number[], reach_m: number) => {
       const { packet, object } = parts.cloud;
       if (!packet) return 0;
-      const { words } = packet;
-      const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+      const floats = floatsOf(packet);
       const middle = new Vector3(...position);
       const echo = new Vector3();
       let found = 0;

@@ -7,12 +7,42 @@ import { Live, type LiveEvents } from './server/live';
 import { showBanner } from './panels/notices';
 import type { ScanPacket } from './server/binary';
 import { ScanCloud } from './picture/scan_cloud';
-import { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';
 
 const kAliveMs = 1500;
+const kWindowMs = 3000;
 /** Below this rate, scans are requested before the last one was drawn. */
 const kSlowScansPerSecond = 12;
+
+/** The rate of scans over the last kWindowMs. */
+export class ScanRate {
+  received = 0;
+  private times: number[] = [];
+
+  count(now: number) {
+    ++this.received;
+    this.times.push(now);
+    this.forget(now);
+  }
+
+  restart() {
+    this.times = [];
+  }
+
+  perSecond(now: number): number {
+    this.forget(now);
+    if (this.times.length < 2) return 0;
+    const first = this.times[0];
+    const last = this.times[this.times.length - 1];
+    // A pause after the last scan counts once it is longer than usual.
+    const usual = (last - first) / (this.times.length - 1);
+    return ((this.times.length - 1) * 1000) / (last - first + Math.max(0, now - last - usual));
+  }
+
+  private forget(now: number) {
+    while (this.times.length > 0 && this.times[0] < now - kWindowMs) this.times.shift();
+  }
+}
 
 export class LiveScans {
   readonly live: Live;

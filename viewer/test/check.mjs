@@ -4,7 +4,7 @@
 // Shared by the tests of the page: servers, queries of the page, and tests of pixels.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { dirname, join } from 'node:path';
+import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 export const kSize = { width: 1100, height: 760 };
@@ -15,6 +15,26 @@ const kToken = '0123456789abcdef0123456789abcdef';
 export function skip(why) {
   console.log(`skipped: ${why}`);
   process.exit(kSkipped);
+}
+
+/**
+ * Splits the command line into `count` words and options: --shots FOLDER, --page FOLDER and those in
+ * `more`, an object of functions that take a value into the options. Exits with 64 on other counts.
+ */
+export function readArguments(usage, count, defaults, more) {
+  const options = { shots: null, page: null, ...defaults };
+  const words = [];
+  const given = process.argv.slice(2);
+  while (given.length > 0) {
+    const word = given.shift();
+    const name = word.slice(2);
+    if (word === '--shots' || word === '--page') options[name] = resolve(given.shift() ?? '.');
+    else if (word.startsWith('--') && more[name]) more[name](options, given.shift());
+    else words.push(word);
+  }
+  if (words.length === count) return { options, words };
+  console.error(`usage: ${usage} [--shots FOLDER] [--page FOLDER]`);
+  return process.exit(64);
 }
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));

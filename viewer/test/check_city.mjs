@@ -14,7 +14,17 @@ import { mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 import { findBrowser, openPage } from './browser.mjs';
-import { Check, changed, isBackground, kSize, realServer, shareOf, skip, sleep } from './check.mjs';
+import {
+  Check,
+  changed,
+  isBackground,
+  kSize,
+  readArguments,
+  realServer,
+  shareOf,
+  skip,
+  sleep,
+} from './check.mjs';
 
 /** The target is 3 s on an idle machine; other tests may run at the same time. */
 const kFirstPictureMs = 15_000;
@@ -208,34 +218,21 @@ async function checkAll([program, city, whole], options) {
   return t;
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, metres: 40 };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--metres') options.metres = Number(given.shift());
-    else words.push(word);
-  }
-  if (words.length === 3) {
-    const [program, city, whole] = words;
-    return { options, words: [resolve(program), resolve(city), whole === 'none' ? whole : resolve(whole)] };
-  }
-  console.error(
-    'usage: check_city.mjs PROGRAM CITY WHOLE [--shots FOLDER] [--page FOLDER] [--metres N]',
-  );
-  return process.exit(64);
-}
-
-const { options, words } = readArguments();
+const { options, words } = readArguments(
+  'check_city.mjs PROGRAM CITY WHOLE [--metres N]',
+  3,
+  { metres: 40 },
+  { metres: (options, value) => (options.metres = Number(value)) },
+);
 if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
 await import('playwright-core').catch(() => skip(`playwright-core not found: run 'npm ci' in viewer/`));
 if (options.shots) mkdirSync(options.shots, { recursive: true });
 let failed = 1;
 try {
-  const t = await checkAll(words, options);
+  const t = await checkAll(
+    words.map((word) => (word === 'none' ? word : resolve(word))),
+    options,
+  );
   failed = t.failed;
   console.log(`${t.passed} passed, ${t.failed} failed`);
 } catch (error) {

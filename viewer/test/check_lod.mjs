@@ -22,7 +22,7 @@ async function load() {
     process.exit(kSkipped);
   });
   globalThis.window = globalThis;
-  const names = ['picture/lod', 'picture/node_table', 'server/node_store', 'server/binary'];
+  const names = ['picture/lod', 'picture/node_table', 'server/fetch_queue', 'server/binary'];
   const { outputFiles } = await build({
     stdin: {
       contents: `${names.map((n) => `export * from './src/${n}';`).join('\n')}

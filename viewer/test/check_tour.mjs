@@ -17,7 +17,16 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
 import { findBrowser, openPage } from './browser.mjs';
-import { Check, changed, isBackground, realServer, shareOf, skip, sleep } from './check.mjs';
+import {
+  Check,
+  changed,
+  isBackground,
+  readArguments,
+  realServer,
+  shareOf,
+  skip,
+  sleep,
+} from './check.mjs';
 
 const kSize = { width: 1280, height: 800 };
 const kPhone = { width: 390, height: 844 };
@@ -276,23 +285,7 @@ async function fitsPhone(t) {
   await t.shot('10-phone');
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, with: [] };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--with') options.with.push(given.shift());
-    else words.push(resolve(word));
-  }
-  if (words.length === 3) return { ...options, words };
-  console.error('usage: check_tour.mjs PROGRAM WORLD LAYER [--shots FOLDER] [--page FOLDER] [--with OPTION]');
-  return process.exit(64);
-}
-
-async function tour({ words: [program, world, layer], shots, page, ...options }, folder) {
+async function tour([program, world, layer], { shots, page, ...options }, folder) {
   const server = realServer(program, world, options.with);
   const url = await server.start();
   const scene = await (await fetch(`${url}scene.json`)).json();
@@ -320,14 +313,19 @@ async function tour({ words: [program, world, layer], shots, page, ...options },
   return t;
 }
 
-const options = readArguments();
+const { options, words } = readArguments(
+  'check_tour.mjs PROGRAM WORLD LAYER [--with OPTION]',
+  3,
+  { with: [] },
+  { with: (options, value) => options.with.push(value) },
+);
 if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
 await import('playwright-core').catch(() => skip("playwright-core not found: run 'npm ci' in viewer/"));
 if (options.shots) mkdirSync(options.shots, { recursive: true });
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-tour-'));
 let failed = 1;
 try {
-  const t = await tour(options, folder);
+  const t = await tour(words.map((word) => resolve(word)), options, folder);
   ({ failed } = t);
   console.log(`${t.passed} passed, ${t.failed} failed`);
 } catch (error) {

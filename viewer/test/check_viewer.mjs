@@ -34,6 +34,7 @@ import {
   isBackground,
   kSize,
   mockServer,
+  readArguments,
   realServer,
   shareOf,
   skip,
@@ -430,26 +431,13 @@ async function checkAll(server, { shots, page }, folder) {
   return t;
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, with: [] };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--with') options.with.push(given.shift());
-    else words.push(word);
-  }
-  if (words.length === 2) return { ...options, words };
-  console.error(
-    'usage: check_viewer.mjs PROGRAM MODEL | --mock PAGE [--shots FOLDER] [--page FOLDER] [--with OPTION]',
-  );
-  return process.exit(64);
-}
-
-const options = readArguments();
-const { shots, words } = options;
+const { options, words } = readArguments(
+  'check_viewer.mjs PROGRAM MODEL | --mock PAGE [--with OPTION]',
+  2,
+  { with: [] },
+  { with: (options, value) => options.with.push(value) },
+);
+const { shots } = options;
 if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
 for (const needed of ['playwright-core', 'ws'])
   await import(needed).catch(() =>

@@ -5,7 +5,7 @@
 
 import { type Driver, typing } from './driver';
 
-export interface Keyboard {
+interface Keyboard {
   driver: Driver;
   escape(): void;
   /** Handles a shortcut. Returns whether the key is one. */

@@ -7,7 +7,7 @@ import { Vector3 } from 'three';
 import { poseOf, rotationOf } from './pose';
 import type { Pose, SceneInfo } from '../server/protocol';
 
-export interface TrackScan {
+interface TrackScan {
   /** Index among all recorded scans of the scene. */
   index: number;
   time_s: number;
@@ -49,7 +49,7 @@ function objectTracks({ objects }: SceneInfo): Track[] {
 }
 
 /** Index of the last of ascending times that is not after `time`; 0 if all are later. */
-export function indexAt(times: number[], time: number): number {
+function indexAt(times: number[], time: number): number {
   let [low, high] = [0, times.length];
   while (high - low > 1) {
     const middle = (low + high) >> 1;

@@ -4,7 +4,7 @@
 // Reads points or splats from PLY files: ASCII or binary, any numeric properties.
 
 /** The file is not a supported PLY file. */
-export class FileError extends Error {}
+class FileError extends Error {}
 
 export interface FilePoints {
   count: number;

@@ -103,6 +103,15 @@ export function slider(
   return input;
 }
 
+/** A list of names with their values. */
+export function definitions(lines: Iterable<[string, string | Node]>): HTMLDListElement {
+  return make(
+    'dl',
+    {},
+    ...[...lines].flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)]),
+  );
+}
+
 export function row(text: string, ...children: Child[]): HTMLElement {
   return make('div', { className: 'row' }, make('span', { className: 'name' }, text), ...children);
 }

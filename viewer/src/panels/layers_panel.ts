@@ -4,7 +4,7 @@
 // Chooses the layers to draw: all overlaid, or two side by side.
 
 import { button, dropdown, fill, make, row, segments, slider, checkbox } from './dom';
-import { sizeText } from './loading';
+import { sizeText } from './notices';
 import type { SceneView } from '../picture/scene_view';
 
 export function layersPanel(view: SceneView, add: () => void): HTMLElement {

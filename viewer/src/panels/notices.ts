@@ -3,7 +3,9 @@
 
 // Messages to the user: a banner, a toast and the note of loading.
 
-import { byId } from './dom';
+import { byId, short } from './dom';
+import type { SceneView } from '../picture/scene_view';
+import type { LayerInfo, SceneInfo } from '../server/protocol';
 
 const kToastMs = 6000;
 let timer = 0;
@@ -22,4 +24,17 @@ export function showToast(message: string) {
   toast.hidden = false;
   window.clearTimeout(timer);
   timer = window.setTimeout(() => (toast.hidden = true), kToastMs);
+}
+
+/** "2.45 M splats" */
+export function sizeText({ count, kind }: LayerInfo): string {
+  return `${short(count)} ${kind === 'mesh' ? 'triangles' : kind}`;
+}
+
+/** Shows what is loading until the first picture. */
+export function showLoading(view: SceneView, { layers, name }: SceneInfo) {
+  const note = byId('loading');
+  note.textContent = `Loading ${name}: ${layers.slice(0, 2).map(sizeText).join(', ')}`;
+  note.hidden = false;
+  view.firstShown = () => (note.hidden = true);
 }

@@ -3,7 +3,7 @@
 
 // Lists the objects of a world and the positions of the dragged ones.
 
-import { button, fill, make } from './dom';
+import { button, definitions, fill, make } from './dom';
 import type { WorldObjects } from '../picture/world_objects';
 import type { Vec3 } from '../server/protocol';
 
@@ -25,7 +25,7 @@ export class ObjectsPanel {
         : info.poses.length > 1
           ? 'moving'
           : 'static';
-      return [info.name, at];
+      return [info.name, at] as [string, string];
     });
     if (JSON.stringify(rows) === this.shown) return;
     this.shown = JSON.stringify(rows);
@@ -33,7 +33,7 @@ export class ObjectsPanel {
     fill(
       this.element,
       make('p', { className: 'facts' }, 'Drag an object to move it. The LiDAR sees it at the new position.'),
-      make('dl', {}, ...rows.flatMap(([n, at]) => [make('dt', {}, n), make('dd', {}, at)])),
+      definitions(rows),
       more > 0 ? make('p', { className: 'facts' }, `and ${more} more`) : null,
       make(
         'div',

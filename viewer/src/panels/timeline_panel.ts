@@ -86,11 +86,6 @@ export class TimelinePanel {
     this.show();
   }
 
-  choose(source: ScanSource) {
-    this.sources.choose(source);
-    this.playback.choose(source);
-  }
-
   /** Shows the current time. */
   show() {
     const { timeline } = this.playback;

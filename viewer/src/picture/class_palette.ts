@@ -12,7 +12,7 @@ const kNoColor: Vec3 = [150, 156, 164];
 const kMinBrightness = 70;
 
 /** Brightens black (usually "unlabeled") and other dark colours. */
-export function visibleColor(color: Vec3): Vec3 {
+function visibleColor(color: Vec3): Vec3 {
   const brightest = Math.max(...color);
   if (brightest >= kMinBrightness) return color;
   if (brightest === 0) return [kMinBrightness, kMinBrightness, kMinBrightness];

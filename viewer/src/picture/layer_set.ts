@@ -6,7 +6,7 @@
 import type { Box3 } from 'three';
 import { openLayer, type Layer, type SharedUniforms } from './layer';
 import type { BlockRef, Cut, NodeRef } from './lod';
-import { FetchQueue, type Fetch } from '../server/node_store';
+import { FetchQueue, type Fetch } from '../server/fetch_queue';
 import type { LayerInfo, SceneInfo } from '../server/protocol';
 
 /** A node used within this time is not unloaded. */

@@ -5,7 +5,7 @@
 
 import type { ClassPalette } from './class_palette';
 import type { ColorMaps } from './color_maps';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 
 export type ImageMode = 'range' | 'class' | 'intensity';
 
@@ -38,11 +38,7 @@ export class RangeImage {
   }
 
   draw(packet: ScanPacket) {
-    const floats = new Float32Array(
-      packet.words.buffer,
-      packet.words.byteOffset,
-      packet.words.length,
-    );
+    const floats = floatsOf(packet);
     const grid = packet.rings < kFewRings ? angleGrid(packet, floats) : ringGrid(packet);
     if (!this.context || grid.width * grid.height > kMaxPixels) return;
     const image = this.blank(grid.width, grid.height);
@@ -59,10 +55,6 @@ export class RangeImage {
       this.paint(image.data, 4 * cell, packet, at, range);
     }
     this.context.putImageData(image, 0, 0);
-  }
-
-  clear() {
-    this.context?.putImageData(this.blank(this.canvas.width, this.canvas.height), 0, 0);
   }
 
   private paint(

@@ -16,7 +16,7 @@ import {
   Vector3,
 } from 'three';
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 import type { SharedUniforms } from './layer';
 import { kPointFragment, kScanModes, kScanVertex, type ScanMode } from './shaders';
 
@@ -93,11 +93,6 @@ export class ScanCloud {
     this.object.matrixWorldNeedsUpdate = true;
   }
 
-  clear() {
-    this.packet = null;
-    this.geometry.setDrawRange(0, 0);
-  }
-
   /** The echo nearest to the camera within `pixels` of (x, y) on the screen (-1..1), or null. */
   nearest(
     camera: PerspectiveCamera,
@@ -111,11 +106,7 @@ export class ScanCloud {
     const matrix = new Matrix4()
       .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
       .multiply(this.object.matrix);
-    const floats = new Float32Array(
-      packet.words.buffer,
-      packet.words.byteOffset,
-      packet.words.length,
-    );
+    const floats = floatsOf(packet);
     const seen = new Vector3();
     const reach = (2 * pixels) / height_px;
     let best = -1;
@@ -134,8 +125,7 @@ export class ScanCloud {
   private echo(packet: ScanPacket, index: number): Echo {
     const at = index * kScanPointWords;
     const { words } = packet;
-    const floats = new Float32Array(words.buffer, words.byteOffset + 4 * at, 3);
-    const own = new Vector3(floats[0], floats[1], floats[2]);
+    const own = new Vector3(...floatsOf(packet).subarray(at, at + 3));
     return {
       range_m: own.length(),
       position: own.clone().applyMatrix4(this.object.matrix),

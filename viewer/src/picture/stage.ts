@@ -5,11 +5,9 @@
 // and the sensor are drawn over it with a depth test.
 
 import {
-  BufferAttribute,
   BufferGeometry,
   Camera,
   DepthTexture,
-  GLSL3,
   Mesh,
   NearestFilter,
   Object3D,
@@ -22,8 +20,8 @@ import {
   WebGLRenderTarget,
   WebGLRenderer,
 } from 'three';
-import { DepthProbe } from './depth_probe';
-import { kScreenFragment, kScreenVertex } from './shaders';
+import { DepthProbe, makeScreen } from './depth_probe';
+import { kScreenFragment } from './shaders';
 
 /** A part of the canvas, in its pixels from the lower left corner. */
 export interface Area {
@@ -57,7 +55,18 @@ export class Stage {
     this.renderer.autoClear = false;
     this.renderer.sortObjects = false;
     this.target = makeTarget(1, 1);
-    this.screen = makeScreen();
+    this.screen = makeScreen({
+      fragmentShader: kScreenFragment,
+      depthFunc: 1,
+      uniforms: {
+        picture: { value: null },
+        depths: { value: null },
+        near_far: { value: new Vector2() },
+        pixels: { value: new Vector2() },
+        outline: { value: 0 },
+        pixel_ratio: { value: 1 },
+      },
+    });
     this.probe = new DepthProbe(this.renderer);
     this.model.matrixWorldAutoUpdate = false;
   }
@@ -195,29 +204,4 @@ function makeTarget(width: number, height: number): WebGLRenderTarget {
     stencilBuffer: false,
     generateMipmaps: false,
   });
-}
-
-function makeScreen(): Mesh<BufferGeometry, RawShaderMaterial> {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute(
-    'position',
-    new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3),
-  );
-  const material = new RawShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: kScreenVertex,
-    fragmentShader: kScreenFragment,
-    depthFunc: 1,
-    uniforms: {
-      picture: { value: null },
-      depths: { value: null },
-      near_far: { value: new Vector2() },
-      pixels: { value: new Vector2() },
-      outline: { value: 0 },
-      pixel_ratio: { value: 1 },
-    },
-  });
-  const mesh = new Mesh(geometry, material);
-  mesh.frustumCulled = false;
-  return mesh;
 }

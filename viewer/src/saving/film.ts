@@ -9,7 +9,7 @@ const kBitsPerSecond = 12e6;
 const kMaxFilmMs = 120_000;
 const kTypes = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
 
-export interface FilmEvents {
+interface FilmEvents {
   done(film: Blob): void;
   failed(error: unknown): void;
 }

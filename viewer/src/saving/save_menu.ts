@@ -10,7 +10,6 @@ import type { SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
 import { Film } from './film';
 import { scanPly } from './scan_ply';
-import { saveScreenshot } from './screenshot';
 
 function fileName(text: string): string {
   return text.replace(/[^\w.-]+/g, '_');
@@ -37,7 +36,7 @@ export class SaveMenu {
     this.filmButton.id = 'film';
     const hasScans = scene.can_simulate || scene.scans.length > 0;
     const all = [
-      button('Screenshot', 'Save the picture as PNG', () => saveScreenshot(view, scene.name)),
+      button('Screenshot', 'Save the picture as PNG', () => this.savePicture()),
       hasScans
         ? button('Save scan', 'Save the visible scan as PLY in world coordinates', () =>
             this.saveScan(),
@@ -62,6 +61,14 @@ export class SaveMenu {
     if (this.filmsPlayback && !timeline?.playing) this.stopFilm();
   }
   private filmsPlayback = false;
+
+  private savePicture() {
+    this.view.drawNow();
+    byId<HTMLCanvasElement>('view').toBlob((blob) => {
+      if (!blob) return showToast('Saving the picture failed');
+      download(`${fileName(this.scene.name)}.png`, blob);
+    }, 'image/png');
+  }
 
   private saveScan() {
     const { packet } = this.playback;

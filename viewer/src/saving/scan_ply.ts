@@ -4,7 +4,7 @@
 // Writes a scan as PLY in world coordinates.
 
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 import type { Vec3 } from '../server/protocol';
 import { Vector3 } from 'three';
 
@@ -36,7 +36,7 @@ export function scanPly(packet: ScanPacket, origin_m: Vec3): Blob {
   ].join('\n');
   const stride = columns.reduce((sum, [, , size]) => sum + size, 0);
   const view = new DataView(new ArrayBuffer(points * stride));
-  const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+  const floats = floatsOf(packet);
   const matrix = matrixOf(packet.pose);
   const position = new Vector3();
   let to = 0;

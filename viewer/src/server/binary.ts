@@ -83,6 +83,11 @@ export interface ScanPacket {
   words: Uint32Array;
 }
 
+/** The words of a scan packet as floats. */
+export function floatsOf({ words }: ScanPacket): Float32Array {
+  return new Float32Array(words.buffer, words.byteOffset, words.length);
+}
+
 const kScanMagic = 0x4e435341;
 const kScanHeaderBytes = 80;
 export const kScanPointWords = 6;

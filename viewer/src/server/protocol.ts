@@ -10,7 +10,7 @@ export type Vec3 = [number, number, number];
 export type Pose = [number, number, number, number, number, number, number];
 export type Box = [Vec3, Vec3];
 
-export const kLayerKinds = ['splats', 'points', 'mesh'] as const;
+const kLayerKinds = ['splats', 'points', 'mesh'] as const;
 export type LayerKind = (typeof kLayerKinds)[number];
 
 export interface LayerInfo {
@@ -45,7 +45,7 @@ export interface SensorInfo {
   max_range_m: number;
 }
 
-export interface RecordedScan {
+interface RecordedScan {
   name: string;
   trajectory: number;
   pose: Pose;
@@ -55,7 +55,7 @@ export interface RecordedScan {
   points: number | null;
 }
 
-export interface TrajectoryInfo {
+interface TrajectoryInfo {
   name: string;
   poses: Pose[];
   /** Times of the poses since the first, ascending. */
@@ -123,12 +123,12 @@ export interface PickedMessage {
   intensity?: number;
 }
 
-export interface ErrorMessage {
+interface ErrorMessage {
   type: 'error';
   message: string;
 }
 
-export type ServerMessage = SensorMessage | PickedMessage | ErrorMessage;
+type ServerMessage = SensorMessage | PickedMessage | ErrorMessage;
 
 /** Data that violate the protocol. */
 export class ProtocolError extends Error {}

@@ -33,7 +33,7 @@ const kHandles: Handle[] = [0, 1, 2].flatMap((axis) => [
 ]);
 
 /** Signed distance from `at` along `axis` of the point nearest to the ray. */
-export function nearestOnAxis(ray: Ray, at: Vector3, axis: Vector3): number {
+function nearestOnAxis(ray: Ray, at: Vector3, axis: Vector3): number {
   const between = at.clone().sub(ray.origin);
   const b = axis.dot(ray.direction);
   const slant = 1 - b * b;

@@ -5,7 +5,7 @@
 
 import { Vector3 } from 'three';
 import type { Click } from '../driving/pointer';
-import { button, fill, make } from '../panels/dom';
+import { button, definitions, fill, make } from '../panels/dom';
 import type { Label, Labels } from '../picture/labels';
 import { Marks } from '../picture/marks';
 import { showToast } from '../panels/notices';
@@ -25,7 +25,7 @@ export interface Measurement {
   height_m: number;
 }
 
-export function measurementOf(from: Vector3, to: Vector3): Measurement {
+function measurementOf(from: Vector3, to: Vector3): Measurement {
   return {
     from,
     to,
@@ -101,19 +101,16 @@ export class MeasureTool implements Tool {
     const { from, all } = this;
     const last = all[all.length - 1];
     const hint = from ? 'Click the second point.' : 'Click a point, then another.';
-    const line = (name: string, text: string) => [make('dt', {}, name), make('dd', {}, text)];
     const table = from
-      ? make('dl', {}, ...line('From', worldText(from, this.origin_m)))
+      ? definitions([['From', worldText(from, this.origin_m)]])
       : last
-        ? make(
-            'dl',
-            {},
-            ...line('Distance', lengthText(last.distance_m)),
-            ...line('Horizontal', lengthText(last.horizontal_m)),
-            ...line('Height', differenceText(last.height_m)),
-            ...line('From', worldText(last.from, this.origin_m)),
-            ...line('To', worldText(last.to, this.origin_m)),
-          )
+        ? definitions([
+            ['Distance', lengthText(last.distance_m)],
+            ['Horizontal', lengthText(last.horizontal_m)],
+            ['Height', differenceText(last.height_m)],
+            ['From', worldText(last.from, this.origin_m)],
+            ['To', worldText(last.to, this.origin_m)],
+          ])
         : null;
     const clear = button('Clear', 'Delete all measurements', () => this.clear());
     clear.disabled = all.length === 0 && !from;

@@ -21,7 +21,7 @@ const kWidthM = 0.5;
 const kPlain = '#cfd6de';
 
 /** One line per point, in world coordinates. */
-export function profileCsv(points: SlicePoint[], origin_m: Vec3): string {
+function profileCsv(points: SlicePoint[], origin_m: Vec3): string {
   const lines = points.map(({ along_m, offset_m, position, class: id, intensity, layer }) => {
     const world = position.toArray().map((v, i) => (v + origin_m[i]).toFixed(3));
     const name = `"${layer.replace(/"/g, '""')}"`;

@@ -14,7 +14,7 @@ const kLine = '#2b343e';
 const kMaxFactor = 10;
 
 /** Tick distance for about `count` steps: 1, 2 or 5 times a power of ten. */
-export function tickStep(span: number, count: number): number {
+function tickStep(span: number, count: number): number {
   const rough = span / count;
   const power = 10 ** Math.floor(Math.log10(Math.max(rough, 1e-9)));
   return [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough) ?? 10 * power;

@@ -31,7 +31,7 @@ const kMaxFetched = 3_000_000;
 const kMaxParallel = 6;
 
 /** Horizontal coordinates along and across a slice. */
-export class SliceFrame {
+class SliceFrame {
   readonly length_m: number;
   private readonly ux: number;
   private readonly uy: number;

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Figures of the live scan: how often, how long, how much.
+// Figures of the live scan and of the picture.
 
-import { fill, grouped, make } from './dom';
+import { definitions, fill, grouped, make, short } from './dom';
+import type { ScanRate } from '../live_scans';
+import type { SceneView } from '../picture/scene_view';
 import type { ScanPacket } from '../server/binary';
-import type { ScanRate } from './scan_rate';
 
+/** Rate, duration and size of the live scan. */
 export function showLiveFigures(
   element: HTMLElement,
   packet: ScanPacket | null,
@@ -23,17 +25,19 @@ export function showLiveFigures(
     'Hit rate': `${hits.toFixed(1)} %`,
     Scan: grouped(packet.number),
   };
-  const table = make(
-    'dl',
-    {},
-    ...Object.entries(lines).flatMap(([name, value]) => [
-      make('dt', {}, name),
-      make('dd', {}, value),
-    ]),
-  );
   const figure = rate.perSecond(performance.now()).toFixed(1);
   const head = running
     ? make('div', { className: 'rate' }, figure, make('small', {}, 'scans/s'))
     : make('div', { className: 'rate' }, 'Paused');
-  fill(element, head, table);
+  fill(element, head, definitions(Object.entries(lines)));
+}
+
+/** Drawn elements and frame rate. */
+export function showViewFigures(element: HTMLElement, view: SceneView) {
+  const s = view.statistics;
+  const all = view.shownLayers.reduce((sum, l) => sum + l.info.count, 0);
+  const rate = s.framesPerSecond > 0 ? `${s.framesPerSecond.toFixed(0)} frames/s` : 'at rest';
+  element.textContent =
+    `${short(s.elements)} of ${short(all)} elements, ` +
+    `${s.nodes} nodes${s.loading ? ' (loading)' : ''}, ${rate}`;
 }
