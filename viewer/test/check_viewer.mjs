@@ -378,7 +378,7 @@ async function checkLayout(t) {
   await t.page.setViewportSize(kSize);
 }
 
-/** The page reports malformed data and continues with the valid rest. */
+/** The page reports malformed data and continues with valid data. */
 async function checkMalformed(page) {
   const server = mockServer(page, '--malformed');
   const seen = await openPage(await server.start(), kSize);

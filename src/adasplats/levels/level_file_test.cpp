@@ -142,7 +142,8 @@ TEST(LevelFile, OtherVersionsAreNamedInTheError) {
   const std::string version = "\"version\":1";
   bytes.replace(bytes.find(version), version.size(), "\"version\":2");
   write_file(file, bytes);
-  EXPECT_NE(error_of_reading(file).find("version 2; this program reads version 1"), std::string::npos);
+  EXPECT_NE(error_of_reading(file).find("version 2; this program reads version 1"),
+            std::string::npos);
 }
 
 TEST(LevelFile, AChangedFileSizeIsAnError) {

@@ -24,8 +24,8 @@ struct CityHit {
   std::optional<float> intensity;
 };
 
-/// Casts single rays into a city whose tiles are on disk. Loads the crossed tiles one by one, nearest
-/// first, and keeps a few in memory. Not thread-safe.
+/// Casts single rays into a city whose tiles are on disk. Loads the crossed tiles one by one,
+/// nearest first, and keeps a few in memory. Not thread-safe.
 class CityPicker {
  public:
   /// Maximum number of tiles to test per ray.

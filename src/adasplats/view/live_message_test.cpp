@@ -195,8 +195,8 @@ TEST(LiveMessage, UnknownWordsAreRejected) {
 
 TEST(LiveMessage, AScanWithTooManyRaysIsRejected) {
   expect_rejected(R"({"type":"sensor","name":"livox-mid-40","settings":{"rotation_hz":0.1,)"
-                 R"("sub_rays":19,"returns":1}})",
-                 "rays per scan");
+                  R"("sub_rays":19,"returns":1}})",
+                  "rays per scan");
 }
 
 TEST(LiveMessage, ErrorsOfLongNamesAreShort) {

@@ -243,8 +243,7 @@ class LiveScans::Implementation {
   Clock::time_point wake_time(Clock::time_point now) const {
     Clock::time_point time = now + std::chrono::seconds(1);
     for (const Client& client : clients_)
-      if (client.running && client.pending < kMaxPending)
-        time = std::min(time, client.next_scan);
+      if (client.running && client.pending < kMaxPending) time = std::min(time, client.next_scan);
     return time;
   }
 

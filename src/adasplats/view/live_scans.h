@@ -10,9 +10,9 @@
 
 namespace adasplats {
 
-/// Simulates a LiDAR for every connected page (docs/viewer_protocol.md, "WebSocket live"), each with
-/// its own sensor and pose. One thread serves the pages in turn. A page gets a scan when it is ready
-/// for one, so a stalled page costs nothing.
+/// Simulates a LiDAR for every connected page (docs/viewer_protocol.md, "WebSocket live"), each
+/// with its own sensor and pose. One thread serves the pages in turn. A page gets a scan when it is
+/// ready for one, so a stalled page costs nothing.
 class LiveScans final : public WebSocketHandler {
  public:
   /// Scene and executor must outlive it.

@@ -37,7 +37,8 @@ class Listener final : public WebSocketPeer {
   /// The next packet; null after the limit.
   SharedBytes packet(std::chrono::milliseconds limit = 10s) {
     std::unique_lock lock(mutex_);
-    if (!changed_.wait_for(lock, limit, [&] { return packets_.size() > packets_taken_; })) return {};
+    if (!changed_.wait_for(lock, limit, [&] { return packets_.size() > packets_taken_; }))
+      return {};
     return packets_[packets_taken_++];
   }
   /// The next message of a type; null after 10 s.

@@ -24,14 +24,14 @@ struct MeshElement {
 static_assert(sizeof(MeshElement) == 40);
 
 /// The triangles of a mesh in a tree like a LevelTree. Leaves have at most `kLeafSize` neighbouring
-/// triangles. Inner nodes have none; their spacing is so large that the page always replaces them by
-/// their children. Memory: 40 bytes per triangle.
+/// triangles. Inner nodes have none; their spacing is so large that the page always replaces them
+/// by their children. Memory: 40 bytes per triangle.
 class MeshTree {
  public:
   static constexpr std::size_t kLeafSize = 16'384;
 
-  /// `shift` is added to the vertices to get the page's coordinates. `intensities`: one per triangle
-  /// (0..1), or empty.
+  /// `shift` is added to the vertices to get the page's coordinates. `intensities`: one per
+  /// triangle (0..1), or empty.
   MeshTree(const TriangleMesh& mesh, std::span<const float> intensities, Vec3d shift);
 
   std::span<const LevelNode> nodes() const { return nodes_; }

@@ -51,7 +51,8 @@ std::uint16_t intensity_code(float intensity, float full) {
 void require_size(std::size_t points, std::initializer_list<std::size_t> attributes) {
   for (const std::size_t size : attributes)
     if (size != 0 && size != points)
-      throw std::logic_error("scan packet: the size of an attribute differs from the number of points");
+      throw std::logic_error(
+          "scan packet: the size of an attribute differs from the number of points");
 }
 
 /// Writes the head of a packet and then its points.

@@ -26,16 +26,16 @@ struct ScanPacketHead {
   Vec3d local_origin;        ///< origin of the page's positions in world coordinates
 };
 
-/// A scan in the format of the page (docs/viewer_protocol.md, "A scan packet"): 80 bytes plus 24 per
-/// point. Missing attributes are 0. Errors: std::logic_error if the size of an attribute differs from
-/// the number of points.
+/// A scan in the format of the page (docs/viewer_protocol.md, "A scan packet"): 80 bytes plus 24
+/// per point. Missing attributes are 0. Errors: std::logic_error if the size of an attribute
+/// differs from the number of points.
 std::shared_ptr<const std::string> scan_packet(const Scan& scan, const ScanPacketHead& head);
 
-/// A packet of a recorded scan, which has no rings and columns. They are computed from the directions
-/// for a range image: `head.rings` rows over the middle 99 % of the elevations, topmost first, and
-/// `head.columns` steps of azimuth, clockwise from the rear; directions beyond are in the outermost
-/// rows. With 0 rings or columns all are 0. Skips points that are not finite. Errors: as
-/// scan_packet().
+/// A packet of a recorded scan, which has no rings and columns. They are computed from the
+/// directions for a range image: `head.rings` rows over the middle 99 % of the elevations, topmost
+/// first, and `head.columns` steps of azimuth, clockwise from the rear; directions beyond are in
+/// the outermost rows. With 0 rings or columns all are 0. Skips points that are not finite. Errors:
+/// as scan_packet().
 std::shared_ptr<const std::string> recorded_scan_packet(const KittiScan& scan,
                                                         const RigidTransform& world_from_sensor,
                                                         const ScanPacketHead& head);

@@ -19,8 +19,8 @@ inline constexpr std::size_t kTableBlock = 1024;
 class ViewPages {
  public:
   explicit ViewPages(const ViewScene& scene);
-  /// Status 404 for unknown paths. Errors (the server answers 500): those of reading a recorded scan
-  /// or the levels of a city.
+  /// Status 404 for unknown paths. Errors (the server answers 500): those of reading a recorded
+  /// scan or the levels of a city.
   HttpReply get(std::string_view path) const;
 
  private:

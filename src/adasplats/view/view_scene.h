@@ -83,7 +83,8 @@ struct ViewScene {
   std::string name;
   Vec3d origin;  ///< of the data sent to the page, world coordinates
   std::vector<ViewLayer> layers;
-  std::vector<std::pair<std::string, Trajectory>> trajectories;  ///< other than those of `sequences`
+  std::vector<std::pair<std::string, Trajectory>>
+      trajectories;  ///< other than those of `sequences`
   std::vector<ViewSequence> sequences;
   std::optional<LabelScheme> labels;
   std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates; initial view
@@ -101,8 +102,8 @@ struct ViewScene {
   std::vector<std::string> command;  ///< start of the command that the page copies
 };
 
-/// Start pose of the driven sensor: the first pose of the scene, else `mount_height_m` above the ground
-/// of a street in the first layer (street_pose.h), else above the surface in the middle.
+/// Start pose of the driven sensor: the first pose of the scene, else `mount_height_m` above the
+/// ground of a street in the first layer (street_pose.h), else above the surface in the middle.
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
                              const Executor& executor);
 

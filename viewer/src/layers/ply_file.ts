@@ -86,7 +86,7 @@ function parseHeader(bytes: Uint8Array): Header {
       else if (header.count < 0) throw new FileError(`element '${element}' precedes the vertices`);
     }
     if (words[0] !== 'property' || element !== 'vertex') continue;
-    if (words[1] === 'list') throw new FileError('vertices have list properties, which are not supported');
+    if (words[1] === 'list') throw new FileError('list properties of vertices are not supported');
     const [size, read] = typeOf(words[1]);
     header.properties.push({ name: words[2].toLowerCase(), size, read, offset: header.stride });
     header.stride += size;

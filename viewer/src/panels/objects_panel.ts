@@ -32,7 +32,7 @@ export class ObjectsPanel {
     const more = this.objects.objects.length - rows.length;
     fill(
       this.element,
-      make('p', { className: 'facts' }, 'Drag an object to move it. The LiDAR sees it at the new position.'),
+      make('p', { className: 'facts' }, 'Drag an object to move it; the LiDAR sees the move.'),
       definitions(rows),
       more > 0 ? make('p', { className: 'facts' }, `and ${more} more`) : null,
       make(

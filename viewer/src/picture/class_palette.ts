@@ -19,7 +19,7 @@ function visibleColor(color: Vec3): Vec3 {
   return color.map((c) => (c * kMinBrightness) / brightest) as Vec3;
 }
 
-/** Colour of a class outside the label scheme: hues of neighbouring ids differ by the golden angle. */
+/** Colour of a class outside the label scheme: successive hues differ by the golden angle. */
 function colorOfUnknown(id: number): Vec3 {
   if (id === 0) return kNoColor;
   const hue = (id * 137.508) % 360;

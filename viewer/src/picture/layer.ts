@@ -146,7 +146,7 @@ export class Layer implements Tree {
       this.table.add(block, parseNodes(bytes, block, this.table.size));
   }
 
-  /** The children of a node; loads missing blocks of the table. Rejects like loadBlock() and addBlock(). */
+  /** The children of a node; loads missing blocks. Rejects like loadBlock() and addBlock(). */
   async childrenOf(node: number, signal: AbortSignal): Promise<number[]> {
     for (const block of this.table.missingBelow(node))
       this.addBlock(block, await this.loadBlock(block, signal));

@@ -139,7 +139,8 @@ export class ScanCloud {
 
   private makeBuffer(points: number): InterleavedBuffer {
     const capacity = Math.max(1024, Math.ceil(points * 1.2));
-    const buffer = new InterleavedBuffer(new Uint32Array(capacity * kScanPointWords), kScanPointWords);
+    const words = new Uint32Array(capacity * kScanPointWords);
+    const buffer = new InterleavedBuffer(words, kScanPointWords);
     buffer.setUsage(DynamicDrawUsage);
     this.geometry.dispose();
     this.geometry.setAttribute('place', new InterleavedBufferAttribute(buffer, 3, 0));

@@ -217,7 +217,7 @@ export class SceneView {
   surfaceAt(screen: Vector2, pixel: Vector2): Vector3 | null {
     if (this.modelDirty) this.drawNow();
     if (this.movable.length > 0) {
-      // Movable objects are overlays. Draw them into the model's picture for its depth, then redraw it.
+      // Movable objects are overlays: draw them into the model's picture for depth, then redraw it.
       for (const area of this.areas) this.stage.drawModel(this.movable, area, this.rig.camera);
       this.invalidateModel();
     }

@@ -259,7 +259,7 @@ void main() {
 }
 `;
 
-/** Draws the model's picture with its depth; darkens depth edges (eye-dome lighting, Boucheny 2009). */
+/** The model's picture with its depth and darkened edges (eye-dome lighting, Boucheny 2009). */
 export const kScreenFragment =
   kPrelude +
   /* glsl */ `

@@ -44,7 +44,7 @@ export class SaveMenu {
         : null,
       this.filmButton,
       command
-        ? button('Copy command line', 'Copy the command that simulates this path with this LiDAR', command)
+        ? button('Copy command line', 'Copy the command that simulates this path', command)
         : null,
     ];
     this.elements = [

@@ -24,7 +24,7 @@ export interface LayerInfo {
   has_errors: boolean;
   intensity_range: [number, number];
   error_range_m: [number, number];
-  /** Kind of the beams with errors: 'early', 'late', 'ghosts', 'holes'; empty: all, or no errors. */
+  /** Part of the beams with errors: 'early', 'late', 'ghosts', 'holes'; '': all, or no errors. */
   part: string;
   box: Box;
 }
@@ -174,7 +174,8 @@ export function parsePose(value: unknown, what: string): Pose {
 
 function box(value: unknown, what: string): Box {
   const corners = list(value, what, (v, w) => numbers<Vec3>(v, w, 3));
-  if (corners.length !== 2) throw new ProtocolError(`${what} has ${corners.length} corners, expected 2`);
+  if (corners.length !== 2)
+    throw new ProtocolError(`${what} has ${corners.length} corners, expected 2`);
   return corners as Box;
 }
 
@@ -272,7 +273,7 @@ function objectInfo(value: unknown, what: string): ObjectInfo {
 export function parseScene(value: unknown): SceneInfo {
   const v = fields(value, 'scene.json');
   if (v.version !== kVersion)
-    throw new ProtocolError(`scene.json: version ${String(v.version)}, this page supports version ${kVersion}`);
+    throw new ProtocolError(`scene.json has version ${String(v.version)}, expected ${kVersion}`);
   const canSimulate = v.can_simulate === true;
   return {
     name: text(v.name, 'name'),

@@ -6,7 +6,7 @@
 import type { Vector3 } from 'three';
 import type { Vec3 } from '../server/protocol';
 
-/** World position, such as "650003.215, 6860011.040, 41.730". Doubles keep millimetres of UTM coordinates. */
+/** World position, "650003.215, 6860011.040, 41.730"; doubles keep millimetres of UTM. */
 export function worldText(position: Vector3, origin_m: Vec3): string {
   return position
     .toArray()

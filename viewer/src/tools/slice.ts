@@ -114,7 +114,7 @@ function pointsOf(layer: Layer, node: number, bytes: ArrayBuffer, frame: SliceFr
   return points;
 }
 
-/** Points of a slice, ordered along it. `coarse`: some are merged elements. Rejects like Layer.load(). */
+/** Points of a slice in order; `coarse`: some are merged elements. Rejects like Layer.load(). */
 export async function slicePoints(layers: Layer[], slice: Slice, signal: AbortSignal) {
   const frame = new SliceFrame(slice);
   const points: SlicePoint[] = [];
