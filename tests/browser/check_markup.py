@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parses a report page with Python's html.parser and checks that it is whole and self-contained.
+"""Parses a report page with Python's html.parser and checks that it is complete and self-contained.
 
 usage: check_markup.py PAGE.html...      check_markup.py --sample PROGRAM
 """
@@ -18,7 +18,7 @@ LOADING = {"script", "iframe", "object", "embed", "link", "base", "video", "audi
 
 
 class Page(HTMLParser):
-    """Collects what is wrong in `faults`."""
+    """Collects errors in `faults`."""
 
     def __init__(self):
         super().__init__()
@@ -31,14 +31,14 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attributes):
         names = [name for name, _ in attributes]
         if len(names) != len(set(names)):
-            self.fault(f"<{tag}> has an attribute twice")
+            self.fault(f"<{tag}> has a duplicate attribute")
         attributes = dict(attributes)
         if tag in LOADING:
             self.fault(f"<{tag}> may load something")
         for name, value in attributes.items():
             if name in ("src", "srcset", "href", "xlink:href", "action", "data", "poster"):
                 if not (value or "").startswith(("data:image/", "#")):
-                    self.fault(f"<{tag} {name}={(value or '')[:60]!r}> is not inside of the page")
+                    self.fault(f"<{tag} {name}={(value or '')[:60]!r}> is outside of the page")
             elif name.startswith("on"):
                 self.fault(f"<{tag}> has a handler {name}")
             elif name == "style":
@@ -49,7 +49,7 @@ class Page(HTMLParser):
                 self.fault("<img> without alt")
         if "id" in attributes:
             if attributes["id"] in self.ids:
-                self.fault(f"id {attributes['id']!r} twice")
+                self.fault(f"duplicate id {attributes['id']!r}")
             self.ids.add(attributes["id"])
         if tag == "a":
             self.targets.append(attributes.get("href", ""))

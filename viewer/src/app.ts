@@ -281,13 +281,13 @@ export class App {
   private listen(canvas: HTMLCanvasElement) {
     const { sensor, picker, toolBox } = this;
     // An active tool gets every click, even on objects that can be dragged.
-    const free = (one: Grabbable): Grabbable => ({
+    const unlessActive = (one: Grabbable): Grabbable => ({
       isAt: (...at) => !toolBox.isActive && one.isAt(...at),
       highlight: (on) => one.highlight(on),
       grab: (...at) => one.grab(...at),
       drag: (ray) => one.drag(ray),
     });
-    const grabbables = [this.tools.clip, free(sensor.grabbable), free(this.objects)];
+    const grabbables = [this.tools.clip, unlessActive(sensor.grabbable), unlessActive(this.objects)];
     new Pointer(this.view, canvas, grabbables, (click) => {
       if (!toolBox.clicked(click)) void picker.pick(click.screen, sensor.body.object.position);
     });

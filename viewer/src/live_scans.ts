@@ -51,7 +51,7 @@ export class LiveScans {
   private newest: ScanPacket | null = null;
   private lastFrameMs = 0;
   /** Received scans for which no 'ready' message has been sent. */
-  private owed = 0;
+  private unanswered = 0;
 
   constructor(
     private readonly view: SceneView,
@@ -78,7 +78,7 @@ export class LiveScans {
     this.newest = null;
     this.cloud.set(scan);
     this.view.invalidate();
-    this.payReady();
+    this.sendReady();
     return true;
   }
 
@@ -86,7 +86,7 @@ export class LiveScans {
     showBanner(connected ? null : 'Connection lost, reconnecting');
     document.body.classList.toggle('offline', !connected);
     this.rate.restart();
-    this.owed = 0;
+    this.unanswered = 0;
     if (connected) this.view.retryFetches();
   }
 
@@ -95,14 +95,14 @@ export class LiveScans {
     this.rate.count(now);
     this.newest = scan;
     this.view.invalidate();
-    ++this.owed;
+    ++this.unanswered;
     // A slow page must not slow the LiDAR down, nor receive more scans than it can handle. A page
     // in the background, which does not draw at all, requests none.
     const slow = this.rate.perSecond(now) < kSlowScansPerSecond;
-    if (slow && now - this.lastFrameMs < kAliveMs) this.payReady();
+    if (slow && now - this.lastFrameMs < kAliveMs) this.sendReady();
   }
 
-  private payReady() {
-    for (; this.owed > 0; --this.owed) this.live.ready();
+  private sendReady() {
+    for (; this.unanswered > 0; --this.unanswered) this.live.ready();
   }
 }

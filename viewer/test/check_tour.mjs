@@ -236,10 +236,10 @@ async function showsErrors(t) {
   await t.shot('8-errors-on-splats');
   await t.page.selectOption('#color', 'class');
   await t.settled();
-  const usual = await t.pixels();
+  const usualColors = await t.pixels();
   await t.page.check('#color-blind');
   await t.settled();
-  assert.ok(changed(usual, await t.pixels()) > 0.1, 'the colours are the same');
+  assert.ok(changed(usualColors, await t.pixels()) > 0.1, 'the colours are the same');
   await t.shot('9-color-blind');
   await t.page.uncheck('#color-blind');
   await t.call('setRunning', true);

@@ -91,13 +91,13 @@ function scanPacket(number, sensor, settings, pose, random) {
   return bytes;
 }
 
-const kStart = [-45, -2, 1.9, 0, 0, 0, 1];
+const kStartPose = [-45, -2, 1.9, 0, 0, 0, 1];
 
 function makeScene(trees) {
   const poses = Array.from({ length: 90 }, (_, i) => [
-    kStart[0] + i,
-    kStart[1],
-    kStart[2],
+    kStartPose[0] + i,
+    kStartPose[1],
+    kStartPose[2],
     0,
     0,
     0,
@@ -150,7 +150,7 @@ function makeScene(trees) {
       max_range_m,
     })),
     sensor: 'mock-64',
-    start_pose: kStart,
+    start_pose: kStartPose,
     device: 'cpu',
     command: ['adasplats', 'simulate', 'made up.ply'],
   };
@@ -161,8 +161,8 @@ const blockOf = (number) => [number * kBlockBytes, (number + 1) * kBlockBytes];
 /** The live channel of one page. */
 class Session {
   sensor = kSensors[0];
-  settings = this.usual();
-  pose = kStart;
+  settings = this.defaults();
+  pose = kStartPose;
   running = false;
   credit = 2;
   number = 0;
@@ -175,7 +175,7 @@ class Session {
     socket.on('close', () => clearInterval(this.timer));
   }
 
-  usual() {
+  defaults() {
     return {
       noise: true,
       range_noise_m: 0.02,
@@ -208,7 +208,7 @@ class Session {
     if (!found || settings.max_range_m < 0)
       return this.send({ type: 'error', message: `unknown LiDAR or invalid parameter: ${name}` });
     this.sensor = found;
-    this.settings = { ...this.usual(), ...settings };
+    this.settings = { ...this.defaults(), ...settings };
     const options = Object.entries(settings).flatMap(([key, value]) => [`--${key}`, String(value)]);
     this.send({
       type: 'sensor',
@@ -253,7 +253,7 @@ function sendMalformed(socket) {
     1,
     kSensors[1],
     { max_range_m: 60, min_range_m: 0 },
-    kStart,
+    kStartPose,
     Math.random,
   );
   const wrongPose = Buffer.from(packet);
@@ -339,8 +339,8 @@ async function serve(folder, options) {
 }
 
 const words = process.argv.slice(2);
-const option = (name, usual) =>
-  words.includes(name) ? Number(words[words.indexOf(name) + 1]) : usual;
+const option = (name, fallback) =>
+  words.includes(name) ? Number(words[words.indexOf(name) + 1]) : fallback;
 console.log(
   await serve(words[0] ?? '../build/page', {
     port: option('--port', 0),

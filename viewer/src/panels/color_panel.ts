@@ -54,9 +54,9 @@ export class ColorPanel {
       this.choose(value as ColorMode),
     );
     this.select.id = 'color';
-    const safe = checkbox('Colour-blind palette', view.maps.isColorBlind, (on) => this.setSafe(on));
-    safe.querySelector('input')!.id = 'color-blind';
-    fill(this.element, this.select, safe, this.classes);
+    const colorBlind = checkbox('Colour-blind palette', view.maps.isColorBlind, (on) => this.setColorBlind(on));
+    colorBlind.querySelector('input')!.id = 'color-blind';
+    fill(this.element, this.select, colorBlind, this.classes);
     this.update();
     this.choose(view.colorMode);
   }
@@ -83,7 +83,7 @@ export class ColorPanel {
     this.fillClasses(ids);
   }
 
-  private setSafe(on: boolean) {
+  private setColorBlind(on: boolean) {
     this.view.maps.colorBlind = on;
     this.view.palette.colorBlind = on;
     this.fillClasses(this.view.seenClasses);

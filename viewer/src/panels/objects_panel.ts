@@ -38,7 +38,7 @@ export class ObjectsPanel {
       make(
         'div',
         { className: 'buttons small' },
-        button('Reset', 'Return dragged objects to their own motion', () =>
+        button('Reset objects', 'Return dragged objects to their own motion', () =>
           this.objects.release(),
         ),
       ),

@@ -91,12 +91,12 @@ function section(title: string, content: HTMLElement, open = true): HTMLElement 
 
 function drawingPanel(view: SceneView): HTMLElement {
   const { stage } = view;
-  const usual = stage.outline;
+  const defaultOutline = stage.outline;
   return make(
     'div',
     {},
     checkbox('Darken edges', stage.outline > 0, (on) => {
-      stage.outline = on ? usual : 0;
+      stage.outline = on ? defaultOutline : 0;
       view.invalidate();
     }),
   );

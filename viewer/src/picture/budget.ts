@@ -13,7 +13,7 @@ const kSlowSoftwareMs = 90;
 const kMinFactor = 0.8;
 const kQuickMs = 24;
 /** Budget of the first picture: few enough for any machine, including first-time setup. */
-const kFirst = 400_000;
+const kFirstPicture = 400_000;
 const kFirstSoftware = 20_000;
 /** Maximum time of a picture at rest if the page blocks until it is drawn. */
 const kMaxStillMs = 2000;
@@ -24,7 +24,7 @@ export class Budget {
   private moving: number;
   private smoothedMs = 33;
   /** Milliseconds per element; 0: not measured yet. */
-  private pace = 0;
+  private msPerElement = 0;
 
   constructor(private readonly software: boolean) {
     this.moving = software ? 120_000 : 1_500_000;
@@ -37,19 +37,19 @@ export class Budget {
 
   /** For the first picture. */
   get first(): number {
-    return this.software ? kFirstSoftware : kFirst;
+    return this.software ? kFirstSoftware : kFirstPicture;
   }
 
   /** At rest, when the picture is drawn only once. */
   get still(): number {
-    const max = this.pace > 0 ? Math.max(kMaxStillMs / this.pace, kMinElements) : kMaxElements;
-    return Math.min(3 * this.moving, max, kMaxElements);
+    const limit = this.msPerElement > 0 ? kMaxStillMs / this.msPerElement : kMaxElements;
+    return Math.min(3 * this.moving, Math.max(limit, kMinElements), kMaxElements);
   }
 
   /** Records the time of a picture. With few elements the fixed cost dominates. */
   drawn(ms: number, elements: number) {
-    const pace = ms / Math.max(elements, kMinElements);
-    this.pace = this.pace > 0 ? (this.pace + pace) / 2 : pace;
+    const msPerElement = ms / Math.max(elements, kMinElements);
+    this.msPerElement = this.msPerElement > 0 ? (this.msPerElement + msPerElement) / 2 : msPerElement;
   }
 
   /** Records the time between two frames; `limited`: a larger budget would be used. */

@@ -24,7 +24,7 @@ type MapName = keyof typeof kMaps;
 export const kRoles = ['distance', 'amount', 'strength', 'signed'] as const;
 export type ColorRole = (typeof kRoles)[number];
 
-const kUsual: Record<ColorRole, MapName> = {
+const kDefault: Record<ColorRole, MapName> = {
   distance: 'viridis',
   amount: 'plasma',
   strength: 'inferno',
@@ -59,7 +59,7 @@ export class ColorMaps {
   /** One row per role. */
   readonly texture: DataTexture;
   private readonly bytes = new Uint8Array(kWidth * kRoles.length * 4);
-  private names = kUsual;
+  private names = kDefault;
 
   constructor() {
     this.texture = new DataTexture(this.bytes, kWidth, kRoles.length, RGBAFormat, UnsignedByteType);
@@ -68,7 +68,7 @@ export class ColorMaps {
   }
 
   set colorBlind(on: boolean) {
-    this.names = on ? kForColorBlind : kUsual;
+    this.names = on ? kForColorBlind : kDefault;
     this.fill();
   }
 

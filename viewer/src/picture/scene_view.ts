@@ -74,7 +74,7 @@ export class SceneView {
   private readonly frameTimes: number[] = [];
   private firstPictureMs: number | null = null;
   private startedMs = 0;
-  private hurries = false;
+  private isScheduled = false;
   /** A dummy element that compiles the shaders before the first picture. */
   private sample: Object3D | null = null;
   /** Time since when part of the model could be drawn. */
@@ -99,7 +99,7 @@ export class SceneView {
     };
     const memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
     this.set = new LayerSet(this.shared, memoryLimit, failed);
-    this.set.arrived = () => this.hurry();
+    this.set.arrived = () => this.scheduleFirstPicture();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.resize();
   }
@@ -160,7 +160,7 @@ export class SceneView {
     const [low, high] = scene.middle_box;
     this.shared.height_range_m.value.set(low[2], Math.max(high[2], low[2] + 0.1));
     this.moved();
-    this.hurry();
+    this.scheduleFirstPicture();
   }
 
   get layers(): Layer[] {
@@ -250,7 +250,7 @@ export class SceneView {
     this.beforeFrame(dt);
     this.rig.controls.update(dt);
     const still = now - this.movedMs > kRestMs;
-    if (this.firstPictureMs === null && !this.canBegin(now)) return;
+    if (this.firstPictureMs === null && !this.canStart(now)) return;
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
     this.takeArrivals(still, now);
     if (this.modelInLastFrame && !still)
@@ -269,31 +269,31 @@ export class SceneView {
    * Draws the first picture, and requests its nodes, without waiting for the browser's frames, which
    * are rare while shaders compile.
    */
-  private hurry() {
-    if (this.firstPictureMs !== null || this.hurries) return;
-    this.hurries = true;
+  private scheduleFirstPicture() {
+    if (this.firstPictureMs !== null || this.isScheduled) return;
+    this.isScheduled = true;
     window.setTimeout(() => {
-      this.hurries = false;
+      this.isScheduled = false;
       const now = performance.now();
       if (this.firstPictureMs !== null || this.startedMs === 0) return;
-      if (!this.canBegin(now)) return this.warm();
+      if (!this.canStart(now)) return this.warmUp();
       this.drawModel(false, now);
       this.drawScreen();
     });
   }
 
   /** Draws the dummy element while requests are pending. */
-  private warm() {
+  private warmUp() {
     if (this.sample) this.stage.warm(this.sample);
     this.sample = null;
   }
 
   /** Whether to draw the first frame. Empty frames would delay the first picture of the model. */
-  private canBegin(now: number): boolean {
+  private canStart(now: number): boolean {
     if (now - this.startedMs > kPatienceMs) return true;
     if (this.layers.length === 0) return false;
     this.rig.controls.update(0);
-    this.chooseCuts(this.look(), false, now);
+    this.chooseCuts(this.updateView(), false, now);
     if (this.cuts.every((c) => c.complete)) return true;
     if (this.cuts.every((c) => c.elements === 0)) return false;
     this.drawableMs ??= now;
@@ -301,7 +301,7 @@ export class SceneView {
   }
 
   /** Updates the camera and returns its view. */
-  private look(): View {
+  private updateView(): View {
     const { areas, rig } = this;
     rig.camera.aspect = areas[0].width / areas[0].height;
     rig.camera.updateProjectionMatrix();
@@ -315,7 +315,7 @@ export class SceneView {
     this.modelDirty = this.set.arrivals = this.arrived = false;
     this.lastModelMs = now;
     const { areas, rig } = this;
-    const view = this.look();
+    const view = this.updateView();
     this.shared.focal_px.value = view.focal_px;
     this.chooseCuts(view, still, now);
     this.stage.beginModel();
@@ -369,7 +369,7 @@ export class SceneView {
     this.firstShown();
     // Overlays come in the next frame, finer nodes as they arrive.
     this.invalidate();
-    this.chooseCuts(this.look(), true, this.firstPictureMs);
+    this.chooseCuts(this.updateView(), true, this.firstPictureMs);
     this.arrived = this.wasStill = true;
   }
 
