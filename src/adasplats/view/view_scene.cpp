@@ -22,12 +22,12 @@ std::span<const Vec3f> relative_to_origin(std::span<const Vec3f> positions, Vec3
 /// Number of samples of a layer for finding a street.
 constexpr std::size_t kMaxSamples = 400'000;
 
-bool has_classes(std::span<const std::uint16_t> classes) {
+bool has_nonzero_class(std::span<const std::uint16_t> classes) {
   return std::ranges::any_of(classes, [](std::uint16_t id) { return id != 0; });
 }
 
 /// Whether intensities differ; a constant one carries no information.
-bool has_intensities(std::span<const float> intensities) {
+bool has_varying_intensity(std::span<const float> intensities) {
   return std::ranges::any_of(intensities,
                              [&](float value) { return value != intensities.front(); });
 }
@@ -118,8 +118,8 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
   }
   return {std::move(name),
           true,
-          has_classes(model.classes),
-          has_intensities(model.intensities),
+          has_nonzero_class(model.classes),
+          has_varying_intensity(model.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},
@@ -130,8 +130,8 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
                      Vec3d origin) {
   return {std::move(name),
           false,
-          has_classes(model.mesh.classes),
-          has_intensities(intensities),
+          has_nonzero_class(model.mesh.classes),
+          has_varying_intensity(intensities),
           false,
           LevelTree({}, {}, Executor(1)),
           MeshTree(model.mesh, intensities, model.origin - origin),
@@ -156,8 +156,8 @@ ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const
       .errors_m = errors_m};
   return {std::move(name),
           false,
-          has_classes(cloud.classes),
-          has_intensities(cloud.intensities),
+          has_nonzero_class(cloud.classes),
+          has_varying_intensity(cloud.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},
