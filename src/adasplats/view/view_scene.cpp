@@ -138,11 +138,11 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
           {}};
 }
 
-ViewLayer place_layer(std::string name, const AnyModel& place, Vec3d origin,
+ViewLayer place_layer(std::string name, const AnyModel& model, Vec3d origin,
                       const Executor& executor) {
-  if (const auto* const splats = std::get_if<SplatModel>(&place))
+  if (const auto* const splats = std::get_if<SplatModel>(&model))
     return splat_layer(std::move(name), *splats, {}, origin, executor);
-  return mesh_layer(std::move(name), std::get<MeshModel>(place), intensities_of(place), origin);
+  return mesh_layer(std::move(name), std::get<MeshModel>(model), intensities_of(model), origin);
 }
 
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
@@ -173,9 +173,9 @@ void add_world(ViewScene& scene, const Executor& executor) {
     if (object.only_scan) continue;
     std::size_t& number = number_of[object.geometry];
     if (number == world->geometry_count()) {
-      const AnyModel& place = world->geometry(object.geometry);
+      const AnyModel& geometry = world->geometry(object.geometry);
       number = scene.geometries.size();
-      scene.geometries.push_back(place_layer(object.name, place, {}, executor));
+      scene.geometries.push_back(place_layer(object.name, geometry, {}, executor));
     }
     scene.objects.push_back({object.name, i, number});
   }

@@ -22,7 +22,7 @@ const kSteps = 10_000;
 
 export class TimelinePanel {
   private readonly play: HTMLButtonElement;
-  private readonly place: HTMLInputElement;
+  private readonly timeSlider: HTMLInputElement;
   private readonly facts = make('span', { id: 'timeline-facts', className: 'facts' });
   private readonly sources: ReturnType<typeof segments>;
 
@@ -33,11 +33,11 @@ export class TimelinePanel {
     const { timeline, tracks } = playback;
     this.play = iconButton('play', 'Play or pause (K)', () => this.toggle());
     this.play.id = 'play';
-    this.place = slider('Time', { low: 0, high: kSteps, step: 1, value: 0 }, (value) => {
+    this.timeSlider = slider('Time', { low: 0, high: kSteps, step: 1, value: 0 }, (value) => {
       if (timeline) this.playback.seek((value / kSteps) * timeline.duration_s);
       this.show();
     });
-    this.place.id = 'time';
+    this.timeSlider.id = 'time';
     const speed = dropdown(
       'Speed',
       kSpeeds.map((s) => ({ value: String(s), text: `${s} ×` })),
@@ -67,7 +67,7 @@ export class TimelinePanel {
       iconButton('back', 'Previous scan (,)', () => this.stepBy(-1)),
       this.play,
       iconButton('forward', 'Next scan (.)', () => this.stepBy(1)),
-      this.place,
+      this.timeSlider,
       this.facts,
       speed,
       tracks.length > 1 ? track : null,
@@ -95,10 +95,10 @@ export class TimelinePanel {
       fill(this.play, icon(playing ? 'pause' : 'play'));
       this.play.ariaPressed = String(playing);
     }
-    this.place.value = String(duration_s > 0 ? Math.round((time_s / duration_s) * kSteps) : 0);
+    this.timeSlider.value = String(duration_s > 0 ? Math.round((time_s / duration_s) * kSteps) : 0);
     const scan = scanNumber < 0 ? '' : ` · scan ${scanNumber + 1} of ${track.scans.length}`;
     const text = `${time_s.toFixed(1)} of ${duration_s.toFixed(1)} s`;
-    this.place.setAttribute('aria-valuetext', text + scan);
+    this.timeSlider.setAttribute('aria-valuetext', text + scan);
     this.facts.textContent = text + scan;
   }
 }

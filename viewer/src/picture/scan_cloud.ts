@@ -143,7 +143,7 @@ export class ScanCloud {
     const buffer = new InterleavedBuffer(words, kScanPointWords);
     buffer.setUsage(DynamicDrawUsage);
     this.geometry.dispose();
-    this.geometry.setAttribute('place', new InterleavedBufferAttribute(buffer, 3, 0));
+    this.geometry.setAttribute('point', new InterleavedBufferAttribute(buffer, 3, 0));
     this.geometry.setAttribute('echo', new InterleavedBufferAttribute(buffer, 3, 3));
     this.geometry.setDrawRange(0, 0);
     return buffer;

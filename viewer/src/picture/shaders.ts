@@ -213,7 +213,7 @@ uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform sampler2D classes, maps;
 uniform int scan_mode, is_plain, has;
 uniform float point_px, rings, max_range_m;
-in uvec3 place;
+in uvec3 point;
 in uvec3 echo;              // ring and class, column, intensity and return
 flat out vec3 color;
 
@@ -223,7 +223,7 @@ vec3 map_color(int r, float t) {
 }
 
 void main() {
-  vec3 position = uintBitsToFloat(place);
+  vec3 position = uintBitsToFloat(point);
   vec4 world = modelMatrix * vec4(position, 1.0);
   if (is_clipped(world.xyz)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
   vec4 seen = viewMatrix * world;
