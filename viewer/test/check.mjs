@@ -4,8 +4,11 @@
 // Shared by the tests of the page: servers, queries of the page, and tests of pixels.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
+import { mkdirSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
+
+import { findBrowser } from './browser.mjs';
 
 export const kSize = { width: 1100, height: 760 };
 const kSkipped = 77;
@@ -15,6 +18,14 @@ const kToken = '0123456789abcdef0123456789abcdef';
 export function skip(why) {
   console.log(`skipped: ${why}`);
   process.exit(kSkipped);
+}
+
+/** Skips the test without Chromium or packages; creates the folder of screenshots. */
+export async function requireBrowser({ shots }, ...packages) {
+  if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
+  for (const name of ['playwright-core', ...packages])
+    await import(name).catch(() => skip(`${name} not found: run 'npm ci' in viewer/`));
+  if (shots) mkdirSync(shots, { recursive: true });
 }
 
 /**

@@ -10,10 +10,10 @@
 //   --metres: distance to drive (40)
 // Exits with code 77 and a message if Chromium or node_modules is missing.
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
 import {
   Check,
   changed,
@@ -21,6 +21,7 @@ import {
   kSize,
   readArguments,
   realServer,
+  requireBrowser,
   shareOf,
   skip,
   sleep,
@@ -224,9 +225,7 @@ const { options, words } = readArguments(
   { metres: 40 },
   { metres: (options, value) => (options.metres = Number(value)) },
 );
-if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
-await import('playwright-core').catch(() => skip(`playwright-core not found: run 'npm ci' in viewer/`));
-if (options.shots) mkdirSync(options.shots, { recursive: true });
+await requireBrowser(options);
 let failed = 1;
 try {
   const t = await checkAll(

@@ -12,17 +12,18 @@
 // Exits with code 77 and a message if Chromium or node_modules is missing.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
 import {
   Check,
   changed,
   isBackground,
   readArguments,
   realServer,
+  requireBrowser,
   shareOf,
   skip,
   sleep,
@@ -319,9 +320,7 @@ const { options, words } = readArguments(
   { with: [] },
   { with: (options, value) => options.with.push(value) },
 );
-if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
-await import('playwright-core').catch(() => skip("playwright-core not found: run 'npm ci' in viewer/"));
-if (options.shots) mkdirSync(options.shots, { recursive: true });
+await requireBrowser(options);
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-tour-'));
 let failed = 1;
 try {

@@ -14,7 +14,6 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import {
-  mkdirSync,
   mkdtempSync,
   readFileSync,
   rmSync,
@@ -23,10 +22,9 @@ import {
   writeFileSync,
 } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join, resolve } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
 import {
   Check,
   changed,
@@ -36,6 +34,7 @@ import {
   mockServer,
   readArguments,
   realServer,
+  requireBrowser,
   shareOf,
   skip,
   sleep,
@@ -437,13 +436,7 @@ const { options, words } = readArguments(
   { with: [] },
   { with: (options, value) => options.with.push(value) },
 );
-const { shots } = options;
-if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
-for (const needed of ['playwright-core', 'ws'])
-  await import(needed).catch(() =>
-    skip(`${needed} not found: run 'npm ci' in ${dirname(dirname(fileURLToPath(import.meta.url)))}`),
-  );
-if (shots) mkdirSync(shots, { recursive: true });
+await requireBrowser(options, 'ws');
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-viewer-'));
 const mock = words[0] === '--mock';
 const server = mock
