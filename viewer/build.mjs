@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Bundles the page into one folder: index.html, app.css, app.js. Usage: node build.mjs [FOLDER]
+// Bundles the page into a folder: index.html, app.css and app.js.
+// Usage: node build.mjs [FOLDER]   (default: ../build/page)
 import { build } from 'esbuild';
 import { copyFile, mkdir, readFile } from 'node:fs/promises';
 import { dirname, join, resolve } from 'node:path';
@@ -11,7 +12,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const output = resolve(process.argv[2] ?? join(here, '..', 'build', 'page'));
 const three = join(here, 'node_modules', 'three');
 
-/** The licence of what is bundled, as its own text demands: with every copy. */
+/** The licence of three.js, which must be included in every copy. */
 async function banner() {
   const { version } = JSON.parse(await readFile(join(three, 'package.json'), 'utf8'));
   const licence = (await readFile(join(three, 'LICENSE'), 'utf8')).trim();
@@ -34,7 +35,7 @@ await build({
   bundle: true,
   format: 'iife',
   target: 'es2020',
-  // Said here, so that a copy without tsconfig.json makes the same page.
+  // Set here, so that a copy without tsconfig.json builds the same page.
   tsconfigRaw: {
     compilerOptions: { strict: true, target: 'es2020', useDefineForClassFields: false },
   },

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Makes a C++ source that holds the files of a folder as page_files() of view/page_files.h.
+// Writes a C++ source with the files of a folder as page_files() of view/page_files.h.
 // usage: node embed.mjs FOLDER SOURCE.cpp
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { extname, join } from "node:path";
@@ -13,13 +13,13 @@ const types = {
   ".txt": "text/plain; charset=utf-8",
   ".svg": "image/svg+xml",
 };
-const kLineBytes = 4096; // of a string literal's line
+const kLineBytes = 4096; // per line of a string literal
 
 const [folder, source] = process.argv.slice(2);
 if (!source) throw new Error("usage: node embed.mjs FOLDER SOURCE.cpp");
 
-// Every byte that is no plain character is written in octal, three digits: what follows cannot
-// be taken for a part of it.
+// Writes other bytes than plain characters as three octal digits, so that a following digit is not
+// part of the escape.
 function literal(bytes) {
   const lines = [];
   for (let at = 0; at < bytes.length; at += kLineBytes) {
@@ -36,7 +36,7 @@ function literal(bytes) {
 const names = readdirSync(folder).sort();
 const entries = names.map((name) => {
   const type = types[extname(name)];
-  if (!type) throw new Error(`${name}: no content type is known for it`);
+  if (!type) throw new Error(`${name}: unknown content type`);
   return { name, type, bytes: readFileSync(join(folder, name)) };
 });
 const data = entries.map(({ bytes }, i) => `constexpr char kFile${i}[] =\n${literal(bytes)};\n`);

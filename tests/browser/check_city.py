@@ -2,12 +2,12 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """Models a small street in tiles and drives through it in the viewer with headless Chromium, while
-the city stays on disk: viewer/test/check_city.mjs. The same city without its levels of detail, all
-of it in memory, says what must be seen.
+the city stays on disk: viewer/test/check_city.mjs. The oracle is the same city without levels of
+detail, loaded into memory.
 
 usage: check_city.py [--shots FOLDER]       (ADASPLATS_PROGRAM names the program)
 
-Exit code 77, and a message, without Node.js, Chromium or `npm ci` in viewer/.
+Exits with code 77 and a message without Node.js, Chromium or `npm ci` in viewer/.
 """
 import os
 import shutil

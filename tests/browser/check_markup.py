@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parses a report page with Python's html.parser and checks that it is whole and self-contained.
+"""Parses a report page with Python's html.parser and checks that it is complete and self-contained.
 
 usage: check_markup.py PAGE.html...      check_markup.py --sample PROGRAM
 """
@@ -18,7 +18,7 @@ LOADING = {"script", "iframe", "object", "embed", "link", "base", "video", "audi
 
 
 class Page(HTMLParser):
-    """Collects what is wrong in `faults`."""
+    """Collects errors in `faults`."""
 
     def __init__(self):
         super().__init__()
@@ -31,14 +31,14 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attributes):
         names = [name for name, _ in attributes]
         if len(names) != len(set(names)):
-            self.fault(f"<{tag}> has an attribute twice")
+            self.fault(f"<{tag}> has a duplicate attribute")
         attributes = dict(attributes)
         if tag in LOADING:
             self.fault(f"<{tag}> may load something")
         for name, value in attributes.items():
             if name in ("src", "srcset", "href", "xlink:href", "action", "data", "poster"):
                 if not (value or "").startswith(("data:image/", "#")):
-                    self.fault(f"<{tag} {name}={(value or '')[:60]!r}> is not inside of the page")
+                    self.fault(f"<{tag} {name}={(value or '')[:60]!r}> is outside of the page")
             elif name.startswith("on"):
                 self.fault(f"<{tag}> has a handler {name}")
             elif name == "style":
@@ -49,7 +49,7 @@ class Page(HTMLParser):
                 self.fault("<img> without alt")
         if "id" in attributes:
             if attributes["id"] in self.ids:
-                self.fault(f"id {attributes['id']!r} twice")
+                self.fault(f"duplicate id {attributes['id']!r}")
             self.ids.add(attributes["id"])
         if tag == "a":
             self.targets.append(attributes.get("href", ""))
@@ -82,7 +82,7 @@ class Page(HTMLParser):
             self.check_widths()
 
     def check_widths(self):
-        """All rows of a table are as wide as its first; cells two rows high count in the second."""
+        """All rows of a table have the width of the first; cells of two rows count in both."""
         first, second, *others = self.widths
         wrong = [w for w in [second + self.below, *others] if w != first]
         if wrong:
@@ -101,7 +101,7 @@ class Page(HTMLParser):
 
 
 def check(path):
-    """Faults of one page, and the parser for more questions."""
+    """Returns the faults of a page and its parser."""
     page = Page()
     page.feed(path.read_text(encoding="utf-8"))
     page.close()
@@ -116,12 +116,12 @@ def check(path):
             base64.b64decode(data, validate=True)
     for target in page.targets:
         if target[1:] not in page.ids:
-            faults.append(f"{path.name}: a link to {target}, which is nowhere")
+            faults.append(f"{path.name}: a link to {target}, which does not exist")
     return faults, page
 
 
 def check_sample(program):
-    """The made-up page: whole, its pictures byte by byte, its texts unescaped again."""
+    """Checks the synthetic page: complete, with all pictures and unescaped texts."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([program, folder], check=True, timeout=60)
@@ -134,12 +134,12 @@ def check_sample(program):
         for wanted in ("sample <street>", "mapping & more.ply", "limit | of 20 GB",
                        "Picture missing: pictures/semantic-beams.png"):
             if wanted not in text:
-                faults.append(f"the page does not say {wanted!r}")
-        bad = folder / "bad.html"  # what the checks are there to find
+                faults.append(f"the page does not contain {wanted!r}")
+        bad = folder / "bad.html"  # faults that the checks must detect
         bad.write_text("<p id=a><p id=a><img src='https://a.b/c.png'><script></script>"
                        "<a href='#x'>")
         if len(check(bad)[0]) < 6:
-            faults.append("the checks do not find what they are there for")
+            faults.append("the checks do not detect faults")
         return faults
 
 
@@ -150,7 +150,7 @@ def main():
         faults = [fault for path in sys.argv[1:] for fault in check(Path(path))[0]]
     else:
         sys.exit(__doc__)
-    print("\n".join(faults) or "the page is whole and loads nothing")
+    print("\n".join(faults) or "the page is complete and loads nothing")
     return 1 if faults else 0
 
 

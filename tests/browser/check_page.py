@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a report page in headless Chromium: it shows something, loads nothing, fits its window.
+"""Tests a report page in headless Chromium: not blank, loads nothing, fits its window.
 
 usage: check_page.py PAGE.html [--shots FOLDER]      check_page.py --sample PROGRAM
 
-With --shots the screenshots light.png and dark.png stay in FOLDER, to be looked at. Exit code 77,
-and a message, where there is no Chromium; CHROMIUM names another browser.
+--shots keeps the screenshots light.png and dark.png in FOLDER. Exits with code 77 and a message
+without Chromium; CHROMIUM names another browser.
 """
 import os
 import re
@@ -20,8 +20,8 @@ import threading
 import zlib
 from pathlib import Path
 
-# No settings, updates or extensions; still the browser asks hosts for itself (another version others).
-# What a page asks for stands in it.
+# No settings, updates or extensions. The browser still contacts some hosts itself, depending on its
+# version; requests of a page are recognized by the host names in its text.
 QUIET = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
          "--disable-component-update", "--disable-sync", "--disable-extensions", "--no-first-run",
          "--disable-default-apps", "--no-default-browser-check", "--hide-scrollbars",
@@ -36,7 +36,7 @@ def find_browser():
 
 
 class Trap(socketserver.ThreadingTCPServer):
-    """A proxy that answers nobody and notes what it was asked for."""
+    """A proxy that rejects all requests and records their addresses."""
     daemon_threads = True
 
     class Handler(socketserver.StreamRequestHandler):
@@ -57,7 +57,7 @@ class Browser:
         self.program, self.folder, self.shots = program, Path(folder), Path(shots)
 
     def open(self, page, *options, scheme=LIGHT):
-        """The browser's output, and the addresses that it asked the network for."""
+        """Returns the browser's output and the requested addresses."""
         with Trap() as trap:
             done = subprocess.run(
                 [self.program, *QUIET, f"--proxy-server=127.0.0.1:{trap.server_address[1]}",
@@ -74,7 +74,7 @@ class Browser:
         return shot, asked
 
     def widths(self, page, window):
-        """Widths of the content and of the window. Measured by a script in a copy of the page."""
+        """Widths of content and window, measured by a script in a copy of the page."""
         text = Path(page).read_text(encoding="utf-8")
         text = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", text)
         script = ("<script>addEventListener('load',()=>{const e=document.documentElement;"
@@ -86,7 +86,7 @@ class Browser:
 
 
 def rows_of(png):
-    """Rows of a PNG as it stores them: filtered, so only good for telling rows apart."""
+    """Rows of a PNG as stored: filtered, so only suitable for comparing rows."""
     data, at, packed = Path(png).read_bytes(), 8, b""
     width, _, depth, color = struct.unpack(">IIBB", data[16:26])
     while at < len(data):
@@ -99,7 +99,7 @@ def rows_of(png):
 
 
 def is_blank(png):
-    """Equal rows of one color are stored in a handful of ways; a page of text has hundreds."""
+    """Rows of one colour have few encodings; a page of text has hundreds of different rows."""
     return len(set(rows_of(png))) < 100
 
 
@@ -113,7 +113,7 @@ def check(browser, page):
     for name, scheme in (("light.png", LIGHT), ("dark.png", DARK)):
         shot, asked = browser.shoot(page, name, scheme)
         shots.append(shot.read_bytes())
-        faults += [f"the page asked the network for {address}" for address in asked
+        faults += [f"the page requested {address}" for address in asked
                    if host_of(address) in text]
         if is_blank(shot):
             faults.append(f"{name} is blank")
@@ -127,13 +127,13 @@ def check(browser, page):
 
 
 def check_itself(browser):
-    """The checks find an empty page, a page that loads and a page that is too wide."""
+    """Tests that the checks detect a blank page, network requests and a page that is too wide."""
     page = browser.folder / "bad.html"
     page.write_text("<!DOCTYPE html><body><img src='http://picture.invalid/a.png'>"
                     "<p style='width:3000px'>.</body>")
     faults = check(browser, page)
     wanted = ("picture.invalid", "blank", "look the same", "the page is 30")
-    return [f"the checks do not notice: {text}" for text in wanted
+    return [f"the checks do not detect: {text}" for text in wanted
             if not any(text in fault for fault in faults)]
 
 
@@ -142,7 +142,7 @@ def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     if program is None:
-        print("skipped: no Chromium here to open the page with")
+        print("skipped: Chromium not found")
         return 77
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         browser = Browser(program, name, sys.argv[3] if sys.argv[2:3] == ["--shots"] else name)
@@ -151,7 +151,7 @@ def main():
             faults = check_itself(browser) + check(browser, Path(name) / "report.html")
         else:
             faults = check(browser, sys.argv[1])
-    print("\n".join(faults) or "the page shows itself in light and dark, and loads nothing")
+    print("\n".join(faults) or "the page is shown in light and dark mode and loads nothing")
     return 1 if faults else 0
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a small street with two cars in it and takes the tour of the viewer through it with
-headless Chromium: viewer/test/check_tour.mjs.
+"""Makes a small street with two cars and runs the scripted tour of the viewer on it with headless
+Chromium: viewer/test/check_tour.mjs.
 
 usage: check_tour.py [--shots FOLDER]       (ADASPLATS_PROGRAM names the program)
 
-Exit code 77, and a message, without Node.js, Chromium or `npm ci` in viewer/.
+Exits with code 77 and a message without Node.js, Chromium or `npm ci` in viewer/.
 """
 import sys
 
@@ -16,7 +16,7 @@ CAR = (4.2, 1.8, 1.5)  # length, width, height, m
 
 
 def write_car(path):
-    """A box on the ground, its x along its length."""
+    """Writes a box on the ground with its length along x."""
     length, width, height = CAR
     corners = [(x * length / 2, y * width / 2, z * height)
                for x in (-1, 1) for y in (-1, 1) for z in (0, 1)]
@@ -35,7 +35,7 @@ def start_of(trajectory):
 
 
 def write_world(folder):
-    """A car that stands beside the start, and one that drives ahead of it."""
+    """Writes a world with a car parked near the start and a car driving ahead of it."""
     (x, y, z), (u, v) = start_of(folder / "street/true_driving_trajectory.csv")
     ground = z - 1.73
     write_car(folder / "car.obj")

@@ -6,7 +6,7 @@ Chromium: viewer/test/check_viewer.mjs.
 
 usage: check_viewer.py [--shots FOLDER]       (ADASPLATS_PROGRAM names the program)
 
-Exit code 77, and a message, without Node.js, Chromium or `npm ci` in viewer/.
+Exits with code 77 and a message without Node.js, Chromium or `npm ci` in viewer/.
 """
 import sys
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The small street that the viewer's page is checked with: its model, its scans, their errors."""
+"""The small street for tests of the viewer's page: its model, scans and errors."""
 import os
 import shutil
 import subprocess
@@ -12,12 +12,12 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "viewer" / "test"
 
 
 def check(script, arguments_in):
-    """Makes the street and runs a script of viewer/test on it with Node.js; gives back its exit
-    code, 77 without Node.js. `arguments_in`: what the script is given in the street's folder, after
-    the program; options of the command line come last."""
+    """Makes the street, runs a script of viewer/test on it with Node.js and returns its exit code, or
+    77 without Node.js. `arguments_in(folder)` returns the script's arguments after the program;
+    options of the command line follow."""
     node = shutil.which("node") or shutil.which("nodejs")
     if node is None:
-        print("skipped: no Node.js here to drive a browser with")
+        print("skipped: Node.js not found")
         return 77
     program = os.environ["ADASPLATS_PROGRAM"]
     with tempfile.TemporaryDirectory() as name:

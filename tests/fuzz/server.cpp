@@ -13,7 +13,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/serve/connection.h"
-#include "adasplats/serve/http_connection.h"
 #include "adasplats/serve/request_check.h"
 #include "adasplats/view/live_message.h"
 #include "fuzz_readers.h"
@@ -141,7 +140,7 @@ void check_request(const Input& input) {
   const std::size_t half = std::min(input.bytes.find('\n'), input.bytes.size());
   const std::string_view first = input.bytes.substr(0, half);
   const std::string_view second = input.bytes.substr(std::min(half + 1, input.bytes.size()));
-  if (const auto path = path_behind_token(first, "t"))
+  if (const auto path = path_after_token(first, "t"))
     require(!leads_elsewhere(*path), "a path of ours");
   for (const char* address : {"127.0.0.1", "0.0.0.0", "::1"}) is_own_host(first, {address, 8123});
   is_own_origin(first, second);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The page, composed: what the user does, what the server says, and what is shown of it meet here.
+// The page: connects user input, the server and what is drawn.
 
 import { Group } from 'three';
 import { CameraModes } from './driving/camera_modes';
@@ -18,10 +18,9 @@ import { showKeyHints } from './panels/key_hints';
 import { Labels } from './picture/labels';
 import { Legend } from './panels/legend';
 import { LidarPanel } from './panels/lidar_panel';
-import { showLiveFigures } from './panels/live_figures';
+import { showLiveFigures, showViewFigures } from './panels/figures';
 import { LiveScans } from './live_scans';
-import { showLoading } from './panels/loading';
-import { showToast } from './panels/notices';
+import { showLoading, showToast } from './panels/notices';
 import { ObjectsPanel } from './panels/objects_panel';
 import { Picker } from './driving/picker';
 import { Playback } from './playback';
@@ -38,13 +37,12 @@ import { SidePanel } from './panels/side_panel';
 import { TimelinePanel } from './panels/timeline_panel';
 import { ToolBox } from './tools/tool_box';
 import { Tools } from './tools/tools';
-import { showViewFigures } from './panels/view_figures';
 import { WorldObjects } from './picture/world_objects';
 
 const kFiguresMs = 250;
-/** That the LiDAR waits for the first picture. */
+/** Maximum wait for the first picture before the LiDAR starts. */
 const kPatienceMs = 3000;
-/** Without a GPU, for all that is in sight: scans would take the processor that draws it. */
+/** Without a GPU: maximum wait for all visible nodes, because drawing and scans share the CPU. */
 const kSoftwarePatienceMs = 10_000;
 
 export class App {
@@ -164,7 +162,7 @@ export class App {
     });
   }
 
-  /** Scans of a city load its tiles, and shall not keep anybody from seeing it. */
+  /** Resolves after the first picture. In a city, scans load tiles and would delay it. */
   private async firstPicture() {
     const { view } = this;
     const shown = new Promise<void>((done) => {
@@ -174,7 +172,7 @@ export class App {
         done();
       };
     });
-    // Where nothing is in sight there is none.
+    // No first picture is drawn where the view is empty.
     const patience = new Promise((done) => window.setTimeout(done, kPatienceMs));
     await Promise.race([shown, patience]);
     const end = performance.now() + kSoftwarePatienceMs;
@@ -194,12 +192,12 @@ export class App {
   private makeScans(): LiveScans {
     return new LiveScans(this.view, {
       connection: (connected) => {
-        if (connected) this.lidar.ask();
+        if (connected) this.lidar.send();
       },
       beforeReconnect: () => this.source.readAgain(),
       sensor: (message) => this.sensorConfirmed(message),
       error: (message) => {
-        this.lidar.refuse();
+        this.lidar.reject();
         showToast(message);
       },
     });
@@ -217,12 +215,12 @@ export class App {
   }
 
   private loadFailed(error: unknown) {
-    // That nobody answers is said already.
+    // The banner already reports a lost connection.
     if (this.source.scene.can_simulate && !this.scans.live.connected) return;
-    showToast(`Not loaded, trying again: ${(error as Error).message}`);
+    showToast(`Loading failed, retrying: ${(error as Error).message}`);
   }
 
-  /** In each frame, before it is drawn. */
+  /** Called before each frame is drawn. */
   private step(dt: number) {
     const { view, sensor, playback } = this;
     playback.step(dt);
@@ -241,7 +239,7 @@ export class App {
 
   private colorsChanged() {
     ++this.colorVersion;
-    // Scans would lie on the errors.
+    // Scans would cover the errors.
     this.scanPictures.visible = this.view.colorMode !== 'error';
     this.strip.draw();
     this.showLegend();
@@ -282,22 +280,22 @@ export class App {
 
   private listen(canvas: HTMLCanvasElement) {
     const { sensor, picker, toolBox } = this;
-    // A tool gets the clicks, also those on what could be dragged.
-    const free = (one: Grabbable): Grabbable => ({
-      isAt: (...at) => !toolBox.isTaken && one.isAt(...at),
+    // An active tool gets every click, even on objects that can be dragged.
+    const unlessActive = (one: Grabbable): Grabbable => ({
+      isAt: (...at) => !toolBox.isActive && one.isAt(...at),
       highlight: (on) => one.highlight(on),
       grab: (...at) => one.grab(...at),
       drag: (ray) => one.drag(ray),
     });
-    const grabbables = [this.tools.clip, free(sensor.grabbable), free(this.objects)];
-    new Pointer(this.view, canvas, grabbables, (place) => {
-      if (!toolBox.clicked(place)) void picker.pick(place.screen, sensor.body.object.position);
+    const grabbables = [this.tools.clip, unlessActive(sensor.grabbable), unlessActive(this.objects)];
+    new Pointer(this.view, canvas, grabbables, (click) => {
+      if (!toolBox.clicked(click)) void picker.pick(click.screen, sensor.body.object.position);
     });
     listenToKeys({
       driver: sensor.driver,
       escape: () => {
         picker.hide();
-        toolBox.putAll();
+        toolBox.close();
       },
       shortcut: (key) => this.shortcut(key),
     });

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// window.adasplats: for tests, and for whoever likes the console.
+// window.adasplats: for tests and for the console.
 
 import { Vector3 } from 'three';
 import type { CameraMode } from './driving/camera_rig';
@@ -12,13 +12,13 @@ import type { DrivenSensor } from './driving/driven_sensor';
 import type { SidePanel } from './panels/side_panel';
 import type { LidarPanel } from './panels/lidar_panel';
 import type { Live } from './server/live';
-import { kScanPointWords, type ScanPacket } from './server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from './server/binary';
 import type { Pose } from './server/protocol';
 import type { Playback } from './playback';
 import type { Tools } from './tools/tools';
 import type { WorldObjects } from './picture/world_objects';
 import type { ScanCloud } from './picture/scan_cloud';
-import type { ScanRate } from './panels/scan_rate';
+import type { ScanRate } from './live_scans';
 import type { SceneView } from './picture/scene_view';
 import { kColorModes } from './picture/shaders';
 
@@ -89,8 +89,8 @@ function workState({ view, playback, tools, objects }: HandleParts) {
 }
 
 function scanState(packet: ScanPacket) {
-  const { words, number, points, rings, columns, rays, seconds, pose } = packet;
-  const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+  const { number, points, rings, columns, rays, seconds, pose } = packet;
+  const floats = floatsOf(packet);
   let maxRange_m = 0;
   for (let i = 0; i < floats.length; i += kScanPointWords)
     maxRange_m = Math.max(maxRange_m, floats[i] ** 2 + floats[i + 1] ** 2 + floats[i + 2] ** 2);
@@ -114,13 +114,12 @@ function actionsOf(parts: HandleParts) {
       view.moved();
     },
     command: () => parts.dialog.command,
-    /** Echoes of the live scan within `reach_m` of a place. */
-    echoesNear: (place: number[], reach_m: number) => {
+    /** Number of echoes of the live scan within `reach_m` of a position. */
+    echoesNear: (position: number[], reach_m: number) => {
       const { packet, object } = parts.cloud;
       if (!packet) return 0;
-      const { words } = packet;
-      const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
-      const middle = new Vector3(...place);
+      const floats = floatsOf(packet);
+      const middle = new Vector3(...position);
       const echo = new Vector3();
       let found = 0;
       for (let i = 0; i < floats.length; i += kScanPointWords) {
@@ -135,7 +134,7 @@ function actionsOf(parts: HandleParts) {
 
 function picturesOf(view: SceneView) {
   return {
-    /** The place of a point on the page, in pixels; null behind the eye. */
+    /** Position of a scene point on the page, in pixels; null behind the camera. */
     project: (x: number, y: number, z: number) => {
       const at = new Vector3(x, y, z).project(view.rig.camera);
       const { left, top, width, height } = byId('view').getBoundingClientRect();
@@ -147,7 +146,7 @@ function picturesOf(view: SceneView) {
       const ratio = view.stage.pixelRatio;
       return Array.from(view.stage.read(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1));
     },
-    /** Colours of `columns` x `rows` pixels all over the canvas. */
+    /** Colours of an even grid of `columns` x `rows` pixels of the canvas. */
     pixels: (columns: number, rows: number) => {
       view.drawNow();
       const { x: width, y: height } = view.stage.pixels;

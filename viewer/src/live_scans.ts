@@ -1,18 +1,48 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scans as they come: the newest is shown, and the server told when the page is ready for more.
+// Live scans: shows the newest and requests the next.
 
 import { Live, type LiveEvents } from './server/live';
 import { showBanner } from './panels/notices';
 import type { ScanPacket } from './server/binary';
 import { ScanCloud } from './picture/scan_cloud';
-import { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';
 
 const kAliveMs = 1500;
-/** Scans a second that a page takes without having drawn them. */
-const kEnoughPerSecond = 12;
+const kWindowMs = 3000;
+/** Below this rate, scans are requested before the last one was drawn. */
+const kSlowScansPerSecond = 12;
+
+/** The rate of scans over the last kWindowMs. */
+export class ScanRate {
+  received = 0;
+  private times: number[] = [];
+
+  count(now: number) {
+    ++this.received;
+    this.times.push(now);
+    this.forget(now);
+  }
+
+  restart() {
+    this.times = [];
+  }
+
+  perSecond(now: number): number {
+    this.forget(now);
+    if (this.times.length < 2) return 0;
+    const first = this.times[0];
+    const last = this.times[this.times.length - 1];
+    // A pause after the last scan counts once it is longer than usual.
+    const usual = (last - first) / (this.times.length - 1);
+    return ((this.times.length - 1) * 1000) / (last - first + Math.max(0, now - last - usual));
+  }
+
+  private forget(now: number) {
+    while (this.times.length > 0 && this.times[0] < now - kWindowMs) this.times.shift();
+  }
+}
 
 export class LiveScans {
   readonly live: Live;
@@ -20,8 +50,8 @@ export class LiveScans {
   readonly rate = new ScanRate();
   private newest: ScanPacket | null = null;
   private lastFrameMs = 0;
-  /** Scans for which the server has not been told that the page is ready again. */
-  private owed = 0;
+  /** Received scans for which no 'ready' message has been sent. */
+  private unanswered = 0;
 
   constructor(
     private readonly view: SceneView,
@@ -40,7 +70,7 @@ export class LiveScans {
     });
   }
 
-  /** In each frame: shows what came since the last. Whether something did. */
+  /** Called in each frame: shows the newest scan. Returns whether a new one arrived. */
   step(): boolean {
     this.lastFrameMs = performance.now();
     const scan = this.newest;
@@ -48,15 +78,15 @@ export class LiveScans {
     this.newest = null;
     this.cloud.set(scan);
     this.view.invalidate();
-    this.payReady();
+    this.sendReady();
     return true;
   }
 
   private connection(connected: boolean) {
-    showBanner(connected ? null : 'Not connected: trying again');
+    showBanner(connected ? null : 'Connection lost, reconnecting');
     document.body.classList.toggle('offline', !connected);
     this.rate.restart();
-    this.owed = 0;
+    this.unanswered = 0;
     if (connected) this.view.retryFetches();
   }
 
@@ -65,14 +95,14 @@ export class LiveScans {
     this.rate.count(now);
     this.newest = scan;
     this.view.invalidate();
-    ++this.owed;
-    // A page that draws slowly need not make the LiDAR slow, nor be flooded; one that does not
-    // draw at all (in the background) takes nothing.
-    const slow = this.rate.perSecond(now) < kEnoughPerSecond;
-    if (slow && now - this.lastFrameMs < kAliveMs) this.payReady();
+    ++this.unanswered;
+    // A slow page must not slow the LiDAR down, nor receive more scans than it can handle. A page
+    // in the background, which does not draw at all, requests none.
+    const slow = this.rate.perSecond(now) < kSlowScansPerSecond;
+    if (slow && now - this.lastFrameMs < kAliveMs) this.sendReady();
   }
 
-  private payReady() {
-    for (; this.owed > 0; --this.owed) this.live.ready();
+  private sendReady() {
+    for (; this.unanswered > 0; --this.unanswered) this.live.ready();
   }
 }

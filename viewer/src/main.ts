@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Starts the page: reads the scene, as soon as somebody answers.
+// Starts the page once the server has sent the scene.
 
-// First: it asks for what is needed while the rest of the scripts begins.
-import { askOnce } from './server/early';
+// First import: sends its requests while the other scripts start.
+import { fetchOnce } from './server/early';
 import { App } from './app';
 import { showBanner } from './panels/notices';
 import { parseScene, ProtocolError, type SceneInfo } from './server/protocol';
@@ -14,12 +14,12 @@ const kPauseMs = 1000;
 async function readScene(): Promise<SceneInfo> {
   for (;;) {
     try {
-      const reply = await askOnce('scene.json');
+      const reply = await fetchOnce('scene.json');
       if (reply.ok) return parseScene(await reply.json());
-      showBanner(`The server answers ${reply.status}`);
+      showBanner(`The server answered with status ${reply.status}`);
     } catch (error) {
       const odd = error instanceof ProtocolError || error instanceof SyntaxError;
-      showBanner(odd ? `The server sent something odd: ${error.message}` : 'Waiting for the server');
+      showBanner(odd ? `Invalid data from the server: ${error.message}` : 'Waiting for the server');
     }
     await new Promise((resolve) => window.setTimeout(resolve, kPauseMs));
   }

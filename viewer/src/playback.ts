@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Plays a recording: the sensor goes its way again, with the scans that were recorded, those that
-// are simulated on it, or both.
+// Plays a recording: moves the sensor along its trajectory and shows the recorded scans, the scans
+// simulated there, or both.
 
 import type { DrivenSensor } from './driving/driven_sensor';
 import { Timeline, tracksOf } from './driving/timeline';
@@ -15,8 +15,8 @@ import type { SceneView } from './picture/scene_view';
 export const kScanSources = ['simulated', 'recorded', 'both'] as const;
 export type ScanSource = (typeof kScanSources)[number];
 
-/** Scans that are asked for before they are due. */
-const kAhead = 3;
+/** Number of scans to prefetch. */
+const kPrefetched = 3;
 
 export interface PlaybackParts {
   view: SceneView;
@@ -24,7 +24,7 @@ export interface PlaybackParts {
   live: ScanCloud;
   recorded: ScanCloud;
   failed(error: unknown): void;
-  /** Another scan is shown. */
+  /** Called when another scan is shown. */
   shown(): void;
 }
 
@@ -33,7 +33,7 @@ export class Playback {
   readonly timeline: Timeline | null;
   source: ScanSource;
   private readonly scans = new RecordedScans();
-  /** Among all of the scene; -1: none is wanted. */
+  /** Index among all scans of the scene; -1: none. */
   private wanted = -1;
   private loading = false;
 
@@ -46,7 +46,7 @@ export class Playback {
     this.source = scene.can_simulate || scene.scans.length === 0 ? 'simulated' : 'recorded';
   }
 
-  /** The scan that stands for what is shown: for the range image and to be saved. */
+  /** The scan for the range image and for saving. */
   get packet(): ScanPacket | null {
     const { live, recorded } = this.parts;
     return this.source === 'recorded' ? recorded.packet : live.packet;
@@ -61,7 +61,7 @@ export class Playback {
     const { live, recorded } = this.parts;
     live.object.visible = source !== 'recorded';
     recorded.object.visible = source !== 'simulated';
-    // Two clouds on each other are told apart by their colours.
+    // One plain colour distinguishes the recorded cloud from the live one.
     recorded.isPlain = source === 'both';
     this.showScan();
     this.parts.view.invalidate();
@@ -91,7 +91,7 @@ export class Playback {
     else timeline.play();
   }
 
-  /** In each frame. */
+  /** Called in each frame. */
   step(dt: number) {
     const { timeline } = this;
     if (!timeline?.playing) return;
@@ -113,11 +113,11 @@ export class Playback {
     this.wanted = scans[number].index;
     void this.load();
     if (timeline.playing)
-      for (const { index } of scans.slice(number + 1, number + 1 + kAhead))
+      for (const { index } of scans.slice(number + 1, number + 1 + kPrefetched))
         this.scans.get(index).catch(() => {});
   }
 
-  /** The one that is wanted; one that is wanted meanwhile comes next. */
+  /** Loads the wanted scan, then any other that was requested in the meantime. */
   private async load() {
     const { recorded, view } = this.parts;
     if (this.loading) return;

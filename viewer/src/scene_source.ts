@@ -1,23 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The scene that is shown: loaded until that succeeds, and read again from a server that came back.
+// The scene: retries until it is loaded, and reads it again after a reconnect.
 
 import { byId } from './panels/dom';
 import { showBanner } from './panels/notices';
-import { forgetEarly } from './server/early';
+import { dropEarly } from './server/early';
 import { parseScene, type SceneInfo } from './server/protocol';
 import type { SceneView } from './picture/scene_view';
 
 const kPauseMs = 2000;
 
 export interface SceneEvents {
-  /** Its layers are there. */
+  /** Called when all layers are loaded. */
   loaded(): void;
   failed(error: unknown): void;
 }
 
-/** Of what nothing that the page holds would be worth keeping, were it another. */
+/** The part of a scene whose change requires reloading the page. */
 function foundations(scene: SceneInfo): string {
   return JSON.stringify([scene.sensors, scene.can_simulate, scene.origin_m]);
 }
@@ -49,10 +49,10 @@ export class SceneSource {
     this.events.loaded();
   }
 
-  /** A server that came back may serve another scene. Rejects while nobody answers. */
+  /** The restarted server may serve another scene. Rejects while the server does not answer. */
   async readAgain() {
-    showBanner('Not connected: trying again');
-    forgetEarly();
+    showBanner('Connection lost, reconnecting');
+    dropEarly();
     const reply = await fetch('scene.json');
     if (!reply.ok) throw new Error(`scene.json: ${reply.status}`);
     const scene = parseScene(await reply.json());

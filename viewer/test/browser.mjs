@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A headless Chromium, and the page in it with everything noted that a page must not do.
+// Opens the page in headless Chromium and records faults.
 import { accessSync, constants } from 'node:fs';
 import { delimiter, join } from 'node:path';
 
@@ -27,7 +27,7 @@ function isProgram(path) {
   }
 }
 
-/** CHROMIUM names another browser. */
+/** Path of Chromium, or of the browser that CHROMIUM names. */
 export function findBrowser() {
   const names = [process.env.CHROMIUM, 'chromium', 'chromium-browser', 'google-chrome'].filter(
     Boolean,
@@ -38,13 +38,13 @@ export function findBrowser() {
 }
 
 /**
- * {page, close(), faults: what must stay empty, offline: whether a lost server is expected}.
- * `files`: a folder with a page to be used in place of the server's, or null; `prepare(page)` is
- * awaited before anything is loaded.
+ * Returns {page, close(), faults: list that must stay empty, offline: whether connection errors are
+ * expected}. `files`: a folder with a page that replaces the server's, or null; `prepare(page)` is
+ * awaited before the page loads.
  */
 export async function openPage(url, size, files = null, prepare = async () => {}) {
   const { chromium } = await import('playwright-core');
-  // Chromium takes a page that a test put in place for one from elsewhere.
+  // Chromium treats a replaced page as one of another origin.
   const flags = files ? [...kFlags, '--disable-features=LocalNetworkAccessChecks'] : kFlags;
   const browser = await chromium.launch({
     executablePath: findBrowser(),
@@ -60,7 +60,7 @@ export async function openPage(url, size, files = null, prepare = async () => {}
   page.on('request', (request) => {
     const to = new URL(request.url());
     if (!['data:', 'blob:'].includes(to.protocol) && to.host !== own.host)
-      seen.faults.push(`asked ${to}`);
+      seen.faults.push(`request to ${to}`);
   });
   page.on('pageerror', (error) => seen.faults.push(`exception: ${error.message}`));
   page.on('console', (message) => {
@@ -68,7 +68,7 @@ export async function openPage(url, size, files = null, prepare = async () => {}
     const lost = /ERR_CONNECTION|WebSocket|Failed to load resource|ERR_EMPTY_RESPONSE/.test(
       message.text(),
     );
-    // Chromium's own remark about drawing without a GPU and reading pixels back.
+    // Chromium warns about reading pixels back without a GPU.
     if (/GPU stall due to ReadPixels|GroupMarkerNotSet/.test(message.text())) return;
     if (!(seen.offline && lost)) seen.faults.push(`console: ${message.text()}`);
   });

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What tests of the page share: servers, a page with the questions that one asks it, and pictures.
+// Shared by the tests of the page: servers, queries of the page, and tests of pixels.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { dirname, join } from 'node:path';
+import { mkdirSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
+
+import { findBrowser } from './browser.mjs';
 
 export const kSize = { width: 1100, height: 760 };
 const kSkipped = 77;
@@ -17,11 +20,39 @@ export function skip(why) {
   process.exit(kSkipped);
 }
 
+/** Skips the test without Chromium or packages; creates the folder of screenshots. */
+export async function requireBrowser({ shots }, ...packages) {
+  if (!findBrowser()) skip('Chromium not found (set CHROMIUM to its path)');
+  for (const name of ['playwright-core', ...packages])
+    await import(name).catch(() => skip(`${name} not found: run 'npm ci' in viewer/`));
+  if (shots) mkdirSync(shots, { recursive: true });
+}
+
+/**
+ * Splits the command line into `count` words and options: --shots FOLDER, --page FOLDER and those in
+ * `more`, an object of functions that take a value into the options. Exits with 64 on other counts.
+ */
+export function readArguments(usage, count, defaults, more) {
+  const options = { shots: null, page: null, ...defaults };
+  const words = [];
+  const given = process.argv.slice(2);
+  while (given.length > 0) {
+    const word = given.shift();
+    const name = word.slice(2);
+    if (word === '--shots' || word === '--page') options[name] = resolve(given.shift() ?? '.');
+    else if (word.startsWith('--') && more[name]) more[name](options, given.shift());
+    else words.push(word);
+  }
+  if (words.length === count) return { options, words };
+  console.error(`usage: ${usage} [--shots FOLDER] [--page FOLDER]`);
+  return process.exit(64);
+}
+
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** A server, that can be ended and started again at the same address. */
+/** A server that can be restarted at the same address. */
 class Server {
-  /** `words` of the command, to which the port is added. `program`: null for the made-up one. */
+  /** `words`: the command without its port. `program`: null for the mock server. */
   constructor(words, program) {
     this.words = words;
     this.program = program;
@@ -31,19 +62,19 @@ class Server {
   async start() {
     const [command, ...words] = [...this.words, '--port', String(this.port)];
     this.child = spawn(command, words, { stdio: ['ignore', 'pipe', 'pipe'] });
-    let said = '';
+    let output = '';
     this.ended = new Promise((done) => this.child.on('exit', done));
     this.url = await new Promise((found, failed) => {
       const read = (text) => {
-        said += text;
-        const address = said.match(/http:\/\/127\.0\.0\.1:(\d+)\/\w+\//);
+        output += text;
+        const address = output.match(/http:\/\/127\.0\.0\.1:(\d+)\/\w+\//);
         if (!address) return;
         this.port = Number(address[1]);
         found(address[0]);
       };
       this.child.stdout.on('data', read);
       this.child.stderr.on('data', read);
-      void this.ended.then((code) => failed(new Error(`the server ended with ${code}: ${said}`)));
+      void this.ended.then((code) => failed(new Error(`the server ended with ${code}: ${output}`)));
     });
     return this.url;
   }
@@ -58,7 +89,7 @@ export function realServer(program, model, more) {
   return new Server([program, 'view', model, '--token', kToken, '--no-browser', ...more], program);
 }
 
-export function madeUpServer(page, ...more) {
+export function mockServer(page, ...more) {
   const script = join(dirname(fileURLToPath(import.meta.url)), 'mock_server.mjs');
   return new Server([process.execPath, script, page, '--count', '120000', ...more], null);
 }
@@ -68,12 +99,12 @@ export class Check {
     Object.assign(this, { server, seen, scene, shots, page: seen.page, failed: 0, passed: 0 });
   }
 
-  /** A named part of the test: what fails is told, and the rest goes on. */
+  /** Runs a named part of the test; reports a failure and continues. */
   async part(name, body) {
     const began = Date.now();
     try {
       await body();
-      assert.deepEqual(this.seen.faults, [], 'the page did what it must not');
+      assert.deepEqual(this.seen.faults, [], 'the page caused faults');
       ++this.passed;
       console.log(`ok    ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
     } catch (error) {
@@ -86,7 +117,7 @@ export class Check {
 
   async shot(name) {
     if (!this.shots) return;
-    // Pictures for people: what was asked for has come.
+    // Wait for pending nodes, so that screenshots are complete.
     await this.settled().catch(() => {});
     await this.page.screenshot({ path: join(this.shots, `${name}.png`) });
   }
@@ -105,39 +136,39 @@ export class Check {
       const state = await this.state();
       if (holds(state)) return state;
       if (Date.now() > end)
-        throw new Error(`${what}: not within ${patience / 1000} s; ${JSON.stringify(state)}`);
+        throw new Error(`${what}: timed out after ${patience / 1000} s; ${JSON.stringify(state)}`);
       await sleep(60);
     }
   }
 
-  /** A part of the page comes to say something. */
-  async says(part, words, patience = kPatienceMs) {
+  /** Waits until the text of an element matches. */
+  async hasText(selector, pattern, patience = kPatienceMs) {
     const end = Date.now() + patience;
     for (;;) {
-      const text = await this.page.textContent(part);
-      if (words.test(text)) return;
-      if (Date.now() > end) throw new Error(`${part} says: ${text}, not ${words}`);
+      const text = await this.page.textContent(selector);
+      if (pattern.test(text)) return;
+      if (Date.now() > end) throw new Error(`${selector} has the text: ${text}, expected ${pattern}`);
       await sleep(60);
     }
   }
 
-  /** All nodes have come that the camera wants, and the picture rests. */
+  /** Waits until all nodes for the camera are loaded and the picture is at rest. */
   async settled() {
     await sleep(350);
-    await this.until('all nodes there', (s) => !s.loading && s.elements > 0);
+    await this.until('all nodes loaded', (s) => !s.loading && s.elements > 0);
     await sleep(450);
-    return this.until('all nodes there', (s) => !s.loading);
+    return this.until('all nodes loaded', (s) => !s.loading);
   }
 
-  /** Whose number is beyond all that is under way: made with what was asked for before. */
+  /** A scan simulated with the current pose and settings: later than all scans in flight. */
   async freshScan() {
     const before = await this.state();
-    const there = (s) => Math.hypot(...[0, 1].map((i) => s.scan.pose[i] - s.pose[i])) < 0.01;
+    const isAtPose = (s) => Math.hypot(...[0, 1].map((i) => s.scan.pose[i] - s.pose[i])) < 0.01;
     const isFresh = (s) =>
       s.scansReceived >= before.scansReceived + 4 &&
       s.scan &&
       s.scan.number !== before.scan?.number &&
-      there(s);
+      isAtPose(s);
     return (await this.until('a new scan', isFresh)).scan;
   }
 
@@ -145,7 +176,7 @@ export class Check {
     return this.call('pixels', 110, 70);
   }
 
-  /** Looks at the middle of the scene from so many times its size. */
+  /** Looks at the middle of the scene from a distance of `times` its size. */
   async lookFrom(times) {
     const [low, high] = this.scene.middle_box;
     const middle = low.map((v, i) => (v + high[i]) / 2);
@@ -167,7 +198,7 @@ export function changed(a, b) {
   return a.filter((p, i) => p.some((v, c) => Math.abs(v - b[i][c]) > 12)).length / a.length;
 }
 
-/** Of these classes so many are seen: pixels in their colour, however lit. */
+/** The classes that are visible: with pixels of their hue, at any brightness. */
 export function classesSeen(pixels, classes) {
   const unit = (c) => {
     const length = Math.hypot(...c);

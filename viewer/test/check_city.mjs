@@ -1,28 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A city on disk in a real browser, before the real server: how soon there is a picture, how much
-// memory page and server take, and whether driving across tiles ever shows a hole. What is drawn is
-// held against the same city when all of it is in the server's memory.
+// Tests a city in a browser against the real server: time to the first picture, memory of page and
+// server, and no holes when driving across tiles. Compares the picture with the same city loaded into
+// the server's memory.
 //
 // Usage: check_city.mjs PROGRAM CITY WHOLE [--shots FOLDER] [--page FOLDER] [--metres N]
-//   CITY: with levels of detail; WHOLE: the same without any, or a model of all of it, or `none`;
-//   --metres: how far is driven (40).
-// Exit code 77, and a message, where there is no Chromium or no node_modules.
+//   CITY: with levels of detail; WHOLE: the same city without them or as one model, or `none`
+//   --metres: distance to drive (40)
+// Exits with code 77 and a message if Chromium or node_modules is missing.
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
-import { Check, changed, isBackground, kSize, realServer, shareOf, skip, sleep } from './check.mjs';
+import { openPage } from './browser.mjs';
+import {
+  Check,
+  changed,
+  isBackground,
+  kSize,
+  readArguments,
+  realServer,
+  requireBrowser,
+  shareOf,
+  skip,
+  sleep,
+} from './check.mjs';
 
-/** What is promised is 3 s on a machine with nothing else to do; others may run beside the test. */
+/** The target is 3 s on an idle machine; other tests may run at the same time. */
 const kFirstPictureMs = 15_000;
 const kPageMegabytes = 500;
-/** What a first picture needs of a city of any size: a block of its table, nodes of few elements. */
-const kMostEarlyBytes = 4e6;
-/** Of the places of the picture, that may be behind in a moment: an edge that is a pixel off. */
-const kMostHoles = 0.01;
+/** A first picture of any city needs one block of its table and a few small nodes. */
+const kMaxEarlyBytes = 4e6;
+/** Maximum fraction of pixels without a surface that appears later; edges may be off by a pixel. */
+const kMaxHoles = 0.01;
 const kStep_m = 4;
 const kMegabyte = 1e6;
 
@@ -33,7 +44,7 @@ function serverBytes(t) {
   return 1024 * Number(status.match(/VmHWM:\s+(\d+) kB/)[1]);
 }
 
-/** JavaScript's memory after what nobody holds was collected, and the elements that the GPU has. */
+/** JavaScript's memory after garbage collection, and the elements on the GPU. */
 async function pageBytes(t) {
   const client = await t.page.context().newCDPSession(t.page);
   await client.send('HeapProfiler.collectGarbage');
@@ -44,7 +55,7 @@ async function pageBytes(t) {
   return usedSize + embedderHeapUsedSize + backingStorageSize + (await t.state()).loadedBytes;
 }
 
-/** Of the city, with the bytes of each. */
+/** Requests for nodes and blocks that ended before a time, with their bytes. */
 async function requests(t, before) {
   const all = await t.page.evaluate(() =>
     performance.getEntriesByType('resource').map((e) => ({
@@ -56,18 +67,18 @@ async function requests(t, before) {
   return all.filter(({ path, ended }) => path.startsWith('layers/') && ended <= before);
 }
 
-async function asksForLittle(t, firstPictureMs) {
+async function requestsFewBytes(t, firstPictureMs) {
   const early = await requests(t, firstPictureMs);
   const bytes = early.reduce((sum, r) => sum + r.bytes, 0);
-  console.log(`      ${early.length} requests for ${bytes} bytes of the city before it`);
-  assert.ok(bytes < kMostEarlyBytes, `${bytes} bytes before the first picture`);
+  console.log(`      ${early.length} requests for ${bytes} bytes before the first picture`);
+  assert.ok(bytes < kMaxEarlyBytes, `${bytes} bytes before the first picture`);
 }
 
 async function opens(t, began) {
   await t.until('a picture', (s) => s.firstPictureMs !== null);
   const took = Date.now() - began;
   const { firstPictureMs } = await t.state();
-  await asksForLittle(t, firstPictureMs);
+  await requestsFewBytes(t, firstPictureMs);
   console.log(
     `      first picture ${took} ms after the command, ${Math.round(firstPictureMs)} ms after the page's load`,
   );
@@ -76,7 +87,7 @@ async function opens(t, began) {
   const { elements } = await t.settled();
   assert.ok(elements > 0);
   const paths = (await requests(t, Infinity)).map((r) => r.path);
-  assert.equal(new Set(paths).size, paths.length, 'a node was asked for twice');
+  assert.equal(new Set(paths).size, paths.length, 'a node was requested twice');
   assert.ok(shareOf(await t.pixels(), (p) => !isBackground(p)) > 0.1, 'little is drawn');
   await t.shot('1-open');
 }
@@ -86,36 +97,35 @@ async function showScan(t, on) {
   await (on ? box.check() : box.uncheck());
 }
 
-/** Looks down on the way that it drives, from above and behind. */
-async function standAt(t, x, y, z, ahead) {
-  // The eye stays where it is put, wherever the sensor goes.
+/** Looks ahead from above and behind. */
+async function lookFrom(t, x, y, z, ahead) {
+  // In this mode the camera does not follow the sensor.
   await t.call('setCameraMode', 'orbit');
   const eye = [x - 14 * ahead[0], y - 14 * ahead[1], z + 16];
   await t.call('setCamera', { eye, target: [x + 6 * ahead[0], y + 6 * ahead[1], z - 2] });
 }
 
-/** Where a picture has nothing, that of the same place has something once all nodes are there. */
+/** Fraction of pixels that are background now but not once all nodes are loaded. */
 function holes(now, later) {
   return now.filter((p, i) => isBackground(p) && !isBackground(later[i])).length / now.length;
 }
 
-/** Drives through the city and back; at each place what is seen at once has no more holes than what is
- *  seen when all nodes have come. */
+/** Drives through the city. At each step, the immediate picture has no holes compared to the complete one. */
 async function drives(t, metres) {
   const [x, y, z] = t.scene.start_pose;
   const [low, high] = t.scene.middle_box;
   const ahead = (low[0] + high[0]) / 2 > x ? [1, 0] : [-1, 0];
   await showScan(t, false);
   let worst = 0;
-  for (let way = 0; way <= metres; way += kStep_m) {
-    await standAt(t, x + way * ahead[0], y, z, ahead);
+  for (let driven = 0; driven <= metres; driven += kStep_m) {
+    await lookFrom(t, x + driven * ahead[0], y, z, ahead);
     const now = await t.pixels();
-    if (t.shots && way % (4 * kStep_m) === 0)
-      await t.page.screenshot({ path: join(t.shots, `2-drive-${way}.png`) });
+    if (t.shots && driven % (4 * kStep_m) === 0)
+      await t.page.screenshot({ path: join(t.shots, `2-drive-${driven}.png`) });
     await t.settled();
     const share = holes(now, await t.pixels());
     worst = Math.max(worst, share);
-    assert.ok(share < kMostHoles, `${share} of the picture are holes after ${way} m`);
+    assert.ok(share < kMaxHoles, `${share} of the picture are holes after ${driven} m`);
   }
   console.log(`      at most ${(100 * worst).toFixed(2)} % of a picture came later`);
 }
@@ -126,7 +136,7 @@ async function staysSmall(t) {
   console.log(
     `      page ${megabytes(bytes)} with ${loadedNodes} nodes and ${elements} elements drawn; server ${megabytes(serverBytes(t))}`,
   );
-  assert.ok(bytes < kPageMegabytes * kMegabyte, `the page takes ${megabytes(bytes)}`);
+  assert.ok(bytes < kPageMegabytes * kMegabyte, `the page uses ${megabytes(bytes)}`);
 }
 
 async function simulates(t) {
@@ -141,9 +151,9 @@ async function simulates(t) {
 
 async function picks(t) {
   const [x, y, z] = t.scene.start_pose;
-  await standAt(t, x, y, z, [1, 0]);
+  await lookFrom(t, x, y, z, [1, 0]);
   await t.settled();
-  // A click is what the picture shows: without the scan's points it is the surface.
+  // Without the scan's points a click hits the surface.
   await showScan(t, false);
   const box = await t.page.locator('#view').boundingBox();
   for (const [u, v] of [
@@ -156,23 +166,23 @@ async function picks(t) {
     await sleep(700);
     if (await t.page.isVisible('#card')) break;
   }
-  await t.says('#card', /Splat[^]*Position/, 5000);
+  await t.hasText('#card', /Splat[^]*Position/, 5000);
 }
 
-/** Both show the same: the finest nodes hold the same splats. */
-async function looksLike(t, whole) {
+/** Both pictures are the same, because the finest nodes hold the same splats. */
+async function matches(t, whole) {
   const [x, y, z] = t.scene.start_pose;
   for (const side of [t, whole]) {
     await side.call('setRunning', false);
     await showScan(side, false);
     await side.call('setPose', t.scene.start_pose);
-    await standAt(side, x, y, z, [1, 0]);
+    await lookFrom(side, x, y, z, [1, 0]);
     await side.settled();
   }
   const share = changed(await t.pixels(), await whole.pixels());
-  console.log(`      ${(100 * share).toFixed(2)} % of the picture differ from all in memory`);
+  console.log(`      ${(100 * share).toFixed(2)} % of the pixels differ from the city in memory`);
   await whole.shot('4-whole');
-  assert.ok(share < 0.03, `${share} of the picture differ from all in memory`);
+  assert.ok(share < 0.03, `${share} of the pixels differ from the city in memory`);
 }
 
 async function opened(program, model, options) {
@@ -198,7 +208,7 @@ async function checkAll([program, city, whole], options) {
     }
     if (whole !== 'none') {
       const other = await opened(program, whole, options);
-      await t.part('looks like all in memory', () => looksLike(t, other.t));
+      await t.part('matches the city in memory', () => matches(t, other.t));
       await other.t.seen.close();
       await other.t.server.stop();
     }
@@ -209,34 +219,19 @@ async function checkAll([program, city, whole], options) {
   return t;
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, metres: 40 };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--metres') options.metres = Number(given.shift());
-    else words.push(word);
-  }
-  if (words.length === 3) {
-    const [program, city, whole] = words;
-    return { options, words: [resolve(program), resolve(city), whole === 'none' ? whole : resolve(whole)] };
-  }
-  console.error(
-    'usage: check_city.mjs PROGRAM CITY WHOLE [--shots FOLDER] [--page FOLDER] [--metres N]',
-  );
-  return process.exit(64);
-}
-
-const { options, words } = readArguments();
-if (!findBrowser()) skip('no Chromium (CHROMIUM names one)');
-await import('playwright-core').catch(() => skip(`no playwright-core: run 'npm ci' in viewer/`));
-if (options.shots) mkdirSync(options.shots, { recursive: true });
+const { options, words } = readArguments(
+  'check_city.mjs PROGRAM CITY WHOLE [--metres N]',
+  3,
+  { metres: 40 },
+  { metres: (options, value) => (options.metres = Number(value)) },
+);
+await requireBrowser(options);
 let failed = 1;
 try {
-  const t = await checkAll(words, options);
+  const t = await checkAll(
+    words.map((word) => (word === 'none' ? word : resolve(word))),
+    options,
+  );
   failed = t.failed;
   console.log(`${t.passed} passed, ${t.failed} failed`);
 } catch (error) {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Level of detail without a browser: a tree whose table and nodes come bit by bit is drawn without
-// holes at every step, and in the end as one that was there from the start.
+// Tests level of detail without a browser: a tree that is loaded step by step is drawn without holes at
+// every step, and in the end like a fully loaded one.
 //
 // Usage: check_lod.mjs
-// Exit code 77, and a message, without `npm ci` in viewer/.
+// Exits with code 77 and a message if `npm ci` was not run in viewer/.
 import assert from 'node:assert/strict';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -15,14 +15,14 @@ const kLevels = 7;
 const kSide_m = 1000;
 const kCount = 100;
 
-/** The page's sources as a module of Node. */
+/** Bundles sources of the page as a Node module. */
 async function load() {
   const { build } = await import('esbuild').catch(() => {
-    console.log(`skipped: no esbuild: run 'npm ci' in viewer/`);
+    console.log(`skipped: esbuild not found: run 'npm ci' in viewer/`);
     process.exit(kSkipped);
   });
   globalThis.window = globalThis;
-  const names = ['picture/lod', 'picture/node_table', 'server/node_store', 'server/binary'];
+  const names = ['picture/lod', 'picture/node_table', 'server/fetch_queue', 'server/binary'];
   const { outputFiles } = await build({
     stdin: {
       contents: `${names.map((n) => `export * from './src/${n}';`).join('\n')}
@@ -39,7 +39,7 @@ async function load() {
   return import(`data:text/javascript;base64,${bytes.toString('base64')}`);
 }
 
-/** Squares in squares, level after level. */
+/** A quadtree of kLevels levels. */
 function makeNodes() {
   const nodes = [];
   let row = [[0, 0]];
@@ -84,7 +84,7 @@ const kBlock = page.kBlockNodes;
 const rows = (block) => bytesOf(nodes.slice(block * kBlock, (block + 1) * kBlock));
 const parsed = (block) => page.parseNodes(rows(block), block, nodes.length);
 
-/** A tree of which nothing has come but, of its table, block 0. */
+/** A tree with only block 0 of its table loaded. */
 function emptyTree() {
   const table = new page.NodeTable(nodes.length);
   table.add(0, parsed(0));
@@ -110,15 +110,15 @@ function viewFrom(x, y, z) {
   };
 }
 
-/** Of each leaf in sight one node is drawn, itself or one above it. */
+/** For each visible leaf exactly one node is drawn: the leaf or an ancestor. */
 function checkNoHoles(tree, view, cut) {
   const drawn = new Set(cut.drawn.map((r) => r.node));
-  for (const node of drawn) assert.ok(tree.has(node), `node ${node} is drawn and not there`);
-  const whole = page.NodeTable.of(nodes);
+  for (const node of drawn) assert.ok(tree.has(node), `node ${node} is drawn but not loaded`);
+  const full = page.NodeTable.of(nodes);
   const walk = (node, above) => {
-    if (!view.frustum.intersectsBox(whole.box(node))) return;
+    if (!view.frustum.intersectsBox(full.box(node))) return;
     const covers = above + (drawn.has(node) ? 1 : 0);
-    const children = whole.childrenOf(node);
+    const children = full.childrenOf(node);
     if (children.length === 0) assert.equal(covers, 1, `leaf ${node} is drawn ${covers} times`);
     for (const child of children) walk(child, covers);
   };
@@ -137,8 +137,8 @@ async function test(name, body) {
   }
 }
 
-await test('a table in blocks is the whole table', () => {
-  const whole = page.NodeTable.of(nodes);
+await test('a table added block by block equals the full table', () => {
+  const full = page.NodeTable.of(nodes);
   const table = new page.NodeTable(nodes.length);
   const last = Math.ceil(nodes.length / kBlock) - 1;
   assert.ok(last > 2 && nodes.length % kBlock !== 0);
@@ -147,22 +147,22 @@ await test('a table in blocks is the whole table', () => {
     table.add(block, parsed(block));
   }
   for (let n = 0; n < nodes.length; ++n) {
-    assert.deepEqual(table.childrenOf(n), whole.childrenOf(n));
+    assert.deepEqual(table.childrenOf(n), full.childrenOf(n));
     assert.equal(table.node(n).count, kCount);
-    assert.ok(table.box(n).min.distanceTo(whole.box(n).min) < 1e-3);
+    assert.ok(table.box(n).min.distanceTo(full.box(n).min) < 1e-3);
   }
   assert.deepEqual(table.withAncestors([nodes.length - 1]).size, kLevels);
 });
 
-await test('tables that cannot be are refused', () => {
+await test('invalid tables are rejected', () => {
   assert.throws(() => page.parseNodes(rows(0).slice(1), 0, nodes.length), /bytes/);
-  assert.throws(() => page.parseNodes(rows(0), 1, nodes.length - 1000), /cannot be|bytes/);
-  const lies = nodes.slice(0, kBlock).map((n) => ({ ...n }));
-  lies[5].first_child = 5;
-  assert.throws(() => page.parseNodes(bytesOf(lies), 0, nodes.length), /children that cannot be/);
+  assert.throws(() => page.parseNodes(rows(0), 1, nodes.length - 1000), /invalid children|bytes/);
+  const invalid = nodes.slice(0, kBlock).map((n) => ({ ...n }));
+  invalid[5].first_child = 5;
+  assert.throws(() => page.parseNodes(bytesOf(invalid), 0, nodes.length), /invalid children/);
 });
 
-await test('comes bit by bit, without holes, and ends as if it had been there', () => {
+await test('a tree loaded step by step has no holes and ends like a fully loaded one', () => {
   for (const [x, y, z, budget] of [
     [500, 500, 20, 1e9],
     [100, 850, 5, 5000],
@@ -186,14 +186,14 @@ await test('comes bit by bit, without holes, and ends as if it had been there', 
         break;
       }
       for (const { block } of cut.blocks) tree.table.add(block, parsed(block));
-      // Some of them at a time, the most wanted first.
+      // A few nodes per round, in order of priority.
       for (const { node } of cut.wanted.slice(0, 40)) tree.there.add(node);
-      assert.ok(++rounds < 400, 'it never ends');
+      assert.ok(++rounds < 400, 'too many rounds');
     }
   }
 });
 
-await test('what one picture needs is asked for together', () => {
+await test('all nodes of a picture are requested together', () => {
   const view = viewFrom(500, 500, 20);
   const tree = emptyTree();
   let rounds = 0;
@@ -207,18 +207,18 @@ await test('what one picture needs is asked for together', () => {
     for (const { node } of wanted) tree.there.add(node);
     ++rounds;
   }
-  // The top of the table is there; the rest of it, and the nodes that it tells of.
+  // Block 0 is loaded. One round loads the other blocks, one their nodes.
   assert.ok(rounds <= 3, `${rounds} rounds for ${kLevels} levels`);
 });
 
-await test('a node is fetched once, however often it is wanted', async () => {
+await test('a node that is wanted repeatedly is fetched once', async () => {
   const asked = [];
   const queue = new page.FetchQueue((key, error) => assert.fail(`${key}: ${error}`));
   const wanted = new Set(Array.from({ length: 40 }, (_, i) => `${i}`));
   await new Promise((done) => {
     const want = () =>
       queue.want(
-        // Two pictures beside each other may want the same.
+        // Two pictures side by side may want the same nodes.
         [...wanted, ...wanted].map((key) => ({
           key,
           load: async () => {

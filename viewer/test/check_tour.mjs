@@ -1,32 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A customer's tour of the viewer, scripted: opens, follows, measures, clips, cuts a profile, plays
-// a recording, adds a layer, drags an object, looks at errors, saves a scan and a film, takes a
-// phone. What is on the screen and in the files is checked.
+// A scripted tour of the viewer: opens, follows, measures, clips, cuts a profile, plays a recording,
+// adds a layer, drags an object, shows errors, saves a scan and a film, fits a phone. Checks the
+// screen and the saved files.
 //
 // Usage: check_tour.mjs PROGRAM WORLD LAYER [--shots FOLDER] [--page FOLDER] [--with OPTION]...
-//   WORLD: a world file with one object at least, the first of which stands before the start;
-//   LAYER: a PLY of points; options for 'adasplats view': a sequence, and errors.
-// Exit code 77, and a message, where there is no Chromium or no node_modules.
+//   WORLD: a world file with at least one object; the first is in front of the start pose
+//   LAYER: a PLY file of points
+//   --with: options for 'adasplats view' that name a sequence and errors
+// Exits with code 77 and a message if Chromium or node_modules is missing.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
-import { Check, changed, isBackground, realServer, shareOf, skip, sleep } from './check.mjs';
+import { openPage } from './browser.mjs';
+import {
+  Check,
+  changed,
+  isBackground,
+  readArguments,
+  realServer,
+  requireBrowser,
+  shareOf,
+  skip,
+  sleep,
+} from './check.mjs';
 
 const kSize = { width: 1280, height: 800 };
 const kPhone = { width: 390, height: 844 };
-/** Far beyond what it takes: others may run beside the test. */
+/** Generous, because other tests may run at the same time. */
 const kFirstPictureMs = 15_000;
 
-/** Where places of the scene are on the page. */
-async function pageOf(t, ...place) {
-  const at = await t.call('project', ...place);
-  assert.ok(at, `${place} is behind the eye`);
+/** Position on the page of a point of the scene. */
+async function pageOf(t, ...point) {
+  const at = await t.call('project', ...point);
+  assert.ok(at, `${point} is behind the camera`);
   return at;
 }
 
@@ -47,7 +58,7 @@ async function opens(t) {
   assert.ok(behind > 5 && behind < 20, `${behind} m behind the sensor`);
   await t.until('live scans', (s) => s.connected && s.scansReceived > 2);
   await t.settled();
-  assert.equal(await t.page.isVisible('#loading'), false, 'the note of loading is still there');
+  assert.equal(await t.page.isVisible('#loading'), false, 'the note of loading is still visible');
   assert.ok(shareOf(await t.pixels(), (p) => !isBackground(p)) > 0.5, 'little is drawn');
   assert.match(await t.page.textContent('#legend'), /Scan: range, m/);
   assert.match(await t.page.textContent('#hints'), /drive/);
@@ -59,32 +70,32 @@ async function follows(t) {
   const before = await t.state();
   await t.page.focus('#view');
   await t.page.keyboard.down('w');
-  const after = await t.until('a way', (s) => distance(s.pose, before.pose) > 1);
+  const after = await t.until('a driven distance', (s) => distance(s.pose, before.pose) > 1);
   await t.page.keyboard.up('w');
   await t.page.keyboard.press(' ');
   const rest = await t.until('a stop', (s) => s.speed_m_s === 0);
   const eye = distance(rest.camera.eye, before.camera.eye);
-  assert.ok(eye > 0.7, `the eye moved ${eye} m, the sensor ${distance(after.pose, before.pose)} m`);
-  // How far it went is a matter of how fast this machine is; what follows is not.
+  assert.ok(eye > 0.7, `the camera moved ${eye} m, the sensor ${distance(after.pose, before.pose)} m`);
+  // The distance depends on the speed of the machine; the following parts need a fixed pose.
   await t.call('setPose', t.scene.start_pose);
   await t.freshScan();
 }
 
-/** Oracle: the ground that the server's own ray meets, by the page's projection of it. */
+/** Oracle: points on the known ground plane, projected to the page. */
 async function measures(t) {
   const { pose } = await t.state();
   const ground = pose[2] - 1.73;
   const [x, y] = t.ahead;
-  const place = (ahead, left) => [
+  const groundPoint = (ahead, left) => [
     pose[0] + ahead * x - left * y,
     pose[1] + ahead * y + left * x,
     ground,
   ];
-  const ends = [place(4, -2.5), place(9, -1)];
+  const ends = [groundPoint(4, -2.5), groundPoint(9, -1)];
   await t.page.keyboard.press('m');
   for (const [i, end] of ends.entries()) {
     await t.page.mouse.click(...(await pageOf(t, ...end)));
-    await t.says('#tool', [/Click the second point/, /Distance/][i]);
+    await t.hasText('#tool', [/Click the second point/, /Distance/][i]);
   }
   const { measurements } = await t.until('a distance', (s) => s.measurements.length === 1);
   const { from, to, distance_m } = measurements[0];
@@ -124,7 +135,7 @@ async function cutsProfile(t) {
   for (const side of [3, -3]) {
     const end = [pose[0] + 7 * x - side * y, pose[1] + 7 * y + side * x, ground];
     await t.page.mouse.click(...(await pageOf(t, ...end)));
-    await t.says('#tool', side > 0 ? /Click where it ends/ : /elements on/);
+    await t.hasText('#tool', side > 0 ? /Click the end of the slice/ : /elements over/);
   }
   const { profilePoints } = await t.until('a profile', (s) => s.profilePoints > 5);
   const { path } = await download(t, () => t.page.click('#tool >> text=CSV'));
@@ -149,15 +160,15 @@ async function plays(t) {
   const rest = await t.until('a pause', (s) => !s.playing);
   await sleep(1500);
   const stopped = await t.state();
-  assert.equal(stopped.time_s, rest.time_s, 'time goes on');
+  assert.equal(stopped.time_s, rest.time_s, 'time advanced while paused');
   const trajectory = t.scene.scans.filter((s) => s.trajectory === 0);
-  await t.page.click('#timeline button[title^="One scan on"]');
+  await t.page.click('#timeline button[title^="Next scan"]');
   const stepped = await t.until('the next scan', (s) => s.time_s > rest.time_s);
   const number = trajectory.findIndex((s) => Math.abs(s.time_s - stepped.time_s) < 1e-3);
-  assert.ok(number > 0, `${stepped.time_s} s is the time of no scan`);
+  assert.ok(number > 0, `no scan at ${stepped.time_s} s`);
   await t.until('that scan', (s) => s.shownScan === number);
   const off = distance(stepped.pose.slice(0, 3), trajectory[number].pose.slice(0, 3));
-  assert.ok(off < 0.01, `the sensor is ${off} m from where the scan was taken`);
+  assert.ok(off < 0.01, `the sensor is ${off} m from the pose of the scan`);
   assert.match(await t.page.textContent('#timeline'), new RegExp(`scan ${number + 1} of`));
   await t.shot('5-play');
   await t.page.click('#scan-source [data-value=simulated]');
@@ -179,7 +190,7 @@ async function addsLayer(t, layer) {
   const drawn = await t.pixels();
   await t.page.locator(`label:has-text("${added.name}") input`).uncheck();
   await t.settled();
-  assert.ok(changed(drawn, await t.pixels()) > 0.02, 'the points of the file are not seen');
+  assert.ok(changed(drawn, await t.pixels()) > 0.02, 'the points of the file are not visible');
 }
 
 async function dragsObject(t) {
@@ -187,7 +198,7 @@ async function dragsObject(t) {
   const [object] = (await t.state()).objects;
   const before = object.pose.slice(0, 3);
   await t.freshScan();
-  // About its roof and its sides, above the ground: what is there is the car.
+  // A sphere around its roof and sides, above the ground, contains only echoes of the car.
   const echoesOnCar = ([x, y, z]) => t.call('echoesNear', [x, y, z + 1.6], 1.5);
   const echoes = await echoesOnCar(before);
   const at = await pageOf(t, before[0], before[1], before[2] + 0.7);
@@ -198,7 +209,7 @@ async function dragsObject(t) {
   await t.page.mouse.up();
   const after = (await t.state()).objects[0].pose.slice(0, 3);
   assert.ok(distance(after, before) > 1, `the object moved ${distance(after, before)} m`);
-  assert.equal(after[2], before[2], 'it left the ground');
+  assert.equal(after[2], before[2], 'the object left the ground');
   await t.freshScan();
   const there = await echoesOnCar(after);
   const moved = distance(after, before).toFixed(2);
@@ -216,20 +227,20 @@ async function showsErrors(t) {
   for (const name of ['early', 'late', 'ghosts', 'holes']) assert.ok(names.includes(name), name);
   const all = await t.pixels();
   const hasHue = (p) => Math.max(...p) - Math.min(...p) > 30;
-  assert.ok(shareOf(all, hasHue) > 0.05, 'no errors are seen');
+  assert.ok(shareOf(all, hasHue) > 0.05, 'no errors are visible');
   await t.shot('8-errors');
   const errors = t.scene.layers.find((l) => l.kind === 'points' && l.has_errors && !l.part);
   await t.page.locator(`label:has-text("${errors.name}") input`).uncheck();
   await t.settled();
   const splats = await t.pixels();
-  assert.ok(shareOf(splats, hasHue) > 0.03, 'splats have no errors');
+  assert.ok(shareOf(splats, hasHue) > 0.03, 'splats show no errors');
   await t.shot('8-errors-on-splats');
   await t.page.selectOption('#color', 'class');
   await t.settled();
-  const usual = await t.pixels();
+  const usualColors = await t.pixels();
   await t.page.check('#color-blind');
   await t.settled();
-  assert.ok(changed(usual, await t.pixels()) > 0.1, 'the colours are the same');
+  assert.ok(changed(usualColors, await t.pixels()) > 0.1, 'the colours are the same');
   await t.shot('9-color-blind');
   await t.page.uncheck('#color-blind');
   await t.call('setRunning', true);
@@ -243,15 +254,15 @@ async function saves(t, program, folder) {
   const saved = await download(t, () => t.page.click('text=Save scan'));
   const ply = join(folder, saved.name);
   copyFileSync(saved.path, ply);
-  const told = execFileSync(program, ['info', ply], { encoding: 'utf8' });
-  assert.match(told.replace(/,/g, ''), new RegExp(`points +${scan.points}\\b`), told);
+  const info = execFileSync(program, ['info', ply], { encoding: 'utf8' });
+  assert.match(info.replace(/,/g, ''), new RegExp(`points +${scan.points}\\b`), info);
   await t.call('setRunning', true);
   await t.page.click('#film');
   await sleep(4000);
   const film = await download(t, () => t.page.click('#film'));
   const bytes = readFileSync(film.path);
   assert.match(film.name, /\.webm$/);
-  assert.equal(bytes.readUInt32BE(0), 0x1a45dfa3, 'no WebM');
+  assert.equal(bytes.readUInt32BE(0), 0x1a45dfa3, 'not a WebM file');
   assert.ok(bytes.length > 20_000, `${bytes.length} bytes of film`);
   console.log(`      scan of ${scan.points} points; film of ${Math.round(bytes.length / 1024)} KiB`);
 }
@@ -275,23 +286,7 @@ async function fitsPhone(t) {
   await t.shot('10-phone');
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, with: [] };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--with') options.with.push(given.shift());
-    else words.push(resolve(word));
-  }
-  if (words.length === 3) return { ...options, words };
-  console.error('usage: check_tour.mjs PROGRAM WORLD LAYER [--shots FOLDER] [--page FOLDER] [--with OPTION]');
-  return process.exit(64);
-}
-
-async function tour({ words: [program, world, layer], shots, page, ...options }, folder) {
+async function tour([program, world, layer], { shots, page, ...options }, folder) {
   const server = realServer(program, world, options.with);
   const url = await server.start();
   const scene = await (await fetch(`${url}scene.json`)).json();
@@ -301,7 +296,7 @@ async function tour({ words: [program, world, layer], shots, page, ...options },
   t.ahead = [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw)];
   try {
     await t.page.waitForFunction(() => window.adasplats !== undefined);
-    await t.part('opens behind the sensor, with everything on', () => opens(t));
+    await t.part('opens behind the sensor with scans, legend and hints', () => opens(t));
     await t.part('follows', () => follows(t));
     await t.part('measures', () => measures(t));
     await t.part('clips', () => clips(t));
@@ -309,7 +304,7 @@ async function tour({ words: [program, world, layer], shots, page, ...options },
     await t.part('plays a recording', () => plays(t));
     await t.part('adds a layer', () => addsLayer(t, layer));
     await t.part('drags an object', () => dragsObject(t));
-    await t.part('shows errors, and colours for all eyes', () => showsErrors(t));
+    await t.part('shows errors and a colour-blind palette', () => showsErrors(t));
     await t.part('saves a scan and a film', () => saves(t, program, folder));
     await t.part('fits a phone', () => fitsPhone(t));
   } finally {
@@ -319,14 +314,17 @@ async function tour({ words: [program, world, layer], shots, page, ...options },
   return t;
 }
 
-const options = readArguments();
-if (!findBrowser()) skip('no Chromium (CHROMIUM names one)');
-await import('playwright-core').catch(() => skip("no playwright-core: run 'npm ci' in viewer"));
-if (options.shots) mkdirSync(options.shots, { recursive: true });
+const { options, words } = readArguments(
+  'check_tour.mjs PROGRAM WORLD LAYER [--with OPTION]',
+  3,
+  { with: [] },
+  { with: (options, value) => options.with.push(value) },
+);
+await requireBrowser(options);
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-tour-'));
 let failed = 1;
 try {
-  const t = await tour(options, folder);
+  const t = await tour(words.map((word) => resolve(word)), options, folder);
   ({ failed } = t);
   console.log(`${t.passed} passed, ${t.failed} failed`);
 } catch (error) {

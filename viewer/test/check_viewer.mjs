@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The page in a real browser, before a real server: loads, draws, drives, scans, picks, survives.
+// Tests the page in a browser against a server: loading, drawing, driving, scans, picks, restarts.
 //
-// Usage: check_viewer.mjs PROGRAM MODEL [OPTIONS]    the program, and a model with classes
-//        check_viewer.mjs --mock PAGE [OPTIONS]      a built page, and a made-up server
-//   --shots FOLDER    leaves screenshots there
-//   --page FOLDER     takes a built page from there, not the one in the program
-//   --with OPTION     for 'adasplats view'; as often as wanted
+// Usage: check_viewer.mjs PROGRAM MODEL [OPTIONS]    the program and a model with classes
+//        check_viewer.mjs --mock PAGE [OPTIONS]      a built page and the mock server
+//   --shots FOLDER    save screenshots there
+//   --page FOLDER     use the built page in this folder, not the one in the program
+//   --with OPTION     pass an option to 'adasplats view'; repeatable
 //
-// Exit code 77, and a message, where there is no Chromium, no node_modules, or no viewer in the
-// program. Needs no GPU.
+// Exits with code 77 and a message if Chromium, node_modules or the viewer in the program is
+// missing. Needs no GPU.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import {
-  mkdirSync,
   mkdtempSync,
   readFileSync,
   rmSync,
@@ -23,18 +22,19 @@ import {
   writeFileSync,
 } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join, resolve } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { join, resolve } from 'node:path';
 
-import { findBrowser, openPage } from './browser.mjs';
+import { openPage } from './browser.mjs';
 import {
   Check,
   changed,
   classesSeen,
   isBackground,
   kSize,
-  madeUpServer,
+  mockServer,
+  readArguments,
   realServer,
+  requireBrowser,
   shareOf,
   skip,
   sleep,
@@ -102,7 +102,7 @@ async function checkDetail(t) {
     `far ${far.elements}, near ${near.elements} elements`,
   );
   console.log(
-    `      ${far.elements} elements from afar, ${near.elements} from near, ${near.loadedNodes} nodes loaded`,
+    `      ${far.elements} elements from far, ${near.elements} from near, ${near.loadedNodes} nodes loaded`,
   );
 }
 
@@ -162,12 +162,12 @@ async function checkDriving(t) {
   await t.call('setCameraMode', 'follow');
   const before = await t.state();
   await t.page.focus('#view');
-  const wayOf = (s) => Math.hypot(s.pose[0] - before.pose[0], s.pose[1] - before.pose[1]);
+  const distanceOf = (s) => Math.hypot(s.pose[0] - before.pose[0], s.pose[1] - before.pose[1]);
   // Cosine of half the angle between the poses.
   const turnOf = (s) =>
     Math.abs([3, 4, 5, 6].reduce((sum, i) => sum + s.pose[i] * before.pose[i], 0));
   await t.page.keyboard.down('w');
-  await t.until('a way', (s) => wayOf(s) > 5);
+  await t.until('a driven distance', (s) => distanceOf(s) > 5);
   await t.page.keyboard.down('a');
   await t.until('a turn', (s) => turnOf(s) < 0.995);
   await t.page.keyboard.up('a');
@@ -185,11 +185,11 @@ async function checkDriving(t) {
   const scan = await t.freshScan();
   assert.ok(
     Math.hypot(scan.pose[0] - rest.pose[0], scan.pose[1] - rest.pose[1]) < 0.1,
-    'the scan is from elsewhere',
+    'the scan has another pose',
   );
   await t.page.fill('#setting-max_range_m', '50');
   await t.page.keyboard.press('w');
-  // The height may still settle over the ground.
+  // The height above ground may still settle.
   assert.deepEqual(
     (await t.state()).pose.slice(0, 2),
     rest.pose.slice(0, 2),
@@ -214,9 +214,9 @@ async function checkDragging(t) {
   const moved = (await t.state()).pose;
   assert.ok(
     Math.hypot(moved[0] - pose[0], moved[1] - pose[1]) > 0.3,
-    'the sensor does not follow the mouse',
+    'the sensor did not follow the mouse',
   );
-  assert.ok(Math.abs(moved[2] - pose[2]) < 0.3, 'it left its plane');
+  assert.ok(Math.abs(moved[2] - pose[2]) < 0.3, 'the sensor left its plane');
 }
 
 async function checkSensors(t) {
@@ -228,15 +228,15 @@ async function checkSensors(t) {
   await t.until('the other sensor', (s) => s.sensor === other.name);
   const { scan } = await t.until('its scans', (s) => s.scan.rings === other.rings);
   assert.notEqual(scan.points, before.points);
-  const whole = await t.freshScan();
+  const full = await t.freshScan();
   await t.page.fill('#setting-max_range_m', '12');
   await t.page.keyboard.press('Enter');
   await t.until('the range', (s) => s.settings.max_range_m === 12);
   const cut = await t.freshScan();
-  assert.ok(cut.points < whole.points, `${cut.points} of ${whole.points} points`);
+  assert.ok(cut.points < full.points, `${cut.points} of ${full.points} points`);
   assert.ok(cut.maxRange_m < 12.5, `a point at ${cut.maxRange_m} m`);
   console.log(
-    `      ${before.rings} rings ${before.points} points; ${other.name}: ${whole.rings} rings ${whole.points} points, within 12 m ${cut.points}`,
+    `      ${before.rings} rings ${before.points} points; ${other.name}: ${full.rings} rings ${full.points} points, within 12 m ${cut.points}`,
   );
   await t.page.click('button:text-is("Reset")');
   await t.until('its own range again', (s) => s.settings.max_range_m !== 12);
@@ -244,7 +244,7 @@ async function checkSensors(t) {
   await t.until('the first sensor', (s) => s.sensor === t.scene.sensor);
 }
 
-async function checkRefusal(t) {
+async function checkRejection(t) {
   const before = await t.state();
   await t.call('setSetting', 'max_range_m', -5);
   await t.page.waitForSelector('#toast:not([hidden])');
@@ -300,7 +300,7 @@ async function checkScreenshot(t) {
   assert.ok(bytes.length > 5000, `${bytes.length} bytes`);
 }
 
-/** What the command makes is what was seen. */
+/** The copied command simulates the same scan as the page. */
 async function checkCommand(t, folder) {
   await t.call('setPose', t.scene.start_pose);
   await t.page.locator('#setting-noise').uncheck();
@@ -377,9 +377,9 @@ async function checkLayout(t) {
   await t.page.setViewportSize(kSize);
 }
 
-/** A page that gets nonsense shows what is right of the rest, and goes on. */
-async function checkNonsense(page) {
-  const server = madeUpServer(page, '--nonsense');
+/** The page reports malformed data and continues with valid data. */
+async function checkMalformed(page) {
+  const server = mockServer(page, '--malformed');
   const seen = await openPage(await server.start(), kSize);
   const t = new Check(server, seen, null, null);
   try {
@@ -416,7 +416,7 @@ async function checkAll(server, { shots, page }, folder) {
       await t.part('drives', () => checkDriving(t));
       await t.part('drags the sensor', () => checkDragging(t));
       await t.part('changes sensor and parameters', () => checkSensors(t));
-      await t.part('tells what the server refuses', () => checkRefusal(t));
+      await t.part('reports what the server rejects', () => checkRejection(t));
       await t.part('picks', () => checkPicking(t));
       await t.part('copies the command line', () => checkCommand(t, folder));
       await t.part('survives a restart', () => checkRestart(t));
@@ -430,42 +430,23 @@ async function checkAll(server, { shots, page }, folder) {
   return t;
 }
 
-function readArguments() {
-  const options = { shots: null, page: null, with: [] };
-  const words = [];
-  const given = process.argv.slice(2);
-  while (given.length > 0) {
-    const word = given.shift();
-    if (word === '--shots' || word === '--page')
-      options[word.slice(2)] = resolve(given.shift() ?? '.');
-    else if (word === '--with') options.with.push(given.shift());
-    else words.push(word);
-  }
-  if (words.length === 2) return { ...options, words };
-  console.error(
-    'usage: check_viewer.mjs PROGRAM MODEL | --mock PAGE [--shots FOLDER] [--page FOLDER] [--with OPTION]',
-  );
-  return process.exit(64);
-}
-
-const options = readArguments();
-const { shots, words } = options;
-if (!findBrowser()) skip('no Chromium (CHROMIUM names one)');
-for (const needed of ['playwright-core', 'ws'])
-  await import(needed).catch(() =>
-    skip(`no ${needed}: run 'npm ci' in ${dirname(dirname(fileURLToPath(import.meta.url)))}`),
-  );
-if (shots) mkdirSync(shots, { recursive: true });
+const { options, words } = readArguments(
+  'check_viewer.mjs PROGRAM MODEL | --mock PAGE [--with OPTION]',
+  2,
+  { with: [] },
+  { with: (options, value) => options.with.push(value) },
+);
+await requireBrowser(options, 'ws');
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-viewer-'));
 const mock = words[0] === '--mock';
 const server = mock
-  ? madeUpServer(resolve(words[1]))
+  ? mockServer(resolve(words[1]))
   : realServer(resolve(words[0]), resolve(words[1]), options.with);
 let passed = 0;
 let failed = 0;
 try {
   const results = [await checkAll(server, options, folder)];
-  if (mock) results.push(await checkNonsense(resolve(words[1])));
+  if (mock) results.push(await checkMalformed(resolve(words[1])));
   for (const t of results) [passed, failed] = [passed + t.passed, failed + t.failed];
 } catch (error) {
   if (/viewer is missing|built without/i.test(error.message)) skip(error.message);

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A server as docs/viewer_protocol.md has it, with a made-up street: to work on the page, and to
-// test it with data that no real server sends.
-// Usage: mock_server.mjs FOLDER_OF_THE_PAGE [--port N] [--count N] [--nonsense]
+// A server of docs/viewer_protocol.md with a synthetic street: to develop the page, and to test it
+// with malformed data.
+// Usage: mock_server.mjs FOLDER_OF_THE_PAGE [--port N] [--count N] [--malformed]
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
 import { WebSocketServer } from 'ws';
 
 import { makeTree } from './mock_tree.mjs';
-import { kClasses, makeElements, meet, randomOf } from './mock_world.mjs';
+import { kClasses, makeElements, intersect, randomOf } from './mock_world.mjs';
 
 const kToken = 'mock';
 const kBlockBytes = 48 * 1024;
@@ -55,10 +55,10 @@ function rotated([qx, qy, qz, qw], [x, y, z]) {
   ];
 }
 
-/** A scan packet of the street. */
+/** Simulates a scan packet of the street. */
 function scanPacket(number, sensor, settings, pose, random) {
   const began = performance.now();
-  const farthest = settings.max_range_m;
+  const max_range_m = settings.max_range_m;
   const found = [];
   for (let column = 0; column < sensor.columns; ++column)
     for (let ring = 0; ring < sensor.rings; ++ring) {
@@ -66,10 +66,10 @@ function scanPacket(number, sensor, settings, pose, random) {
         ((sensor.high - ((sensor.high - sensor.low) * ring) / (sensor.rings - 1)) * Math.PI) / 180;
       const a = Math.PI - (2 * Math.PI * column) / sensor.columns;
       const own = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
-      const hit = meet(pose[0], pose[1], pose[2], ...rotated(pose.slice(3), own));
+      const hit = intersect(pose[0], pose[1], pose[2], ...rotated(pose.slice(3), own));
       if (!hit) continue;
       const range = hit.t + (settings.noise ? 0.02 * (random() + random() + random() - 1.5) : 0);
-      if (range > farthest || range < settings.min_range_m) continue;
+      if (range > max_range_m || range < settings.min_range_m) continue;
       found.push({ own, range, ring, column, id: hit.id });
     }
   const bytes = Buffer.alloc(80 + 24 * found.length);
@@ -91,13 +91,13 @@ function scanPacket(number, sensor, settings, pose, random) {
   return bytes;
 }
 
-const kStart = [-45, -2, 1.9, 0, 0, 0, 1];
+const kStartPose = [-45, -2, 1.9, 0, 0, 0, 1];
 
 function makeScene(trees) {
   const poses = Array.from({ length: 90 }, (_, i) => [
-    kStart[0] + i,
-    kStart[1],
-    kStart[2],
+    kStartPose[0] + i,
+    kStartPose[1],
+    kStartPose[2],
     0,
     0,
     0,
@@ -150,7 +150,7 @@ function makeScene(trees) {
       max_range_m,
     })),
     sensor: 'mock-64',
-    start_pose: kStart,
+    start_pose: kStartPose,
     device: 'cpu',
     command: ['adasplats', 'simulate', 'made up.ply'],
   };
@@ -158,11 +158,11 @@ function makeScene(trees) {
 
 const blockOf = (number) => [number * kBlockBytes, (number + 1) * kBlockBytes];
 
-/** One page's live channel. */
+/** The live channel of one page. */
 class Session {
   sensor = kSensors[0];
-  settings = this.usual();
-  pose = kStart;
+  settings = this.defaults();
+  pose = kStartPose;
   running = false;
   credit = 2;
   number = 0;
@@ -175,7 +175,7 @@ class Session {
     socket.on('close', () => clearInterval(this.timer));
   }
 
-  usual() {
+  defaults() {
     return {
       noise: true,
       range_noise_m: 0.02,
@@ -191,7 +191,7 @@ class Session {
     };
   }
 
-  tell(message) {
+  send(message) {
     this.socket.send(JSON.stringify(message));
   }
 
@@ -206,11 +206,11 @@ class Session {
   choose({ name, settings }) {
     const found = kSensors.find((s) => s.name === name);
     if (!found || settings.max_range_m < 0)
-      return this.tell({ type: 'error', message: `no such LiDAR or parameter: ${name}` });
+      return this.send({ type: 'error', message: `unknown LiDAR or invalid parameter: ${name}` });
     this.sensor = found;
-    this.settings = { ...this.usual(), ...settings };
+    this.settings = { ...this.defaults(), ...settings };
     const options = Object.entries(settings).flatMap(([key, value]) => [`--${key}`, String(value)]);
-    this.tell({
+    this.send({
       type: 'sensor',
       name,
       rings: found.rings,
@@ -222,10 +222,10 @@ class Session {
   }
 
   pick({ id, origin, direction }) {
-    const hit = meet(...origin, ...direction);
-    if (!hit) return this.tell({ type: 'picked', id, hit: false });
+    const hit = intersect(...origin, ...direction);
+    if (!hit) return this.send({ type: 'picked', id, hit: false });
     const found = kClasses.find((c) => c.id === hit.id);
-    this.tell({
+    this.send({
       type: 'picked',
       id,
       hit: true,
@@ -247,13 +247,13 @@ class Session {
   }
 }
 
-/** What no real server sends. */
-function sendNonsense(socket) {
+/** Sends malformed messages and packets. */
+function sendMalformed(socket) {
   const packet = scanPacket(
     1,
     kSensors[1],
     { max_range_m: 60, min_range_m: 0 },
-    kStart,
+    kStartPose,
     Math.random,
   );
   const wrongPose = Buffer.from(packet);
@@ -261,7 +261,7 @@ function sendNonsense(socket) {
   const manyPoints = Buffer.from(packet);
   manyPoints.writeUInt32LE(0xffffffff, 12);
   for (const text of [
-    'no JSON',
+    'not JSON',
     '[]',
     '7',
     'null',
@@ -283,7 +283,7 @@ function sendNonsense(socket) {
     socket.send(bytes);
 }
 
-/** Serves until the process ends; its address. With `nonsense` every fifth node is cut short. */
+/** Serves until the process ends and returns the address. With `malformed`, truncates every fifth node. */
 async function serve(folder, options) {
   const elements = makeElements(options.count);
   const trees = [
@@ -300,7 +300,7 @@ async function serve(folder, options) {
     const node = path.match(/^layers\/(\d)\/nodes\/(\d+)\.bin$/);
     if (node) {
       const bytes = trees[Number(node[1])]?.elements[Number(node[2])];
-      return options.nonsense && node[2] % 5 === 3 ? bytes?.subarray(0, -5) : bytes;
+      return options.malformed && node[2] % 5 === 3 ? bytes?.subarray(0, -5) : bytes;
     }
     const block = path.match(/^layers\/(\d)\/table\/(\d+)\.bin$/);
     if (block) return trees[Number(block[1])]?.table.subarray(...blockOf(Number(block[2])));
@@ -332,19 +332,19 @@ async function serve(folder, options) {
   const sockets = new WebSocketServer({ server, path: `/${kToken}/live` });
   sockets.on('connection', (socket) => {
     new Session(socket);
-    if (options.nonsense) sendNonsense(socket);
+    if (options.malformed) sendMalformed(socket);
   });
   await new Promise((resolve) => server.listen(options.port, '127.0.0.1', resolve));
   return `http://127.0.0.1:${server.address().port}/${kToken}/`;
 }
 
 const words = process.argv.slice(2);
-const option = (name, usual) =>
-  words.includes(name) ? Number(words[words.indexOf(name) + 1]) : usual;
+const option = (name, fallback) =>
+  words.includes(name) ? Number(words[words.indexOf(name) + 1]) : fallback;
 console.log(
   await serve(words[0] ?? '../build/page', {
     port: option('--port', 0),
     count: option('--count', 300_000),
-    nonsense: words.includes('--nonsense'),
+    malformed: words.includes('--malformed'),
   }),
 );

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A tree of level of detail as docs/viewer_protocol.md has it, by the simplest means.
+// A simple level-of-detail tree in the format of docs/viewer_protocol.md.
 
 const kLeaf = 8000;
 const kCells = 40;
@@ -17,7 +17,7 @@ function bounds(elements) {
   return { low, high };
 }
 
-/** One element an occupied cell, as large as the cell. */
+/** One element per occupied cell, as large as the cell. */
 function merged(elements, { low, high }, points) {
   const spacing = Math.max(...high.map((v, i) => v - low[i])) / kCells;
   const cells = new Map();
@@ -68,7 +68,7 @@ function elementBytes(elements, box, largest, points) {
   return bytes;
 }
 
-/** {table: Buffer of all its rows, elements: Buffer of each node, box}. */
+/** Returns {table: Buffer of all rows, elements: Buffer per node, box}. */
 export function makeTree(all, points) {
   const queue = [{ own: all, level: 0 }];
   for (let i = 0; i < queue.length; ++i) {
@@ -88,7 +88,7 @@ export function makeTree(all, points) {
   const table = Buffer.alloc(48 * queue.length);
   const elements = queue.map((node, i) => {
     const box = bounds(node.drawn);
-    const largest = node.drawn.reduce((most, e) => Math.max(most, e.radius), 0);
+    const largest = node.drawn.reduce((max, e) => Math.max(max, e.radius), 0);
     const floats = [...box.low, ...box.high, node.spacing, largest];
     floats.forEach((v, k) => table.writeFloatLE(v, 48 * i + 4 * k));
     const words = [node.first, node.children, node.drawn.length, node.level];

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A made-up street: a plane and boxes, which rays meet exactly and disks cover.
+// A synthetic street of a plane and boxes: exact ray intersections, and disks that cover it.
 
 export const kClasses = [
   { id: 0, name: 'unlabeled', color: [0, 0, 0] },
@@ -13,7 +13,7 @@ export const kClasses = [
   { id: 80, name: 'pole', color: [255, 240, 150] },
 ];
 
-/** A repeatable number of 0..1. */
+/** A repeatable generator of numbers in 0..1. */
 export function randomOf(seed) {
   let state = seed >>> 0;
   return () => {
@@ -45,8 +45,8 @@ function groundClass(y) {
   return Math.abs(y) < 7.8 ? 40 : 48;
 }
 
-/** The nearest of plane and boxes; null: nothing. */
-export function meet(ox, oy, oz, dx, dy, dz) {
+/** The nearest hit of a ray on the plane and boxes; null: no hit. */
+export function intersect(ox, oy, oz, dx, dy, dz) {
   let t = Infinity;
   let id = 0;
   let normal = [0, 0, 1];
@@ -83,7 +83,7 @@ export function meet(ox, oy, oz, dx, dy, dz) {
   return t < Infinity ? { t, id, normal } : null;
 }
 
-/** About `count` disks over everything: x, y, z, radius, normal, class, intensity, error. */
+/** About `count` disks that cover the street: x, y, z, radius, normal, id, intensity, error. */
 export function makeElements(count) {
   const random = randomOf(1);
   const faces = [];
@@ -100,11 +100,11 @@ export function makeElements(count) {
     face(low, [0, d, 0], [0, 0, h], [-1, 0, 0], id);
     face([high[0], low[1], 0], [0, d, 0], [0, 0, h], [1, 0, 0], id);
   }
-  const whole = faces.reduce((sum, f) => sum + f.area, 0);
-  const radius = Math.sqrt(whole / count) * 0.95;
+  const totalArea = faces.reduce((sum, f) => sum + f.area, 0);
+  const radius = Math.sqrt(totalArea / count) * 0.95;
   const elements = [];
   for (const { corner, u, v, normal, id, area } of faces) {
-    const n = Math.ceil((count * area) / whole);
+    const n = Math.ceil((count * area) / totalArea);
     const rows = Math.max(1, Math.round(Math.sqrt((n * Math.hypot(...v)) / Math.hypot(...u))));
     const columns = Math.ceil(n / rows);
     for (let k = 0; k < rows * columns; ++k) {

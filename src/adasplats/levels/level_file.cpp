@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/levels/level_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -30,9 +27,9 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr const char* kFormat = "adasplats levels";
 constexpr int kLevelsVersion = 1;
-/// The header line is searched in chunks of doubling size, up to kLongestLine (400 bytes per part).
+/// The header line is searched in chunks of doubling size, up to kMaxLine (400 bytes per part).
 constexpr std::size_t kFirstChunk = 4096;
-constexpr std::size_t kLongestLine = std::size_t{1} << 30;
+constexpr std::size_t kMaxLine = std::size_t{1} << 30;
 
 Error damaged(const fs::path& path, const std::string& what) {
   return {ErrorKind::data, path.string() + ": damaged levels of detail: " + what};
@@ -71,7 +68,7 @@ std::string first_line(InputFile& file) {
     }
     // Stop early if this is not our header.
     if (!text.starts_with("{\"format\":\"adasplats") || bytes == file.remaining() ||
-        bytes > kLongestLine)
+        bytes > kMaxLine)
       throw Error(ErrorKind::data, file.path().string() + ": not a file of levels of detail");
     bytes *= 2;
   }
@@ -151,16 +148,16 @@ void check_tree(const LevelTable& table, const fs::path& path) {
 
 /// Checks that the nodes of parts exist and that no two parts overlap.
 void check_parts(const LevelTable& table, const fs::path& path) {
-  std::vector<bool> taken(table.nodes.size(), false);
-  const auto take = [&](std::size_t node) {
-    if (node >= taken.size() || taken[node]) throw damaged(path, "invalid parts");
-    taken[node] = true;
+  std::vector<bool> seen(table.nodes.size(), false);
+  const auto add = [&](std::size_t node) {
+    if (node >= seen.size() || seen[node]) throw damaged(path, "invalid parts");
+    seen[node] = true;
   };
   for (const LevelPart& part : table.parts) {
-    if (part.nodes == 0 || part.nodes > taken.size() || part.first > taken.size())
+    if (part.nodes == 0 || part.nodes > seen.size() || part.first > seen.size())
       throw damaged(path, "invalid parts");
-    take(part.root);
-    for (std::size_t k = 1; k < part.nodes; ++k) take(part.first + k - 1);
+    add(part.root);
+    for (std::size_t k = 1; k < part.nodes; ++k) add(part.first + k - 1);
   }
 }
 
@@ -251,14 +248,7 @@ std::string read_level_elements(const fs::path& path, std::uint64_t bytes, std::
     throw damaged(path,
                   std::to_string(file.size_bytes()) + " bytes, expected " + std::to_string(bytes));
   std::string elements(count * sizeof(LevelElement), '\0');
-  std::size_t done = 0;
-  while (done < elements.size()) {
-    const ssize_t got = ::pread(file.get(), elements.data() + done, elements.size() - done,
-                                static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw Error(ErrorKind::io, path.string() + ": reading failed");
-    done += static_cast<std::size_t>(got);
-  }
+  file.read_at(offset, std::as_writable_bytes(std::span(elements)));
   return elements;
 }
 

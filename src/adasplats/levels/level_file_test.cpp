@@ -33,7 +33,7 @@ struct Splats {
   }
 };
 
-/// A floor with chance heights.
+/// A floor with random heights.
 Splats floor_of(int side) {
   Splats splats;
   for (int i = 0; i < side * side; ++i) {
@@ -58,8 +58,8 @@ LevelTree small_tree() {
       splats.input(), {.leaf_size = 200, .intensity_range = kFacts.intensity_range}, Executor(1)};
 }
 
-/// The error of reading the file; empty: none.
-std::string complaint(const fs::path& file) {
+/// The error of reading the file, or empty.
+std::string error_of_reading(const fs::path& file) {
   try {
     read_levels(file);
     return {};
@@ -71,7 +71,7 @@ std::string complaint(const fs::path& file) {
 }
 
 // Oracle: the tree in memory.
-TEST(LevelFile, IsTheTreeThatWasWritten) {
+TEST(LevelFile, RoundTrip) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   const LevelTree tree = small_tree();
@@ -105,7 +105,7 @@ TEST(LevelFile, AnEmptyTreeIsOneNode) {
   EXPECT_EQ(read_levels(file).nodes.size(), 1U);
 }
 
-TEST(LevelFile, DamageIsOneError) {
+TEST(LevelFile, DamageIsAnError) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   write_levels(file, small_tree(), kFacts);
@@ -113,7 +113,7 @@ TEST(LevelFile, DamageIsOneError) {
   const std::size_t line = good.find('\n') + 1;
   const auto error_of = [&](const std::string& bytes) {
     write_file(file, bytes);
-    return complaint(file);
+    return error_of_reading(file);
   };
   const auto with_word = [&](std::size_t node, std::size_t word, std::uint32_t value) {
     std::string bytes = good;
@@ -126,15 +126,15 @@ TEST(LevelFile, DamageIsOneError) {
   EXPECT_NE(error_of(good + "x"), "") << "longer than declared";
   EXPECT_NE(error_of(std::string(1000, 'x')).find("not a file of levels"), std::string::npos);
   EXPECT_NE(with_word(0, 8, 0), "") << "a node that is its own child";
-  EXPECT_NE(with_word(0, 8, 2), "") << "a node that is nobody's child";
+  EXPECT_NE(with_word(0, 8, 2), "") << "a node without a parent";
   EXPECT_NE(with_word(0, 9, 9), "") << "more than eight children";
-  EXPECT_NE(with_word(0, 9, 0), "") << "a leaf whose children stay";
-  EXPECT_NE(with_word(1, 10, 1U << 31), "") << "more elements than there are";
+  EXPECT_NE(with_word(0, 9, 0), "") << "a leaf that loses its children";
+  EXPECT_NE(with_word(1, 10, 1U << 31), "") << "too many elements";
   EXPECT_NE(with_word(0, 0, 0x7fc00000U), "") << "a box that is NaN";
   EXPECT_NE(with_word(0, 6, 0xbf800000U), "") << "a negative spacing";
 }
 
-TEST(LevelFile, AnErrorNamesAnotherVersion) {
+TEST(LevelFile, OtherVersionsAreNamedInTheError) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   write_levels(file, small_tree(), kFacts);
@@ -142,10 +142,11 @@ TEST(LevelFile, AnErrorNamesAnotherVersion) {
   const std::string version = "\"version\":1";
   bytes.replace(bytes.find(version), version.size(), "\"version\":2");
   write_file(file, bytes);
-  EXPECT_NE(complaint(file).find("version 2; this program reads version 1"), std::string::npos);
+  EXPECT_NE(error_of_reading(file).find("version 2; this program reads version 1"),
+            std::string::npos);
 }
 
-TEST(LevelFile, AnotherSizeThanWhenItWasOpenedIsAnError) {
+TEST(LevelFile, AChangedFileSizeIsAnError) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "a.levels";
   write_file(file, std::string(64, 'x'));
@@ -154,8 +155,8 @@ TEST(LevelFile, AnotherSizeThanWhenItWasOpenedIsAnError) {
   EXPECT_THROW(read_level_elements(folder.path() / "b", 64, 16, 3), Error);
 }
 
-// Oracle: the sum of the areas, which merging keeps where disks do not overlap.
-TEST(LevelFile, MergedSplatsStandForAll) {
+// Oracle: the sum of the areas, which merging preserves if disks do not overlap.
+TEST(LevelFile, MergingPreservesTheArea) {
   Splats splats = floor_of(40);
   for (Disk& disk : splats.disks) disk.radius = 0.03F;
   const LevelOptions options = {.intensity_range = kFacts.intensity_range};

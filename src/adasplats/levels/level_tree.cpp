@@ -23,7 +23,7 @@ constexpr std::size_t kMinReduction = 2;
 constexpr float kMinErrorRange_m = 1e-3F;
 constexpr float kMaxSignedErrorRange_m = 0.5F;
 /// Maximum width of leaves, so that 16 bits give positions to 2 mm.
-constexpr float kWidestLeaf_m = 256;
+constexpr float kMaxLeafWidth_m = 256;
 
 void check(const LevelInput& input, const LevelOptions& options) {
   const std::size_t size = input.disks.size() + input.positions.size();
@@ -182,9 +182,9 @@ LevelTree::LevelTree(const LevelInput& input, const LevelOptions& options, const
     const std::size_t last = std::min(first + kBatch, blocks.size());
     for (std::size_t n = first; n < last; ++n) {
       LevelBlock& block = blocks[n];
-      if (block.size() <= options.leaf_size && order.box_side_m(block) <= kWidestLeaf_m) continue;
+      if (block.size() <= options.leaf_size && order.box_side_m(block) <= kMaxLeafWidth_m) continue;
       order.tighten(block, executor);
-      const bool join = block.side_m(block.level) <= kWidestLeaf_m;
+      const bool join = block.side_m(block.level) <= kMaxLeafWidth_m;
       const std::vector<LevelBlock> parts = order.split(block, join ? options.leaf_size : 0);
       nodes_[n].first_child = static_cast<std::uint32_t>(blocks.size());
       nodes_[n].child_count = static_cast<std::uint32_t>(parts.size());

@@ -19,7 +19,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr LevelOptions kSmall = {.leaf_size = 200, .cells_per_side = 16};
 
-/// An element read by the formulas of docs/viewer_protocol.md.
+/// An element decoded by the formulas of docs/viewer_protocol.md.
 struct Decoded {
   Disk disk;
   std::uint16_t class_id;
@@ -52,7 +52,7 @@ std::vector<Decoded> decode(const LevelTree& tree, std::size_t n) {
   return elements;
 }
 
-/// What is drawn where no node deeper than `level` is: nodes of the level, and leaves above.
+/// Elements drawn at a level: its nodes, and leaves above it.
 std::vector<Decoded> cut(const LevelTree& tree, std::uint32_t level) {
   std::vector<Decoded> elements;
   for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
@@ -115,7 +115,7 @@ std::vector<Vec3f> centers_of(const std::vector<Disk>& disks) {
   return centers;
 }
 
-/// Checks what the page relies on, whatever the elements are.
+/// Checks the structure that the page requires.
 void expect_well_formed(const LevelTree& tree, std::size_t leaf_size) {
   const auto nodes = tree.nodes();
   std::size_t next = 1, in_leaves = 0;
@@ -152,7 +152,7 @@ std::string bytes_of(const LevelTree& tree) {
   return bytes;
 }
 
-// Oracle: the input; an element's class is its number.
+// Oracle: the input; the class of an element is its index.
 TEST(LevelTree, EveryElementIsInOneLeaf) {
   const std::vector<Disk> disks = random_disks(20'000);
   const std::vector<std::uint16_t> ids = numbers(disks.size());
@@ -205,7 +205,7 @@ TEST(LevelTree, PointsOfInnerNodesAreInputPoints) {
       chosen.push_back(element.class_id);
     }
     std::ranges::sort(chosen);
-    EXPECT_EQ(std::ranges::adjacent_find(chosen), chosen.end()) << "a point twice";
+    EXPECT_EQ(std::ranges::adjacent_find(chosen), chosen.end()) << "a duplicate point";
   }
   // The root has a point in every one of the cells of its plane.
   const float cells = 40.0F / tree.nodes()[0].spacing_m;
@@ -213,7 +213,7 @@ TEST(LevelTree, PointsOfInnerNodesAreInputPoints) {
 }
 
 // Oracle: the area of the disks of the leaves below a node.
-TEST(LevelTree, KeepsAreasOfASparsePlane) {
+TEST(LevelTree, PreservesAreasOfASparsePlane) {
   const std::vector<Disk> disks = plane(30'000, 30, 0.5);
   const LevelTree tree({disks, {}, {}, {}, {}}, kSmall, Executor(2));
   const auto area_of = [&](std::size_t n) {
@@ -259,14 +259,14 @@ TEST(LevelTree, APlaneStaysAPlaneWithoutHolesOrOverhang) {
     const std::vector<Decoded> elements = cut(tree, level);
     EXPECT_GE(hit_share(elements, kSide_m), 0.995) << "level " << level;
     EXPECT_LT(elements.size(), disks.size() / 2);
-    // No farther out than the input's disks by more than a cell.
-    const float most = disks[0].radius + tree.nodes()[0].spacing_m / std::ldexp(1.0F, level);
+    // At most one cell farther out than the disks of the input.
+    const float margin = disks[0].radius + tree.nodes()[0].spacing_m / std::ldexp(1.0F, level);
     for (const Decoded& element : elements) {
       ASSERT_NEAR(element.disk.center.z, 2, 1e-6F);
       ASSERT_GT(std::fabs(element.disk.normal.z), 0.9999F);
       for (const float at : {element.disk.center.x, element.disk.center.y}) {
-        ASSERT_GT(at - element.disk.radius, -most);
-        ASSERT_LT(at + element.disk.radius, static_cast<float>(kSide_m) + most);
+        ASSERT_GT(at - element.disk.radius, -margin);
+        ASSERT_LT(at + element.disk.radius, static_cast<float>(kSide_m) + margin);
       }
     }
   }
@@ -297,7 +297,7 @@ TEST(LevelTree, ACornerHasTwoFacingsAndAWallOne) {
   }
 }
 
-// Oracle: by hand; 300 disks in one place, so that all are one cell.
+// Oracle: by hand; 300 disks at one position, so that all are in one cell.
 TEST(LevelTree, AMergedDiskHasTheClassWithTheLargestAreaAndMeans) {
   std::vector<Disk> disks(300, {{1, 2, 3}, 0.1F, {0, 0, 1}});
   std::vector<std::uint16_t> classes(300, 7);
@@ -313,14 +313,14 @@ TEST(LevelTree, AMergedDiskHasTheClassWithTheLargestAreaAndMeans) {
   const std::vector<Decoded> root = decode(tree, 0);
   ASSERT_EQ(root.size(), 1U);
   EXPECT_EQ(root[0].disk.center, (Vec3f{1, 2, 3}));
-  // One upon another: no larger than the largest, whatever the areas add up to.
+  // Coincident disks: limited to the largest one, not the sum of the areas.
   EXPECT_FLOAT_EQ(root[0].disk.radius, 0.2F);
   EXPECT_EQ(root[0].class_id, 9);
   EXPECT_NEAR(root[0].intensity, 170, 1);
-  EXPECT_EQ(root[0].error, 1);  // -0.2 m is the most that is known
+  EXPECT_EQ(root[0].error, 1);  // -0.2 m is the largest known error
 }
 
-TEST(LevelTree, OfNoneAndOfOne) {
+TEST(LevelTree, EmptyAndSingleElement) {
   const LevelTree none({}, {}, Executor(1));
   ASSERT_EQ(none.nodes().size(), 1U);
   EXPECT_EQ(none.nodes()[0].count, 0U);
@@ -366,11 +366,11 @@ TEST(LevelTree, FarOutliersCostOneLevelEach) {
                                       return node.child_count > 0 && node.count > 50 &&
                                              node.spacing_m <= 2 * finest;
                                     }))
-        << "the place has no useful node, far " << far_m;
+        << "no useful node, outlier at " << far_m;
   }
 }
 
-TEST(LevelTree, LeavesHoldMillimetresBesideOutliers) {
+TEST(LevelTree, LeavesKeepMillimetresDespiteOutliers) {
   for (const float far_m : {1e5F, 1e30F, std::numeric_limits<float>::max()}) {
     std::vector<Disk> disks = plane(100, 30, 3);
     disks.push_back({{far_m, 0, 0}, 0.1F, {0, 0, 1}});
@@ -388,7 +388,7 @@ TEST(LevelTree, LeavesHoldMillimetresBesideOutliers) {
 }
 
 TEST(LevelTree, InnerNodesAreNeverLarge) {
-  // Disks that fill space: hardly two of them share a cell.
+  // Disks that fill space: few of them share a cell.
   const std::vector<Disk> disks = random_disks(30'000);
   const LevelTree tree({disks, {}, {}, {}, {}}, {.leaf_size = 1000}, Executor(2));
   std::size_t total = 0;
@@ -415,7 +415,7 @@ TEST(LevelTree, ThreadsDoNotChangeAByte) {
   }
 }
 
-TEST(LevelTree, BytesAreTheRows) {
+TEST(LevelTree, BytesAreTheTable) {
   const LevelTree tree({random_disks(1000), {}, {}, {}, {}}, kSmall, Executor(1));
   const std::string bytes = nodes_bytes(tree.nodes());
   ASSERT_EQ(bytes.size(), 48 * tree.nodes().size());

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "adasplats/report/measures.h"
-#include "adasplats/report/sections.h"
 
 // Measures that the paper does not have: cost, both directions of the cloud distance, held-out
 // beams and exact truth.
@@ -171,7 +170,7 @@ Section clouds_section(const std::vector<Competitor>& competitors) {
   classes.chart = ChartKind::dots;
   classes.value_title = "C2C to points of the same class (cm)";
   classes.weight = {"points"};
-  classes.whole = read({"c2c", "c2c_m"}, kCentimetres);
+  classes.total = read({"c2c", "c2c_m"}, kCentimetres);
   add_breakdown(section, classes, competitors);
   return section;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "adasplats/report/measures.h"
-#include "adasplats/report/sections.h"
 
 namespace adasplats::page {
 namespace {
@@ -181,7 +180,7 @@ struct Prize {
   const char* unit;
 };
 
-/// The best competitor by each measure that at least two have.
+/// The best competitor in each measure that at least two competitors have.
 Section best_section(const std::vector<Competitor>& competitors) {
   const std::vector<Prize> prizes = {
       {"Lowest C2C",
@@ -297,6 +296,30 @@ Section commands_section(const std::vector<Competitor>& competitors) {
 }
 
 }  // namespace
+
+Table with_best_marked(Table table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const Better better = table.columns[c].better;
+    if (better == Better::neither) continue;
+    const Cell* best = nullptr;
+    bool differ = false;
+    for (const Row& row : table.rows) {
+      const Cell& cell = row.cells[c];
+      if (!cell.value) continue;
+      differ = differ || (best != nullptr && best->text != cell.text);
+      if (best == nullptr ||
+          (better == Better::lower ? *cell.value < *best->value : *cell.value > *best->value)) {
+        best = &cell;
+      }
+    }
+    if (!differ) continue;
+    const std::string best_text = best->text;
+    for (Row& row : table.rows) {
+      row.cells[c].best = row.cells[c].value.has_value() && row.cells[c].text == best_text;
+    }
+  }
+  return table;
+}
 
 Document document_of(const Json& results) {
   const auto competitors = competitors_of(results);

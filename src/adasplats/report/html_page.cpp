@@ -9,7 +9,7 @@
 #include "adasplats/io/base/base64.h"
 #include "adasplats/report/chart.h"
 #include "adasplats/report/report_page.h"
-#include "adasplats/report/sections.h"
+#include "adasplats/report/results.h"
 #include "adasplats/report/svg_marks.h"
 #include "adasplats/report/text_format.h"
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "adasplats/report/report_page.h"
-#include "adasplats/report/sections.h"
+#include "adasplats/report/results.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats {

@@ -120,7 +120,7 @@ Table table_of(const Breakdown& breakdown, const std::vector<Competitor>& compet
       name.resize(name.size() - breakdown.group_unit.size());
     table.columns.push_back({"", name, breakdown.better, false});
   }
-  if (breakdown.whole) table.columns.push_back({"", "all", breakdown.better, false});
+  if (breakdown.total) table.columns.push_back({"", "all", breakdown.better, false});
   for (const Competitor& competitor : competitors) {
     Row row{competitor.title, competitor.badge, competitor.key, {}};
     for (const std::string& name : names) {
@@ -129,8 +129,8 @@ Table table_of(const Breakdown& breakdown, const std::vector<Competitor>& compet
       path.insert(path.end(), breakdown.figure.begin(), breakdown.figure.end());
       row.cells.push_back(cell_of(competitor, read(path, breakdown.factor), breakdown.text));
     }
-    if (breakdown.whole) {
-      row.cells.push_back(cell_of(competitor, breakdown.whole, breakdown.text));
+    if (breakdown.total) {
+      row.cells.push_back(cell_of(competitor, breakdown.total, breakdown.text));
     }
     if (has_value(row)) table.rows.push_back(std::move(row));
   }

@@ -50,7 +50,7 @@ struct Breakdown {
   std::string value_title;
   std::string group_unit;  ///< " m": removed from the end of the groups' names
   KeyPath weight;          ///< from a group, to sort by; empty: keep the order
-  Reader whole = nullptr;  ///< one more column, "all", from a competitor
+  Reader total = nullptr;  ///< one more column, "all", from a competitor
 };
 
 /// Only competitors and groups with values; folded behind its chart.

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "adasplats/report/measures.h"
-#include "adasplats/report/sections.h"
 
 // The tables of the paper, section "Results", with its figures next to ours.
 namespace adasplats::page {

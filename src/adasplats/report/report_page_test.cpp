@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "adasplats/report/chart.h"
+#include "adasplats/report/results.h"
 #include "adasplats/report/sample_results_test.h"
-#include "adasplats/report/sections.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats::page {
@@ -37,7 +37,7 @@ std::vector<std::string> rows_named(const std::string& html, const std::string& 
   return rows;
 }
 
-void expect_whole(const Json& results) {
+void expect_complete(const Json& results) {
   const std::string html = report_html(results, std::filesystem::path());
   for (const std::string tag : {"section", "table", "figure", "svg", "dl", "tr"}) {
     EXPECT_EQ(count_of(html, "<" + tag + ">") + count_of(html, "<" + tag + " "),
@@ -191,7 +191,7 @@ TEST(Table, BestIsMarkedWhereValuesDifferAndTiesShareIt) {
   EXPECT_FALSE(table.rows[0].cells[1].best);
 }
 
-// Rows of the paper alone are not among the rows that were run, but in a collapsed part.
+// Rows that only the paper has are in a collapsed part, not among the measured rows.
 TEST(ReportPage, PaperFiguresAreInACollapsedPart) {
   const std::string html = report_html(sample_results(), std::filesystem::path());
   const std::size_t opened = html.find("<details><summary>With the paper");
@@ -252,7 +252,7 @@ Json results_with(const Json& competitor) {
 }
 
 TEST(ReportPage, AFailedCompetitorIsNeverBestAndScalesNoChart) {
-  // It ended after 11 ms, faster than all others.
+  // It failed after 11 ms, faster than all others.
   Json broken = {{"name", "broken"},
                  {"title", "Broken"},
                  {"kind", "mesh"},
@@ -273,7 +273,7 @@ TEST(ReportPage, AFailedCompetitorIsNeverBestAndScalesNoChart) {
   }
   EXPECT_NE(html.find("no such file"), std::string::npos);
 
-  // It made a model, and a later step failed: figures stay in the tables, without a prize.
+  // It made a model and failed in a later step: its figures stay in the tables but are never best.
   Json late = sample_competitor("late", "Late", 0.001);
   late["state"] = "failed";
   late["failed_step"] = "truth";
@@ -303,7 +303,7 @@ TEST(ReportPage, ReportsFiguresOfDifferentPrograms) {
   std::string text = report_markdown(results);
   EXPECT_NE(text.find("adasplats 0.1.0, commit 0123456789ab"), std::string::npos);
   EXPECT_EQ(text.find("made by different programs"), std::string::npos);
-  // Put together by hand: one step of one competitor is of another build.
+  // Merged by hand: one step of one competitor is from another build.
   results["competitors"][3]["made_by"]["c2c"]["commit"] = "fedcba9876543210";
   text = report_markdown(results);
   EXPECT_NE(text.find("made by different programs"), std::string::npos);
@@ -328,20 +328,21 @@ TEST(ReportPage, PicturesAreEmbeddedOrNamedAsMissing) {
 }
 
 TEST(ReportPage, AnySizeOfComparison) {
-  for (const Json& none : {Json(), Json::object(), Json::array(), Json("text")}) expect_whole(none);
+  for (const Json& none : {Json(), Json::object(), Json::array(), Json("text")})
+    expect_complete(none);
   Json results = sample_results();
-  expect_whole(results);
+  expect_complete(results);
   results["competitors"] = Json::array({sample_competitor("basic", "Basic", 1)});
-  expect_whole(results);
+  expect_complete(results);
   EXPECT_EQ(report_html(results, {}).find("id=\"best\""), std::string::npos);
   results["competitors"] = Json::array();
-  expect_whole(results);
+  expect_complete(results);
   EXPECT_NE(report_html(results, {}).find("No competitor was run."), std::string::npos);
   results = sample_results();
   for (Json& competitor : results["competitors"]) {
     competitor = {{"name", competitor["name"]}, {"state", "timeout"}};
   }
-  expect_whole(results);
+  expect_complete(results);
   EXPECT_NE(report_markdown(results).find("| basic | timeout | – | – |"), std::string::npos);
 }
 

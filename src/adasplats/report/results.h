@@ -9,7 +9,8 @@
 
 #include "adasplats/report/document.h"
 
-// Reads compare's results without trusting them: missing keys and other types have no value.
+// Reads the results of `adasplats compare` and makes the sections of the report. Missing keys and
+// other types have no value.
 namespace adasplats::page {
 
 using Json = nlohmann::ordered_json;
@@ -31,13 +32,23 @@ struct Competitor {
   const Json* json = nullptr;
 };
 
-/// Suffix of competitors that are another one without resampling.
+/// Suffix of variants without resampling.
 inline constexpr std::string_view kVariantSuffix = "-no-resample";
 
-/// In their order. A variant shares the slot of its base. The results must outlive them.
+/// The competitors in order. A variant shares the slot of its base. The results must outlive them.
 std::vector<Competitor> competitors_of(const Json& results);
 
 /// The paper's rows that are objects; the results must outlive them.
 std::vector<const Json*> paper_rows_of(const Json& results);
+
+/// The report of the results; empty sections are omitted.
+Document document_of(const Json& results);
+
+/// The sections of the report.
+Section paper_section(const Json& results, const std::vector<Competitor>& competitors);
+Section cost_section(const std::vector<Competitor>& competitors);
+Section clouds_section(const std::vector<Competitor>& competitors);
+Section beams_section(const std::vector<Competitor>& competitors);
+Section truth_section(const std::vector<Competitor>& competitors);
 
 }  // namespace adasplats::page

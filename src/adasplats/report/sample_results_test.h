@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// Results as `adasplats compare` writes them, made up, for tests and for trying the page.
+// Synthetic results of `adasplats compare`, for tests and for trying the page.
 namespace adasplats::page {
 
 /// Share and error keys of `evaluate resimulate`, worse with growing `badness`.
@@ -23,7 +23,7 @@ inline nlohmann::ordered_json sample_accuracy(double badness, std::size_t rays) 
        {{"median", 0.012 * badness}, {"mae", 0.2}, {"rmse", 1.5 * badness}, {"p90", 0.1}}}};
 }
 
-/// Groups worse from one to the next.
+/// Groups, each worse than the one before.
 inline nlohmann::ordered_json sample_groups(const std::vector<std::string>& names, double badness) {
   nlohmann::ordered_json groups = nlohmann::ordered_json::object();
   std::size_t rays = 400000;

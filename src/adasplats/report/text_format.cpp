@@ -10,8 +10,8 @@
 namespace adasplats::page {
 namespace {
 
-// 1e18 and above would not fit the buffer with its digits; nothing here is that large.
-constexpr double kLargest = 1e18;
+// Larger numbers would not fit the buffer.
+constexpr double kMaxNumber = 1e18;
 
 std::string scaled_text(double number, const std::array<const char*, 4>& units) {
   std::size_t unit = 0;
@@ -26,7 +26,7 @@ std::string scaled_text(double number, const std::array<const char*, 4>& units) 
 }  // namespace
 
 std::string fixed_text(double number, int digits) {
-  if (!std::isfinite(number) || std::fabs(number) > kLargest) return kMissing;
+  if (!std::isfinite(number) || std::fabs(number) > kMaxNumber) return kMissing;
   std::array<char, 40> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
                                  std::chars_format::fixed, digits)

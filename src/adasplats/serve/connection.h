@@ -4,6 +4,8 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
 #include <chrono>
 #include <memory>
 #include <set>
@@ -14,15 +16,14 @@ namespace adasplats {
 
 using ServerClock = std::chrono::steady_clock;
 
-/// One accepted socket; all of it happens on the server's thread. What has to happen by a time is
-/// not left to timers of its own: the server looks at all deadlines a few times in a
-/// stall_limit.
+/// One accepted socket. All calls are on the server's thread. A connection has a deadline instead
+/// of timers; the server checks all deadlines several times per stall_limit.
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Ends it now: when this returns the socket is closed and the server has forgotten it.
+  /// Closes the socket and removes the connection from the server at once.
   virtual void abort() = 0;
-  /// The server stops: ends it within half a second.
+  /// Ends the connection within half a second, because the server stops.
   virtual void stop() = 0;
   ServerClock::time_point deadline() const { return deadline_; }
 
@@ -33,19 +34,48 @@ class Connection {
   ServerClock::time_point deadline_ = ServerClock::time_point::max();
 };
 
-/// What the connections of a server share. They own it together, since a WebSocketPeer may be kept
-/// longer than the server.
+/// State shared by the connections of a server. They own it jointly, because a WebSocketPeer may
+/// outlive the server.
 struct ServerCore {
   HttpServerOptions options;
   HttpHandler get;
   WebSocketHandler& live;
   std::uint16_t port = 0;
   boost::asio::io_context context{1};
-  std::set<std::shared_ptr<Connection>> connections;  ///< those that are open
+  std::set<std::shared_ptr<Connection>> connections;  ///< open ones
 
   ServerClock::time_point stall_deadline() const {
     return ServerClock::now() + options.stall_limit;
   }
 };
+
+/// Handles the HTTP requests of a socket; hands it over if a request asks for the WebSocket.
+/// `over_limit`: answers the first request with 503, because the server is full.
+void start_http(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
+                bool over_limit);
+
+/// Answers a request for the WebSocket and passes its messages to the handler.
+void start_websocket(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
+                     boost::beast::http::request<boost::beast::http::empty_body> request);
+
+/// Headers of every response: no caching, and only this page may use the data and load from this
+/// server. connect-src 'self' includes ws: of the same host and port (Content Security Policy 3,
+/// 6.7.2.8).
+inline constexpr const char* kSafetyHeaders[][2] = {
+    {"Cache-Control", "no-store"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"X-Frame-Options", "DENY"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Content-Security-Policy",
+     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+     "connect-src 'self'; worker-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; "
+     "form-action 'none'"},
+};
+
+template <class Message>
+void set_safety_headers(Message& message) {
+  for (const auto& [name, value] : kSafetyHeaders) message.set(name, value);
+}
 
 }  // namespace adasplats

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #ifdef ADASPLATS_HAVE_BOOST
 
-#include "adasplats/serve/http_connection.h"
-
 #include <algorithm>
 #include <array>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -18,9 +16,8 @@
 #include <optional>
 #include <utility>
 
-#include "adasplats/serve/answer_headers.h"
+#include "adasplats/serve/connection.h"
 #include "adasplats/serve/request_check.h"
-#include "adasplats/serve/websocket_connection.h"
 
 namespace adasplats {
 namespace {
@@ -32,8 +29,8 @@ using ErrorCode = boost::system::error_code;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::span_body<const char>>;
 
-/// After a last answer: so long what still comes is read and dropped. A socket that is closed with
-/// unread bytes resets the connection, and the answer is lost.
+/// After the last response, input is read and dropped up to these limits. Closing a socket with
+/// unread bytes would reset the connection and lose the response.
 constexpr std::chrono::milliseconds kLingerLimit{1000};
 constexpr std::size_t kLingerBytes = std::size_t{1} << 20;
 
@@ -45,11 +42,11 @@ HttpReply status_reply(http::status status) {
           std::make_shared<const std::string>(text)};
 }
 
-/// What is wrong with a request whoever asks; ok where nothing is.
+/// Status of a request that is invalid for any path; ok if it is valid.
 http::status fault_of(const Request& request, bool has_body, const ServerCore& core) {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return http::status::method_not_allowed;
-  // Origin-form alone (RFC 9112, 3.2.1): we are no proxy. One Host (3.2).
+  // Only origin-form (RFC 9112, 3.2.1), because this is not a proxy. Exactly one Host (3.2).
   if (has_body || !request.target().starts_with('/') || request.count(http::field::host) != 1)
     return http::status::bad_request;
   const std::string_view host = to_std(request[http::field::host]);
@@ -60,8 +57,8 @@ http::status fault_of(const Request& request, bool has_body, const ServerCore& c
 class HttpConnection final : public Connection,
                              public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core, bool refused)
-      : core_(std::move(core)), socket_(std::move(socket)), refused_(refused) {}
+  HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core, bool over_limit)
+      : core_(std::move(core)), socket_(std::move(socket)), over_limit_(over_limit) {}
 
   void read();
   void abort() override;
@@ -81,7 +78,7 @@ class HttpConnection final : public Connection,
 
   std::shared_ptr<ServerCore> core_;
   asio::ip::tcp::socket socket_;
-  bool refused_;
+  bool over_limit_;
   bool ended_ = false;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -93,7 +90,7 @@ class HttpConnection final : public Connection,
 };
 
 void HttpConnection::read() {
-  // One limit for the whole header: bytes that trickle in do not move it.
+  // One deadline for the complete header: bytes that trickle in do not extend it.
   set_deadline(core_->stall_deadline());
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(core_->options.header_bytes_limit));
@@ -117,12 +114,12 @@ void HttpConnection::read_done(ErrorCode error) {
 }
 
 void HttpConnection::answer() {
-  if (refused_) return send(status_reply(http::status::service_unavailable), true);
+  if (over_limit_) return send(status_reply(http::status::service_unavailable), true);
   const Request& request = parser_->get();
   const http::status fault = fault_of(request, !parser_->is_done(), *core_);
   if (fault != http::status::ok) return send(status_reply(fault), true);
   const std::optional<std::string> path =
-      path_behind_token(to_std(request.target()), core_->options.token);
+      path_after_token(to_std(request.target()), core_->options.token);
   if (!path) return send(status_reply(http::status::not_found), !request.keep_alive());
   answer_path(*path);
 }
@@ -136,16 +133,17 @@ void HttpConnection::answer_live() {
   Request& request = parser_->get();
   if (!beast::websocket::is_upgrade(request))
     return send(status_reply(http::status::upgrade_required), !request.keep_alive());
-  // A program that is no browser names no origin; it knows the token.
+  // Clients other than browsers send no Origin; they have the token.
   const std::string_view host = to_std(request[http::field::host]);
   for (const auto& field : request) {
     if (field.name() == http::field::origin && !is_own_origin(to_std(field.value()), host))
       return send(status_reply(http::status::forbidden), true);
   }
-  // Nothing may be sent before the answer to the upgrade (RFC 6455, 4.1). The key is 16 bytes as
-  // base64 (4.2.1).
-  const bool good_key = request[http::field::sec_websocket_key].size() == 24;
-  if (buffer_.size() > 0 || !good_key) return send(status_reply(http::status::bad_request), true);
+  // The client must not send data before the response to the upgrade (RFC 6455, 4.1). The key is 16
+  // bytes in base64 (4.2.1).
+  const bool has_valid_key = request[http::field::sec_websocket_key].size() == 24;
+  if (buffer_.size() > 0 || !has_valid_key)
+    return send(status_reply(http::status::bad_request), true);
   const auto self = shared_from_this();
   leave();
   start_websocket(std::move(socket_), core_, parser_->release());
@@ -154,7 +152,7 @@ void HttpConnection::answer_live() {
 HttpReply HttpConnection::reply_to(const std::string& path) const {
   try {
     HttpReply reply = core_->get(path);
-    // So that a path that is not there looks like a wrong token.
+    // The same response as for a wrong token.
     if (reply.status == 404) return status_reply(http::status::not_found);
     return reply;
   } catch (...) {
@@ -184,7 +182,7 @@ void HttpConnection::send(HttpReply reply, bool last) {
 }
 
 void HttpConnection::send_some() {
-  // Every part that is taken gives time for the next.
+  // Each part that is sent extends the deadline for the next.
   set_deadline(core_->stall_deadline());
   http::async_write_some(
       socket_, *serializer_,
@@ -231,8 +229,8 @@ void HttpConnection::abort() {
 }  // namespace
 
 void start_http(asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
-                bool refused) {
-  const auto connection = std::make_shared<HttpConnection>(std::move(socket), core, refused);
+                bool over_limit) {
+  const auto connection = std::make_shared<HttpConnection>(std::move(socket), core, over_limit);
   core->connections.insert(connection);
   connection->read();
 }

@@ -2,23 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/serve/http_server.h"
 
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "adasplats/core/error.h"
+
 #ifdef ADASPLATS_HAVE_BOOST
 
 #include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cctype>
-#include <cerrno>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
-#include "adasplats/core/error.h"
 #include "adasplats/serve/connection.h"
-#include "adasplats/serve/http_connection.h"
 #include "adasplats/serve/request_check.h"
 
 namespace adasplats {
@@ -28,18 +32,18 @@ namespace asio = boost::asio;
 using ErrorCode = boost::system::error_code;
 using asio::ip::tcp;
 
-/// So long nobody is accepted after an error (no descriptors, no memory): it does not pass at once.
+/// Pause before accepting again after an error (no descriptors, no memory), which may persist.
 constexpr std::chrono::milliseconds kAcceptPause{100};
-/// How often deadlines are looked at, at most and at least.
-constexpr std::chrono::milliseconds kShortestSweep{10};
-constexpr std::chrono::milliseconds kLongestSweep{250};
+/// Limits of the interval at which deadlines are checked.
+constexpr std::chrono::milliseconds kMinSweep{10};
+constexpr std::chrono::milliseconds kMaxSweep{250};
 
 Error listen_error(const HttpServerOptions& options, const ErrorCode& error) {
   const std::string port = "port " + std::to_string(options.port) + " of " + options.address;
   if (error == asio::error::address_in_use)
     return {ErrorKind::unavailable,
-            port + " is taken by another program; choose another port, or 0 for any that is free"};
-  return {ErrorKind::unavailable, port + " cannot be served: " + error.message()};
+            port + " is in use by another program; choose another port, or 0 for any free one"};
+  return {ErrorKind::unavailable, "cannot listen on " + port + ": " + error.message()};
 }
 
 tcp::acceptor listening(asio::io_context& context, const HttpServerOptions& options) {
@@ -47,11 +51,11 @@ tcp::acceptor listening(asio::io_context& context, const HttpServerOptions& opti
   const asio::ip::address address = asio::ip::make_address(options.address, error);
   if (error)
     throw Error(ErrorKind::usage, std::string("'") + options.address +
-                                      "' is no numeric address; expected one like 127.0.0.1");
+                                      "' is not a numeric address; expected one like 127.0.0.1");
   const tcp::endpoint endpoint(address, options.port);
   tcp::acceptor acceptor(context);
   acceptor.open(endpoint.protocol(), error);
-  // Of connections that ended lately; a port that another program listens on stays refused.
+  // Allows a port of recently ended connections, but not one on which another program listens.
   if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
@@ -60,15 +64,16 @@ tcp::acceptor listening(asio::io_context& context, const HttpServerOptions& opti
 }
 
 void check_token(const std::string& token) {
-  if (token.empty()) throw std::logic_error("HttpServer: an empty token");
-  // What a browser sends as it is (RFC 3986, 2.3), but dots, of which it may make another path.
+  if (token.empty()) throw std::logic_error("HttpServer: the token is empty");
+  // Characters that browsers do not encode (RFC 3986, 2.3), without dots, which may change the
+  // path.
   const bool plain = std::all_of(token.begin(), token.end(), [](unsigned char c) {
     return c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '_');
   });
   if (!plain)
     throw Error(ErrorKind::usage, std::string("'") + token +
-                                      "' cannot be the secret part of an address; expected "
-                                      "letters, digits, '-' and '_' alone");
+                                      "' is not a valid token; use only letters, digits, '-' "
+                                      "and '_'");
 }
 
 int new_event() {
@@ -95,7 +100,7 @@ class HttpServer::Implementation {
   std::string host() const { return host_of({core_->options.address, core_->port}); }
   const ServerCore& core() const { return *core_; }
   void run();
-  /// Nothing but one system call: a signal's handler may do no more.
+  /// Only one system call, so that signal handlers may use it.
   void stop() const {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(event_, &one, sizeof one);
@@ -129,7 +134,7 @@ void HttpServer::Implementation::run() {
       core_->context.run();
       return;
     } catch (const std::bad_alloc&) {
-      // Whose handler it was gets nothing any more, and is closed when its time is over.
+      // The connection without memory gets no response and is closed at its deadline.
       continue;
     }
   }
@@ -151,8 +156,7 @@ void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
   }
   const std::size_t limit = core_->options.connections_limit;
   const std::size_t open = core_->connections.size();
-  // Telling somebody that we are full takes a connection, too; beyond twice the limit nobody is
-  // reported.
+  // A 503 response takes a connection, too. Beyond twice the limit, sockets are closed without one.
   if (!error && open < 2 * limit) {
     socket.set_option(tcp::no_delay(true), error);
     start_http(std::move(socket), core_, open >= limit);
@@ -162,7 +166,7 @@ void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
 
 template <class Call>
 void HttpServer::Implementation::for_connections(Call call) {
-  // A copy, as those that end leave the set.
+  // A copy, because connections that end remove themselves from the set.
   const std::vector<std::shared_ptr<Connection>> all(core_->connections.begin(),
                                                      core_->connections.end());
   for (const std::shared_ptr<Connection>& connection : all) call(*connection);
@@ -175,8 +179,7 @@ void HttpServer::Implementation::sweep() {
   });
   if (stopping_ && core_->connections.empty()) return;
   sweep_.expires_after(
-      stopping_ ? kShortestSweep
-                : std::clamp(core_->options.stall_limit / 4, kShortestSweep, kLongestSweep));
+      stopping_ ? kMinSweep : std::clamp(core_->options.stall_limit / 4, kMinSweep, kMaxSweep));
   sweep_.async_wait([this](ErrorCode) { sweep(); });
 }
 
@@ -186,7 +189,7 @@ void HttpServer::Implementation::begin_stop() {
   acceptor_.close(ignored);
   pause_.cancel();
   for_connections([](Connection& connection) { connection.stop(); });
-  sweep_.cancel();  // from now on it comes often
+  sweep_.cancel();  // and sweep at the shortest interval from now on
 }
 
 HttpServer::HttpServer(HttpServerOptions options, HttpHandler get, WebSocketHandler& live) {
@@ -209,4 +212,44 @@ bool has_http_server() { return true; }
 
 }  // namespace adasplats
 
+#else
+
+namespace adasplats {
+
+class HttpServer::Implementation {};
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the signature of the build with Boost
+HttpServer::HttpServer(HttpServerOptions, HttpHandler, WebSocketHandler&) {
+  throw Error(ErrorKind::unavailable,
+              "this build of adasplats has no local server: it was built without Boost (Asio and "
+              "Beast, 1.74 or later); install the package libboost-dev and build again");
+}
+HttpServer::~HttpServer() = default;
+
+std::uint16_t HttpServer::port() const { return 0; }
+std::string HttpServer::url() const { return {}; }
+void HttpServer::run() {}
+void HttpServer::stop() {}
+
+bool has_http_server() { return false; }
+
+}  // namespace adasplats
+
 #endif
+
+namespace adasplats {
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (getentropy(bytes.data(), bytes.size()) != 0)
+    throw Error(ErrorKind::unavailable,
+                std::string("cannot get random numbers from the system: ") + std::strerror(errno));
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += "0123456789abcdef"[byte >> 4];
+    token += "0123456789abcdef"[byte & 15];
+  }
+  return token;
+}
+
+}  // namespace adasplats

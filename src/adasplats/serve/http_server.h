@@ -15,64 +15,65 @@ namespace adasplats {
 /// Bytes that several connections may send at once.
 using SharedBytes = std::shared_ptr<const std::string>;
 
-/// What a GET is answered with.
+/// The response to a GET.
 struct HttpReply {
   int status = 200;
   std::string content_type = "application/octet-stream";
   SharedBytes body;  ///< null: empty
 };
 
-/// The answer to the path behind "/TOKEN/", without its query ("layers/0/table/0.bin"; "" is the
-/// folder itself); status 404 where there is nothing. Called on the server's thread.
+/// Returns the response to a path after "/TOKEN/", without its query ("layers/0/table/0.bin"; "" is
+/// the folder itself); status 404 for an unknown path. Called on the server's thread.
 using HttpHandler = std::function<HttpReply(std::string_view path)>;
 
-/// The other end of a WebSocket. Any thread may call these; after it is gone they do nothing.
+/// The client of a WebSocket. Any thread may call these; after the connection has ended they do
+/// nothing.
 class WebSocketPeer {
  public:
   virtual ~WebSocketPeer() = default;
-  /// Sends behind what is queued. Where more than `queued_bytes_limit` would wait, the connection
-  /// is closed instead.
+  /// Appends to the queue. If it would exceed `queued_bytes_limit`, closes the connection instead.
   virtual void send_text(std::string text) = 0;
   virtual void send_binary(SharedBytes bytes) = 0;
   /// Ends the connection with a close code (RFC 6455, 7.4.1) and a reason.
   virtual void close(std::uint16_t code, std::string_view reason) = 0;
 };
 
-/// What happens to WebSockets. Called on the server's thread, so it must return soon.
+/// Receives the events of WebSockets on the server's thread, so it must return quickly.
 class WebSocketHandler {
  public:
   virtual ~WebSocketHandler() = default;
   virtual void opened(const std::shared_ptr<WebSocketPeer>& peer) = 0;
-  /// A whole text message; binary ones close the connection (1003).
+  /// A complete text message; binary messages close the connection (1003).
   virtual void received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) = 0;
-  /// Once for each peer that was opened, whoever ended it.
+  /// Called once for each opened peer, whichever side closed it.
   virtual void closed(const std::shared_ptr<WebSocketPeer>& peer) = 0;
 };
 
 struct HttpServerOptions {
   std::string address = "127.0.0.1";              ///< numeric
-  std::uint16_t port = 0;                         ///< 0: any free one
+  std::uint16_t port = 0;                         ///< 0: any free port
   std::string token;                              ///< first part of every path; not empty
-  std::size_t connections_limit = 64;             ///< more are answered 503 and closed
+  std::size_t connections_limit = 64;             ///< further ones get 503
   std::size_t header_bytes_limit = 8 << 10;       ///< of a request
-  std::size_t message_bytes_limit = 16 << 10;     ///< of a WebSocket message from the other end
-  std::size_t queued_bytes_limit = 64 << 20;      ///< that wait for one WebSocket
-  std::chrono::milliseconds stall_limit{30'000};  ///< without a byte taken or a request begun
+  std::size_t message_bytes_limit = 16 << 10;     ///< of a WebSocket message from the client
+  std::size_t queued_bytes_limit = 64 << 20;      ///< queued for one WebSocket
+  std::chrono::milliseconds stall_limit{30'000};  ///< without progress
 };
 
-/// A token nobody can guess: 32 hexadecimal digits from the system's random numbers.
+/// An unpredictable token: 32 hexadecimal digits from the system's random numbers. Errors:
+/// unavailable.
 std::string random_token();
 
 /// A small HTTP/1.1 server for one page on this machine: GET and HEAD below /TOKEN/, and one
-/// WebSocket at /TOKEN/live. It serves what `get` answers and nothing else; it reads no files.
-/// Every answer forbids caching, sniffing, framing and loading from elsewhere. A WebSocket whose
-/// Origin is not this server's is refused (403), as is a Host that is neither the address, nor
-/// localhost.
+/// WebSocket at /TOKEN/live. It serves only the responses of `get` and reads no files. Every
+/// response forbids caching, sniffing, framing and loading from other servers. Rejects (403)
+/// WebSockets with another Origin, and a Host that is neither the address nor localhost.
 class HttpServer {
  public:
-  /// Listens; nobody is answered before run(). `get` and `live` must outlive it.
-  /// Errors: unavailable (the port is taken, or there is no such address); usage (an address that
-  /// is not numeric, a token that is not letters, digits, '-' and '_').
+  /// Listens; requests are answered from run() on. `get` and `live` must outlive the server.
+  /// Errors: unavailable (the port is in use, or the address is not one of this machine); usage
+  /// (the address is not numeric, or the token has other characters than letters, digits, '-' and
+  /// '_').
   HttpServer(HttpServerOptions options, HttpHandler get, WebSocketHandler& live);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
@@ -81,10 +82,11 @@ class HttpServer {
   std::uint16_t port() const;
   /// "http://127.0.0.1:8123/0123.../"
   std::string url() const;
-  /// Serves on the calling thread until stop(). An exception of a handler is answered with 500, or
-  /// closes the WebSocket (1011), and the server goes on.
+  /// Serves on the calling thread until stop(). If a handler throws, the response is 500 or the
+  /// WebSocket is closed (1011), and the server continues.
   void run();
-  /// From any thread, or a signal's: run() returns soon, connections are closed (1001).
+  /// Makes run() return soon and closes the connections (1001). Callable from any thread and from
+  /// signal handlers.
   void stop();
 
  private:
@@ -92,8 +94,8 @@ class HttpServer {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Whether this build has the server: false where Boost was not found. The constructor of
-/// HttpServer then throws an unavailable Error that says so.
+/// Whether this build has the server: false if Boost was not found. The constructor of HttpServer
+/// then throws an unavailable Error.
 bool has_http_server();
 
 }  // namespace adasplats

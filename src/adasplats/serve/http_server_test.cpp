@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// HTTP over plain sockets; the oracle is RFC 9110 and 9112, and what http_server.h promises.
+// HTTP over plain sockets; the oracle is RFC 9110 and 9112, and http_server.h.
 #include "adasplats/serve/http_server.h"
 
 #include <fcntl.h>
@@ -47,7 +47,7 @@ TEST_F(HttpServerTest, AnswersGet) {
   EXPECT_EQ(body(reply), "found");
 }
 
-TEST_F(HttpServerTest, EveryAnswerIsForThePageAlone) {
+TEST_F(HttpServerTest, EveryResponseHasSafetyHeaders) {
   start();
   const std::string own = std::string("Host: ") + client().host() + "\r\n\r\n";
   for (const std::string& request : std::vector<std::string>{
@@ -66,17 +66,16 @@ TEST_F(HttpServerTest, EveryAnswerIsForThePageAlone) {
   }
 }
 
-TEST_F(HttpServerTest, HeadHasTheHeaderOfGet) {
+TEST_F(HttpServerTest, HeadHasTheHeadersOfGet) {
   start();
   RawClient one = client();
   one.get("/secret/a%20b", "", "HEAD");
   const std::string head = one.reply(true);
   one.get("/secret/a%20b");
-  const std::string whole = one.reply();
-  EXPECT_EQ(head + "found", whole);
+  EXPECT_EQ(head + "found", one.reply());
 }
 
-TEST_F(HttpServerTest, ConnectionsAreKeptAndRequestsPipelined) {
+TEST_F(HttpServerTest, ConnectionsAreReusedAndRequestsPipelined) {
   start();
   RawClient one = client();
   const std::string lines =
@@ -99,7 +98,7 @@ TEST_F(HttpServerTest, BytesMayComeOneByOne) {
   EXPECT_EQ(status_line(one.reply()), "HTTP/1.1 200 OK");
 }
 
-TEST_F(HttpServerTest, OtherMethodsAreRefused) {
+TEST_F(HttpServerTest, OtherMethodsAreRejected) {
   start();
   for (const char* method :
        {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "PATCH", "get", "BREW"}) {
@@ -113,7 +112,7 @@ TEST_F(HttpServerTest, OtherMethodsAreRefused) {
   }
 }
 
-TEST_F(HttpServerTest, WhatIsNotThereLooksLikeAWrongToken) {
+TEST_F(HttpServerTest, UnknownPathsLookLikeAWrongToken) {
   start();
   RawClient one = client();
   one.get("/secret/nothing");
@@ -159,7 +158,7 @@ TEST_F(HttpServerTest, ForeignHostsAreForbidden) {
   }
 }
 
-TEST_F(HttpServerTest, LongHeadersAreRefused) {
+TEST_F(HttpServerTest, LongHeadersAreRejected) {
   start();
   const std::string longer(9000, 'a');
   RawClient fits = client();
@@ -173,13 +172,13 @@ TEST_F(HttpServerTest, LongHeadersAreRefused) {
     one.get(target, header);
     EXPECT_EQ(status_line(one.reply()), "HTTP/1.1 431 Request Header Fields Too Large");
   }
-  // Somebody who never ends the line.
+  // A client that never ends the line.
   RawClient endless = client();
   for (int i = 0; i < 1000 && endless.send(longer); ++i) std::this_thread::sleep_for(100us);
   EXPECT_EQ(status_line(endless.reply()), "HTTP/1.1 431 Request Header Fields Too Large");
 }
 
-TEST_F(HttpServerTest, SlowHeadersAreCut) {
+TEST_F(HttpServerTest, SlowHeadersEndTheConnection) {
   options.stall_limit = 100ms;
   start();
   RawClient silent = client();
@@ -206,7 +205,7 @@ TEST_F(HttpServerTest, AStalledDownloadIsClosed) {
   EXPECT_LT(stalled.take_all().size(), big->size());
 }
 
-TEST_F(HttpServerTest, ASlowDownloadGetsAll) {
+TEST_F(HttpServerTest, ASlowDownloadIsCompleted) {
   options.stall_limit = 250ms;
   const auto big = std::make_shared<const std::string>(std::size_t{24} << 20, 'x');
   get = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
@@ -253,7 +252,7 @@ TEST_F(HttpServerTest, TwentyClientsAtOnce) {
   EXPECT_EQ(good, 400);
 }
 
-TEST_F(HttpServerTest, MoreThanTheLimitAreTurnedAway) {
+TEST_F(HttpServerTest, ConnectionsBeyondTheLimitGet503) {
   options.connections_limit = 2;
   start();
   RawClient first = client();
@@ -267,7 +266,7 @@ TEST_F(HttpServerTest, MoreThanTheLimitAreTurnedAway) {
     third.get("/secret/");
     EXPECT_EQ(status_line(third.reply()), "HTTP/1.1 503 Service Unavailable");
     EXPECT_TRUE(third.ended());
-    // Of those that say nothing at most as many again are kept.
+    // Of silent connections, at most the same number again is kept.
     std::deque<RawClient> crowd;
     for (int i = 0; i < 50; ++i) crowd.push_back(client());
     EXPECT_TRUE(crowd.back().ended());
@@ -297,7 +296,7 @@ TEST_F(HttpServerTest, AHandlerThatThrowsIs500) {
   EXPECT_EQ(status_line(one.reply()), "HTTP/1.1 200 OK");
 }
 
-TEST_F(HttpServerTest, AThousandConnectionsLeaveNothing) {
+TEST_F(HttpServerTest, AThousandConnectionsLeakNothing) {
   start();
   const auto round = [&](int count) {
     for (int i = 0; i < count; ++i) {
@@ -316,7 +315,7 @@ TEST_F(HttpServerTest, AThousandConnectionsLeaveNothing) {
   EXPECT_LT(resident_kb(), memory + 1024 + kSanitizerKb);
 }
 
-TEST_F(HttpServerTest, GoesOnAfterItRanOutOfDescriptors) {
+TEST_F(HttpServerTest, ContinuesAfterRunningOutOfDescriptors) {
   start();
   RawClient before = client();
   before.get("/secret/");
@@ -325,7 +324,7 @@ TEST_F(HttpServerTest, GoesOnAfterItRanOutOfDescriptors) {
   getrlimit(RLIMIT_NOFILE, &old);
   const int next = ::dup(0);
   ::close(next);
-  // The client's socket is the last descriptor there is, so the server cannot accept it.
+  // The client's socket takes the last descriptor, so the server cannot accept it.
   const rlimit low{static_cast<rlim_t>(next) + 1, old.rlim_max};
   setrlimit(RLIMIT_NOFILE, &low);
   RawClient one = client();
@@ -344,7 +343,7 @@ TEST_F(HttpServerTest, GoesOnAfterItRanOutOfDescriptors) {
   EXPECT_LT(microseconds(later) - microseconds(usage), 50'000);
 }
 
-TEST_F(HttpServerTest, PlacesThatCannotBeServed) {
+TEST_F(HttpServerTest, InvalidAddressesAndTokensAreErrors) {
   start();
   RecordingHandler nobody;
   const auto kind_of = [&](const std::string& address, std::uint16_t port) -> ErrorKind {
@@ -364,7 +363,7 @@ TEST_F(HttpServerTest, PlacesThatCannotBeServed) {
     EXPECT_THROW(HttpServer({"127.0.0.1", 0, token}, get, nobody), Error) << token;
 }
 
-TEST_F(HttpServerTest, EndsWithClientsConnected) {
+TEST_F(HttpServerTest, StopsWithClientsConnected) {
   start();
   std::deque<RawClient> clients;
   for (int i = 0; i < 10; ++i) clients.push_back(client());
@@ -387,7 +386,7 @@ TEST_F(HttpServerTest, StopBeforeRunIsNotLost) {
 
 HttpServer* signalled = nullptr;
 
-TEST_F(HttpServerTest, ASignalMayStopIt) {
+TEST_F(HttpServerTest, ASignalHandlerMayStopIt) {
   start();
   signalled = server.get();
   const auto old = std::signal(SIGUSR1, [](int) { signalled->stop(); });

@@ -13,7 +13,7 @@
 namespace adasplats {
 namespace {
 
-/// An address as its 4 or 16 bytes: the same one has many texts.
+/// An address as 4 or 16 bytes, because different texts may mean the same address.
 struct NumericAddress {
   int family = AF_UNSPEC;
   std::array<unsigned char, 16> bytes{};
@@ -30,7 +30,7 @@ NumericAddress numeric_address(const std::string& text) {
   return {};
 }
 
-/// Every byte is looked at, so that the time does not say how many were right.
+/// Compares every byte, so that the time does not depend on the number of equal bytes.
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -74,7 +74,7 @@ bool is_plain_path(std::string_view path) {
 struct HostAndPort {
   std::string name;  ///< without brackets
   bool in_brackets = false;
-  std::uint16_t port = 80;  ///< of http where none is named
+  std::uint16_t port = 80;  ///< default of HTTP
 };
 
 std::optional<HostAndPort> split_host(std::string_view host) {
@@ -102,7 +102,7 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<std::string> path_behind_token(std::string_view target, std::string_view token) {
+std::optional<std::string> path_after_token(std::string_view target, std::string_view token) {
   target = target.substr(0, target.find_first_of("?#"));
   if (target.size() < token.size() + 2 || target[0] != '/' || target[token.size() + 1] != '/' ||
       !equal_in_constant_time(target.substr(1, token.size()), token))
@@ -118,15 +118,15 @@ bool is_loopback(const std::string& address) {
          (numeric.family == AF_INET6 && numeric == numeric_address("::1"));
 }
 
-bool is_own_host(std::string_view host, const ListeningPlace& place) {
+bool is_own_host(std::string_view host, const ListenAddress& address) {
   const std::optional<HostAndPort> split = split_host(host);
-  if (!split || split->port != place.port) return false;
+  if (!split || split->port != address.port) return false;
   if (!split->in_brackets && equal_ignoring_case(split->name, "localhost")) return true;
   const NumericAddress numeric = numeric_address(split->name);
-  // An IPv6 address stands in brackets, an IPv4 one does not (RFC 3986, 3.2.2).
+  // IPv6 addresses have brackets, IPv4 addresses do not (RFC 3986, 3.2.2).
   if (numeric.family != (split->in_brackets ? AF_INET6 : AF_INET)) return false;
-  return numeric == numeric_address(place.address) || numeric == numeric_address("127.0.0.1") ||
-         numeric == numeric_address("::1") || !is_loopback(place.address);
+  return numeric == numeric_address(address.address) || numeric == numeric_address("127.0.0.1") ||
+         numeric == numeric_address("::1") || !is_loopback(address.address);
 }
 
 bool is_own_origin(std::string_view origin, std::string_view host) {
@@ -135,13 +135,13 @@ bool is_own_origin(std::string_view origin, std::string_view host) {
          equal_ignoring_case(origin.substr(kScheme.size()), host);
 }
 
-std::string host_of(const ListeningPlace& place) {
-  const NumericAddress numeric = numeric_address(place.address);
+std::string host_of(const ListenAddress& listening) {
+  const NumericAddress numeric = numeric_address(listening.address);
   const bool six = numeric.family == AF_INET6;
-  std::string address = place.address;
+  std::string address = listening.address;
   if (numeric.bytes == NumericAddress{}.bytes) address = six ? "::1" : "127.0.0.1";
   if (six) address = std::string("[") + address + "]";
-  return address + ":" + std::to_string(place.port);
+  return address + ":" + std::to_string(listening.port);
 }
 
 }  // namespace adasplats

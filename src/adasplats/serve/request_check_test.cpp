@@ -14,10 +14,10 @@ namespace {
 using namespace std::string_literals;
 
 std::string path_of(std::string_view target) {
-  return path_behind_token(target, "tok").value_or("-");
+  return path_after_token(target, "tok").value_or("-");
 }
 
-TEST(PathBehindToken, IsDecodedAndWithoutQuery) {
+TEST(PathAfterToken, IsDecodedWithoutQuery) {
   EXPECT_EQ(path_of("/tok/"), "");
   EXPECT_EQ(path_of("/tok/layers/0/table/0.bin"), "layers/0/table/0.bin");
   EXPECT_EQ(path_of("/tok/a?b=/../c"), "a");
@@ -27,29 +27,29 @@ TEST(PathBehindToken, IsDecodedAndWithoutQuery) {
   EXPECT_EQ(path_of("/tok/...") + path_of("/tok/a..b") + path_of("/tok/.a"), "...a..b.a");
 }
 
-TEST(PathBehindToken, NeedsTheToken) {
+TEST(PathAfterToken, NeedsTheToken) {
   for (const char* target : {"", "/", "tok/", "/tok", "/to/", "/tokk/", "/Tok/", "//tok/", "/tok?/",
                              "/%74ok/", "http://h/tok/", "*", "/tox/", "/xok/"})
     EXPECT_EQ(path_of(target), "-") << target;
-  EXPECT_EQ(path_behind_token("/x/", ""), std::nullopt);
+  EXPECT_EQ(path_after_token("/x/", ""), std::nullopt);
 }
 
-TEST(PathBehindToken, RefusesWhatCanBeNoPath) {
+TEST(PathAfterToken, RejectsInvalidPaths) {
   for (const char* target :
        {"/tok/..",     "/tok/../",        "/tok/a/../b", "/tok/a/..",  "/tok/./a", "/tok/%2e%2e/a",
         "/tok/%2E%2e", "/tok/a%2f..%2fb", "/tok/a\\b",   "/tok/a%5cb", "/tok/%00", "/tok/a%00.html",
         "/tok/%0d%0a", "/tok/%7f",        "/tok/%",      "/tok/%1",    "/tok/%zz", "/tok/%-1",
         "/tok/%+1",    "/tok/%0x",        "/tok/% 1"})
     EXPECT_EQ(path_of(target), "-") << target;
-  // Decoded once: this names a file that has a percent sign in its name.
+  // Decoded once: the name contains a percent sign.
   EXPECT_EQ(path_of("/tok/%252e%252e/a"), "%2e%2e/a");
 }
 
 TEST(OwnHost, IsTheAddressOrThisMachine) {
-  const ListeningPlace place{"127.0.0.1", 8123};
+  const ListenAddress listening{"127.0.0.1", 8123};
   for (const char* host : {"127.0.0.1:8123", "localhost:8123", "LocalHost:8123", "[::1]:8123",
                            "[0:0:0:0:0:0:0:1]:8123"})
-    EXPECT_TRUE(is_own_host(host, place)) << host;
+    EXPECT_TRUE(is_own_host(host, listening)) << host;
   const std::string zero = "localhost\0:8123"s;
   for (const std::string& host : {""s,
                                   ":"s,
@@ -73,20 +73,20 @@ TEST(OwnHost, IsTheAddressOrThisMachine) {
                                   "127.0.0.1:8123:8123"s,
                                   "a@127.0.0.1:8123"s,
                                   zero})
-    EXPECT_FALSE(is_own_host(host, place)) << host;
+    EXPECT_FALSE(is_own_host(host, listening)) << host;
 }
 
-TEST(OwnHost, MayLackThePortOfHttp) {
+TEST(OwnHost, MayOmitTheDefaultPort) {
   EXPECT_TRUE(is_own_host("localhost", {"127.0.0.1", 80}));
   EXPECT_TRUE(is_own_host("127.0.0.1", {"127.0.0.1", 80}));
   EXPECT_FALSE(is_own_host("localhost:", {"127.0.0.1", 80}));
 }
 
-TEST(OwnHost, IsAnyNumberBeyondThisMachine) {
-  const ListeningPlace place{"0.0.0.0", 8123};
-  EXPECT_TRUE(is_own_host("192.168.0.1:8123", place));
-  EXPECT_TRUE(is_own_host("[fe80::1]:8123", place));
-  EXPECT_FALSE(is_own_host("evil.example:8123", place));
+TEST(OwnHost, IsAnyNumericAddressBeyondThisMachine) {
+  const ListenAddress listening{"0.0.0.0", 8123};
+  EXPECT_TRUE(is_own_host("192.168.0.1:8123", listening));
+  EXPECT_TRUE(is_own_host("[fe80::1]:8123", listening));
+  EXPECT_FALSE(is_own_host("evil.example:8123", listening));
   EXPECT_TRUE(is_own_host("127.0.0.2:1", {"127.0.0.2", 1}));
   EXPECT_FALSE(is_own_host("127.0.0.3:1", {"127.0.0.2", 1}));
 }
@@ -99,7 +99,7 @@ TEST(OwnOrigin, IsTheHostOverHttp) {
     EXPECT_FALSE(is_own_origin(origin, "localhost:1")) << origin;
 }
 
-TEST(HostOf, IsWhatABrowserCanOpen) {
+TEST(HostOf, CanBeOpenedByABrowser) {
   EXPECT_EQ(host_of({"127.0.0.1", 1}), "127.0.0.1:1");
   EXPECT_EQ(host_of({"::1", 1}), "[::1]:1");
   EXPECT_EQ(host_of({"0.0.0.0", 1}), "127.0.0.1:1");
@@ -108,7 +108,7 @@ TEST(HostOf, IsWhatABrowserCanOpen) {
   EXPECT_FALSE(is_loopback("0.0.0.0") || is_loopback("::") || is_loopback("x"));
 }
 
-TEST(RandomToken, IsLongAndNew) {
+TEST(RandomToken, IsLongAndUnique) {
   std::set<std::string> tokens;
   for (int i = 0; i < 100; ++i) {
     const std::string token = random_token();

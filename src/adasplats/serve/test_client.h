@@ -30,14 +30,14 @@
 
 namespace adasplats {
 
-/// A client that sends whatever bytes it is given, over a plain socket.
+/// A client that sends any bytes over a plain socket.
 class RawClient {
  public:
   struct Frame {
     int opcode = -1;  ///< -1: the connection ended
     bool last = true;
     std::string payload;
-    /// Of a close frame; 0 without one.
+    /// The code of a close frame; 0 for other frames.
     int close_code() const {
       if (opcode != 8 || payload.size() < 2) return 0;
       return static_cast<unsigned char>(payload[0]) << 8 | static_cast<unsigned char>(payload[1]);
@@ -75,7 +75,7 @@ class RawClient {
     drop();
   }
 
-  /// False where the other end has gone.
+  /// False if the server has closed the connection.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -92,11 +92,11 @@ class RawClient {
   }
   std::string host() const { return std::string("127.0.0.1:") + std::to_string(port_); }
 
-  /// At least one more byte to `buffer`; false at the end.
+  /// Appends at least one byte to `buffer_`; false at the end of the connection.
   bool receive() {
     char bytes[65536];
     const ssize_t count = ::recv(socket_, bytes, sizeof bytes, 0);
-    if (count < 0 && errno == EAGAIN) ADD_FAILURE() << "nothing came for five seconds";
+    if (count < 0 && errno == EAGAIN) ADD_FAILURE() << "received nothing for five seconds";
     if (count <= 0) return false;
     buffer_.append(bytes, static_cast<std::size_t>(count));
     return true;
@@ -105,11 +105,11 @@ class RawClient {
     while (buffer_.size() < count && receive()) {
     }
     count = std::min(count, buffer_.size());
-    std::string taken = buffer_.substr(0, count);
+    std::string bytes = buffer_.substr(0, count);
     buffer_.erase(0, count);
-    return taken;
+    return bytes;
   }
-  /// All that comes until the other end closes.
+  /// Everything until the server closes the connection.
   std::string take_all() {
     while (receive()) {
     }
@@ -129,7 +129,7 @@ class RawClient {
     return take(size);
   }
 
-  /// Asks for the WebSocket; the answer.
+  /// Requests the WebSocket and returns the response.
   std::string upgrade(std::string_view target, std::string_view lines = {}) {
     get(target, std::string("Connection: Upgrade\r\nUpgrade: websocket\r\n"
                             "Sec-WebSocket-Version: 13\r\n"
@@ -190,7 +190,7 @@ class RawClient {
   std::string buffer_;
 };
 
-/// Notes what happens to WebSockets, and does what a test wants.
+/// Records the events of WebSockets and runs actions of a test.
 class RecordingHandler final : public WebSocketHandler {
  public:
   using Peer = std::shared_ptr<WebSocketPeer>;
@@ -233,20 +233,20 @@ class RecordingHandler final : public WebSocketHandler {
   std::vector<int> closings_;
 };
 
-/// How many files and sockets this process has open.
+/// Number of open files and sockets of this process.
 inline std::size_t open_descriptors() {
   const std::filesystem::directory_iterator all("/proc/self/fd");
   return static_cast<std::size_t>(std::distance(begin(all), end(all)));
 }
 
-/// Sanitizers keep what was freed for a while.
+/// Sanitizers retain freed memory for a while.
 #ifdef ADASPLATS_SANITIZED
 inline constexpr std::size_t kSanitizerKb = 1 << 20;
 #else
 inline constexpr std::size_t kSanitizerKb = 0;
 #endif
 
-/// The memory of this process.
+/// Resident memory of this process.
 inline std::size_t resident_kb() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -254,7 +254,7 @@ inline std::size_t resident_kb() {
   return 0;
 }
 
-/// Whether something comes true within two seconds.
+/// Whether a condition becomes true within two seconds.
 inline bool soon(const std::function<bool()>& condition) {
   for (int i = 0; i < 400; ++i) {
     if (condition()) return true;
@@ -263,7 +263,7 @@ inline bool soon(const std::function<bool()>& condition) {
   return false;
 }
 
-/// A server of one test, on a thread of its own; options may be changed before start().
+/// A server on its own thread; a test may change the options before start().
 class ServerTest : public testing::Test {
  protected:
   void SetUp() override {

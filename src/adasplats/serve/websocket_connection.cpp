@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #ifdef ADASPLATS_HAVE_BOOST
 
-#include "adasplats/serve/websocket_connection.h"
-
 #include <algorithm>
 #include <atomic>
 #include <boost/asio/post.hpp>
@@ -13,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "adasplats/serve/answer_headers.h"
+#include "adasplats/serve/connection.h"
 
 namespace adasplats {
 namespace {
@@ -25,17 +23,17 @@ namespace websocket = boost::beast::websocket;
 using ErrorCode = boost::system::error_code;
 using Request = http::request<http::empty_body>;
 
-/// A message goes out in frames of so many bytes: each that the socket takes shows that the other
-/// end is alive, and control frames need not wait for a whole scan.
+/// Maximum bytes of a frame. Each frame that is sent shows that the client is alive, and control
+/// frames need not wait for a complete scan.
 constexpr std::size_t kFrameBytes = std::size_t{64} << 10;
-/// What a message costs in the queue besides its bytes.
+/// Overhead of a message in the queue.
 constexpr std::size_t kMessageBytes = 128;
-/// From the wish to close until the socket is closed, whatever the other end does.
+/// Maximum time from the decision to close until the socket is closed.
 constexpr std::chrono::milliseconds kCloseLimit{500};
 
 enum class Queued : std::uint8_t { kept, dropped };
 
-/// The bytes of a close reason: at most 123 (RFC 6455, 5.5), whole characters.
+/// A close reason limited to 123 bytes (RFC 6455, 5.5) without splitting a character.
 std::string_view cut_reason(std::string_view reason) {
   if (reason.size() <= 123) return reason;
   std::size_t size = 123;
@@ -51,12 +49,12 @@ class WebSocketConnection final : public Connection,
                       Request request);
   void accept();
 
-  // Of WebSocketPeer, from any thread.
+  // WebSocketPeer: callable from any thread.
   void send_text(std::string text) override;
   void send_binary(SharedBytes bytes) override;
   void close(std::uint16_t code, std::string_view reason) override;
 
-  // Of Connection, on the server's thread, as all below.
+  // Connection: on the server's thread, like everything below.
   void abort() override;
   void stop() override;
 
@@ -81,17 +79,18 @@ class WebSocketConnection final : public Connection,
   void send_close();
 
   std::shared_ptr<ServerCore> core_;
-  /// Without compression. Gone with the connection: its timer would keep the server running.
+  /// Without compression. Reset when the connection ends, because its timer would keep the server
+  /// running.
   std::optional<websocket::stream<asio::ip::tcp::socket, false>> stream_;
   Request request_;
   beast::flat_buffer buffer_;
   std::deque<Message> queue_;
-  std::size_t sent_bytes_ = 0;  // of the first in the queue
+  std::size_t sent_bytes_ = 0;  // of the first message in the queue
   websocket::close_reason reason_;
   bool opened_ = false;
   bool writing_ = false;
-  bool closing_ = false;     // no more is taken in
-  bool close_sent_ = false;  // async_close is under way
+  bool closing_ = false;     // further messages are dropped
+  bool close_sent_ = false;  // async_close is pending
   bool ended_ = false;
   std::atomic<bool> open_{false};
   std::atomic<std::size_t> queued_bytes_{0};
@@ -102,12 +101,12 @@ WebSocketConnection::WebSocketConnection(asio::ip::tcp::socket socket,
     : core_(std::move(core)), stream_(std::move(socket)), request_(std::move(request)) {
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = core_->options.stall_limit;
-  // Without a sign for half of it a ping is sent.
+  // A ping is sent after half of this time without a frame.
   timeout.idle_timeout = core_->options.stall_limit;
   timeout.keep_alive_pings = true;
   stream_->set_option(timeout);
   stream_->set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-    response.set(http::field::server, "adasplats");  // else Beast names itself and its version
+    response.set(http::field::server, "adasplats");  // instead of Beast and its version
     set_safety_headers(response);
   }));
   stream_->read_message_max(core_->options.message_bytes_limit);
@@ -129,14 +128,14 @@ void WebSocketConnection::accepted(ErrorCode error) {
   if (call_handler([&] { core_->live.opened(shared_from_this()); })) read();
 }
 
-/// False where the handler threw: the connection is then being closed.
+/// False if the handler threw; the connection is then being closed.
 template <class Call>
 bool WebSocketConnection::call_handler(Call call) {
   try {
     call();
     return true;
   } catch (...) {
-    begin_close(1011, "an error of the server", Queued::dropped);
+    begin_close(1011, "internal server error", Queued::dropped);
     return false;
   }
 }
@@ -148,9 +147,9 @@ void WebSocketConnection::read() {
 }
 
 void WebSocketConnection::read_done(ErrorCode error) {
-  // With a close frame of ours under way its operation sees the end of the connection.
+  // After our close frame, async_close handles the end of the connection.
   if (ended_ || close_sent_) return;
-  // Beast has sent the other end what was wrong (RFC 6455, 7.1.7), or answered its close frame.
+  // Beast has sent the error to the client (RFC 6455, 7.1.7) or answered its close frame.
   if (error) return abort();
   if (closing_) return;
   if (stream_->got_binary()) return begin_close(1003, "text messages only", Queued::dropped);
@@ -180,11 +179,11 @@ void WebSocketConnection::on_server_thread(Function function) {
 void WebSocketConnection::enqueue(SharedBytes bytes, bool binary) {
   Message message{std::move(bytes), binary};
   if (!open_) return;
-  // Counted here: what the server's thread has not yet seen waits as well.
+  // Counted here to include messages that the server's thread has not received yet.
   if (queued_bytes_ += message.cost(); queued_bytes_ > core_->options.queued_bytes_limit) {
     open_ = false;
     on_server_thread([](WebSocketConnection& self) {
-      self.begin_close(1008, "too slow for what is sent", Queued::dropped);
+      self.begin_close(1008, "client too slow", Queued::dropped);
     });
     return;
   }
@@ -247,7 +246,7 @@ void WebSocketConnection::begin_close(std::uint16_t code, std::string_view reaso
 
 void WebSocketConnection::stop() {
   if (opened_)
-    begin_close(1001, "the server ends", Queued::dropped);
+    begin_close(1001, "server shutting down", Queued::dropped);
   else
     abort();
 }
@@ -271,7 +270,7 @@ void WebSocketConnection::abort() {
   try {
     core_->live.closed(self);
   } catch (...) {
-    // There is nothing left to close.
+    // The connection is closed already.
   }
 }
 

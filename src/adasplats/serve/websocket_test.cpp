@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// WebSockets over plain sockets; the oracle is RFC 6455, and what http_server.h promises.
+// WebSockets over plain sockets; the oracle is RFC 6455 and http_server.h.
 #include <stdexcept>
 
 #include "adasplats/serve/http_server.h"
@@ -17,11 +17,11 @@ using Frame = RawClient::Frame;
 
 class WebSocketTest : public ServerTest {
  protected:
-  /// Whether soon `count` peers were opened, and each was closed once.
+  /// Waits until `count` peers were opened and each was closed once.
   bool all_closed_once(std::size_t count) {
     return soon([&] { return live.closings() == std::vector<int>(count, 1); });
   }
-  /// The close code after a client has sent this.
+  /// The close code after a client has sent these bytes.
   int code_after(const std::string& bytes) {
     RawClient one = live_client();
     one.send(bytes);
@@ -88,7 +88,7 @@ TEST_F(WebSocketTest, OtherOriginsAreForbidden) {
             "403");
 }
 
-TEST_F(WebSocketTest, WhatIsNoHandshakeIsRefused) {
+TEST_F(WebSocketTest, InvalidHandshakesAreRejected) {
   start();
   RawClient plain = client();
   plain.get("/secret/live");
@@ -123,15 +123,15 @@ TEST_F(WebSocketTest, BadMessagesEndTheConnection) {
   EXPECT_EQ(code_after(Raw::frame(0x82, "x")), 1003);
   EXPECT_EQ(code_after(Raw::frame(0x82, "")), 1003);
   EXPECT_EQ(code_after(Raw::frame(0x81, "\xff")), 1007);
-  EXPECT_EQ(code_after(Raw::frame(0x81, "\xc3")), 1007);              // cut short
+  EXPECT_EQ(code_after(Raw::frame(0x81, "\xc3")), 1007);              // truncated
   EXPECT_EQ(code_after(Raw::frame(0x81, "\xed\xa0\x80")), 1007);      // a surrogate
   EXPECT_EQ(code_after(Raw::frame(0x81, "text", false)), 1002);       // not masked
   EXPECT_EQ(code_after(Raw::frame(0xc1, "text")), 1002);              // a reserved bit
   EXPECT_EQ(code_after(Raw::frame(0x83, "text")), 1002);              // no such opcode
-  EXPECT_EQ(code_after(Raw::frame(0x8b, "")), 1002);                  // likewise
-  EXPECT_EQ(code_after(Raw::frame(0x09, "")), 1002);                  // a ping in parts
+  EXPECT_EQ(code_after(Raw::frame(0x8b, "")), 1002);                  // reserved opcode
+  EXPECT_EQ(code_after(Raw::frame(0x09, "")), 1002);                  // a fragmented ping
   EXPECT_EQ(code_after(Raw::frame(0x89, big.substr(0, 126))), 1002);  // a long ping
-  EXPECT_EQ(code_after(Raw::frame(0x80, "text")), 1002);              // goes on with nothing
+  EXPECT_EQ(code_after(Raw::frame(0x80, "text")), 1002);              // a continuation of nothing
   EXPECT_EQ(code_after(Raw::frame(0x01, "a") + Raw::frame(0x81, "b")), 1002);
   EXPECT_EQ(code_after(Raw::frame(0x88, "x")), 1002);  // half a close code
   EXPECT_TRUE(all_closed_once(18));
@@ -182,7 +182,7 @@ TEST_F(WebSocketTest, TheServerCloses) {
     EXPECT_TRUE(one.ended());
   }
   EXPECT_TRUE(all_closed_once(2));
-  // One that does not answer the close is closed, too.
+  // A client that does not answer the close frame is closed, too.
   RawClient mute = live_client();
   mute.send_text("why");
   EXPECT_TRUE(all_closed_once(3));
@@ -197,7 +197,7 @@ TEST_F(WebSocketTest, HandlersThatThrow) {
   EXPECT_TRUE(all_closed_once(2));
 }
 
-TEST_F(WebSocketTest, AClientThatTakesNothingIsClosed) {
+TEST_F(WebSocketTest, AClientThatReadsNothingIsClosed) {
   options.stall_limit = 150ms;
   const auto big = std::make_shared<const std::string>(std::size_t{16} << 20, 'x');
   live.on_text = [&](const auto& peer, std::string_view) { peer->send_binary(big); };
@@ -205,13 +205,13 @@ TEST_F(WebSocketTest, AClientThatTakesNothingIsClosed) {
   RawClient stalled = live_client({}, 4096);
   stalled.send_text("go");
   ASSERT_TRUE(soon([&] { return big.use_count() > 1; }));
-  // It talks all the time, but does not listen.
+  // The client sends all the time but does not read.
   EXPECT_TRUE(soon([&] { return !stalled.send(RawClient::frame(0x8a, "")); }));
   EXPECT_TRUE(all_closed_once(1));
   EXPECT_EQ(big.use_count(), 1);
 }
 
-TEST_F(WebSocketTest, AClientThatIsSilentIsAskedAndClosed) {
+TEST_F(WebSocketTest, ASilentClientGetsAPingAndIsClosed) {
   options.stall_limit = 200ms;
   start();
   RawClient silent = live_client();
@@ -228,7 +228,7 @@ TEST_F(WebSocketTest, AClientThatIsSilentIsAskedAndClosed) {
   EXPECT_EQ(alive.read_message().payload, "still here");
 }
 
-TEST_F(WebSocketTest, ASlowClientGetsAll) {
+TEST_F(WebSocketTest, ASlowClientReceivesEverything) {
   options.stall_limit = 250ms;
   const auto big = std::make_shared<const std::string>(std::size_t{24} << 20, 'x');
   live.on_text = [&](const auto& peer, std::string_view) { peer->send_binary(big); };
@@ -253,7 +253,7 @@ TEST_F(WebSocketTest, TheQueueHasALimit) {
   };
   start();
   RawClient one = live_client();
-  // A part that was just read may count as queued for a moment: six and that one are within 8 MiB.
+  // A part that was just read may still count as queued; six plus that one are within 8 MiB.
   for (int i = 0; i < 12; ++i) {
     if (i % 6 == 0) one.send_text("few");
     EXPECT_EQ(one.read_message().payload.size(), part->size());
@@ -265,7 +265,7 @@ TEST_F(WebSocketTest, TheQueueHasALimit) {
   EXPECT_LT(one.take_all().size(), 9 * part->size());
 }
 
-TEST_F(WebSocketTest, EmptyMessagesFillTheQueueToo) {
+TEST_F(WebSocketTest, EmptyMessagesFillTheQueue) {
   options.queued_bytes_limit = 1 << 20;
   options.stall_limit = 200ms;
   live.on_text = [](const auto& peer, std::string_view) {
@@ -340,7 +340,7 @@ TEST_F(WebSocketTest, AnyThreadMaySend) {
   EXPECT_EQ(next, std::vector(4, 100));
 }
 
-TEST_F(WebSocketTest, StopTellsClientsAndPeersOutliveTheServer) {
+TEST_F(WebSocketTest, StopClosesClientsAndPeersOutliveTheServer) {
   const auto big = std::make_shared<const std::string>(std::size_t{32} << 20, 'x');
   start();
   RawClient polite = live_client();
@@ -364,13 +364,13 @@ TEST_F(WebSocketTest, StopTellsClientsAndPeersOutliveTheServer) {
   const std::shared_ptr<WebSocketPeer> peer = live.peer(0);
   live.forget();
   server.reset();
-  peer->send_text("nobody hears this");
+  peer->send_text("lost");
   peer->send_binary(big);
   peer->close(1000, "");
   EXPECT_EQ(big.use_count(), 1);
 }
 
-TEST_F(WebSocketTest, AThousandConnectionsLeaveNothing) {
+TEST_F(WebSocketTest, AThousandConnectionsLeakNothing) {
   start();
   const auto round = [&](std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {

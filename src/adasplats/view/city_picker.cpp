@@ -10,11 +10,11 @@
 namespace adasplats {
 namespace {
 
-/// Where a ray enters a box; nothing where it misses it. The slabs of Kay and Kajiya 1986.
+/// Where a ray enters a box, or nothing if it misses. Slabs of Kay and Kajiya 1986.
 std::optional<float> entry(const Ray& ray, Vec3f low, Vec3f high) {
   float from = ray.t_min, to = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
-    // Along the other axes alone: 0 / 0 would be NaN.
+    // A parallel axis must not divide: 0 / 0 is NaN.
     if (ray.direction[axis] == 0) {
       if (ray.origin[axis] < low[axis] || ray.origin[axis] > high[axis]) return std::nullopt;
       continue;
@@ -47,7 +47,7 @@ std::optional<CityHit> CityPicker::nearest(const Ray& ray) {
       const float t = intersect_disk(ray, model.disks[i]);
       const std::size_t splat = first_splats_[k] + i;
       if (!std::isfinite(t)) continue;
-      // Of equal ones the first, as a tracer's.
+      // Of equal ranges the lowest index, like a tracer.
       if (best && (t > best->range_m || (t == best->range_m && splat > best->splat))) continue;
       best = {t, splat, model.disks[i], std::nullopt, std::nullopt};
       if (!model.classes.empty()) best->class_id = model.classes[i];
@@ -57,7 +57,7 @@ std::optional<CityHit> CityPicker::nearest(const Ray& ray) {
   return best;
 }
 
-/// The first tiles, nearest first.
+/// The first kMaxTiles crossed tiles, nearest first.
 std::vector<CityPicker::Crossing> CityPicker::crossed(const Ray& ray) const {
   std::vector<Crossing> crossings;
   for (std::size_t k = 0; k < city_.tiles.size(); ++k) {

@@ -15,28 +15,27 @@
 
 namespace adasplats {
 
-/// The splat of a city that a ray meets first.
+/// The nearest splat of a city that a ray hits.
 struct CityHit {
   float range_m = 0;
-  std::size_t splat = 0;  ///< among all of the city, tile after tile
+  std::size_t splat = 0;  ///< index in the city, tile after tile
   Disk disk;              ///< relative to the city's origin
   std::optional<std::uint16_t> class_id;
   std::optional<float> intensity;
 };
 
-/// Casts single rays into a city whose tiles are on disk: into those that a ray crosses, nearest
-/// first, which are loaded one by one; a few stay in memory. Used by one thread.
+/// Casts single rays into a city whose tiles are on disk. Loads the crossed tiles one by one,
+/// nearest first, and keeps a few in memory. Not thread-safe.
 class CityPicker {
  public:
-  /// A ray that met nothing in so many tiles goes no further.
+  /// Maximum number of tiles to test per ray.
   static constexpr std::size_t kMaxTiles = 8;
-  /// Tiles stay in memory while they have no more together (about 100 MB); the last one does in any
-  /// case.
+  /// Maximum splats of the tiles in memory (about 100 MB); the last tile stays whatever its size.
   static constexpr std::size_t kKeptSplats = 2'000'000;
 
   CityPicker(std::filesystem::path folder, CityManifest city);
 
-  /// `ray`: relative to the city's origin. Errors: those of load_city_tile().
+  /// The nearest hit of a ray relative to the city's origin. Errors: those of load_city_tile().
   std::optional<CityHit> nearest(const Ray& ray);
 
  private:
@@ -54,8 +53,8 @@ class CityPicker {
 
   std::filesystem::path folder_;
   CityManifest city_;
-  std::vector<std::size_t> first_splats_;  ///< of each tile
-  std::list<Kept> kept_;                   ///< last used first
+  std::vector<std::size_t> first_splats_;  ///< first splat of each tile
+  std::list<Kept> kept_;                   ///< most recently used first
 };
 
 }  // namespace adasplats

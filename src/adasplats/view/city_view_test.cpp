@@ -27,20 +27,20 @@ ViewScene scene_of(const TemporaryFolder& folder, const CityManifest& city) {
   return scene;
 }
 
-// Oracle: the protocol's table, and the manifest.
-TEST(CityView, PagesServeTheWholeCityAsOneLayer) {
+// Oracle: the table of the protocol and the manifest.
+TEST(CityView, PagesServeTheCityAsOneLayer) {
   const TemporaryFolder folder;
   const CityManifest city = small_city::write_city_with_levels(folder.path());
   const ViewScene scene = scene_of(folder, city);
   const ViewPages pages(scene);
-  const auto told = nlohmann::json::parse(*pages.get("scene.json").body);
-  EXPECT_EQ(told["layers"].size(), 1U);
-  EXPECT_EQ(told["layers"][0]["kind"], "splats");
-  EXPECT_EQ(told["layers"][0]["count"], city.splats());
-  EXPECT_TRUE(told["layers"][0]["has_classes"]);
+  const auto scene_json = nlohmann::json::parse(*pages.get("scene.json").body);
+  EXPECT_EQ(scene_json["layers"].size(), 1U);
+  EXPECT_EQ(scene_json["layers"][0]["kind"], "splats");
+  EXPECT_EQ(scene_json["layers"][0]["count"], city.splats());
+  EXPECT_TRUE(scene_json["layers"][0]["has_classes"]);
   const HttpReply table = pages.get("layers/0/table/0.bin");
   ASSERT_EQ(table.status, 200);
-  const std::uint32_t nodes = told["layers"][0]["nodes"];
+  const std::uint32_t nodes = scene_json["layers"][0]["nodes"];
   ASSERT_EQ(table.body->size(), 48 * std::size_t{nodes});
   std::size_t in_leaves = 0;
   std::vector<bool> is_child(nodes, false);
@@ -64,7 +64,7 @@ TEST(CityView, PagesServeTheWholeCityAsOneLayer) {
   EXPECT_EQ(pages.get("layers/0/nodes/" + std::to_string(nodes) + ".bin").status, 404);
 }
 
-TEST(CityView, WithoutPosesTheSensorStandsAboveTheGround) {
+TEST(CityView, WithoutPosesTheSensorIsAboveTheGround) {
   const TemporaryFolder folder;
   const CityManifest city = small_city::write_city_with_levels(folder.path());
   const ViewScene scene = scene_of(folder, city);
@@ -74,7 +74,7 @@ TEST(CityView, WithoutPosesTheSensorStandsAboveTheGround) {
 }
 
 // Oracle: a tracer over all splats.
-TEST(CityPicker, MeetsWhatATracerMeets) {
+TEST(CityPicker, HitsTheSameSplatsAsATracer) {
   const TemporaryFolder folder;
   const CityManifest city = small_city::write_city(folder.path());
   CityPicker picker(folder.path(), city);
@@ -101,7 +101,7 @@ TEST(CityPicker, MeetsWhatATracerMeets) {
   EXPECT_GT(hits, 100U);
 }
 
-TEST(CityPicker, RaysPastTheCityMeetNothing) {
+TEST(CityPicker, RaysPastTheCityHitNothing) {
   const TemporaryFolder folder;
   const CityManifest city = small_city::write_city(folder.path());
   CityPicker picker(folder.path(), city);

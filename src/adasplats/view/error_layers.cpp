@@ -17,11 +17,11 @@ constexpr std::size_t kNoPart = kParts.size();
 std::size_t part_of(float error_m, const ErrorLimits& limits) {
   if (std::isnan(error_m)) return 3;
   if (error_m < -limits.ghost_m) return 2;
-  if (error_m > limits.fits_m) return 1;
-  return error_m < -limits.fits_m ? 0 : kNoPart;
+  if (error_m > limits.tolerance_m) return 1;
+  return error_m < -limits.tolerance_m ? 0 : kNoPart;
 }
 
-/// The points of some rows.
+/// The points of the given rows.
 PointCloud chosen_rows(const PointCloud& cloud, std::span<const std::uint32_t> rows) {
   PointCloud chosen;
   chosen.origin = cloud.origin;

@@ -12,15 +12,15 @@
 
 namespace adasplats {
 
-/// What parts the beams of an error view; lengths in m.
+/// Limits that divide the beams of an error view into parts, m.
 struct ErrorLimits {
-  float fits_m = 0.1F;   ///< errors up to it are none of the parts
-  float ghost_m = 0.5F;  ///< a surface that much before the measured point was passed by the beam
+  float tolerance_m = 0.1F;  ///< smaller errors are in no part
+  float ghost_m = 0.5F;      ///< the beam passed through a surface this far in front of its point
 };
 
-/// Layers "early" (the model's surface stands before the measured point), "late" (behind it),
-/// "ghosts" (so early that the beam passed through it) and "holes" (the beam meets nothing), each
-/// where there are such points. None for errors without a sign (distances): none is negative.
+/// Layers "early" (the model's surface is in front of the measured point), "late" (behind it),
+/// "ghosts" (so early that the beam passed through it) and "holes" (the beam hits nothing), without
+/// empty ones. No layers for unsigned errors (distances), that is without any negative error.
 std::vector<ViewLayer> error_part_layers(const PointCloud& cloud, std::span<const float> errors_m,
                                          const ErrorLimits& limits, Vec3d origin,
                                          const Executor& executor);

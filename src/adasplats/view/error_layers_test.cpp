@@ -21,7 +21,7 @@ PointCloud line(std::size_t count) {
 }
 
 // Oracle: by hand.
-TEST(ErrorLayers, PartsHoldWhatTheyAreNamedFor) {
+TEST(ErrorLayers, PointsAreInThePartOfTheirError) {
   const std::vector<float> errors_m = {0.05F, -0.05F, -0.2F, 0.3F, 0.4F, -2, kNaN, kNaN, kNaN};
   const std::vector<ViewLayer> layers =
       error_part_layers(line(errors_m.size()), errors_m, {}, {}, Executor(1));
@@ -33,7 +33,7 @@ TEST(ErrorLayers, PartsHoldWhatTheyAreNamedFor) {
     EXPECT_EQ(layers[k].tree.input_size(), expected[k].second) << layers[k].part;
   }
   EXPECT_NEAR(layers[0].tree.nodes().front().low.x, 1002, 1e-3F);
-  EXPECT_EQ(layers[3].tree.elements(0)[0].error, 0) << "not known";
+  EXPECT_EQ(layers[3].tree.elements(0)[0].error, 0) << "unknown";
 }
 
 TEST(ErrorLayers, DistancesHaveNoParts) {

@@ -18,45 +18,45 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Positions and speeds beyond it are nobody's.
-constexpr double kFarthest_m = 1e7;
-/// Of one scan with its sub-rays: one page must not keep the others waiting.
+/// Maximum position and speed.
+constexpr double kMaxDistance_m = 1e7;
+/// Maximum rays of a scan with its sub-rays, so that one page does not delay the others.
 constexpr std::size_t kMaxRays = 4'000'000;
-/// A rotation whose quaternion is of this much other length is a mistake.
+/// Maximum deviation of a quaternion's length from 1.
 constexpr double kNormTolerance = 1e-2;
 
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::usage, message); }
+[[noreturn]] void reject(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
-double number_of(const Json& json, const std::string& name, double least, double most) {
+double number_of(const Json& json, const std::string& name, double min, double max) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
-  if (value >= least && value <= most) return value;
-  refuse(name + ": expected a number from " + Json(least).dump() + " to " + Json(most).dump() +
+  if (value >= min && value <= max) return value;
+  reject(name + ": expected a number from " + Json(min).dump() + " to " + Json(max).dump() +
          ", found " + json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
 }
 
-bool truth_of(const Json& json, const std::string& name) {
-  if (!json.is_boolean()) refuse(name + ": expected true or false");
+bool bool_of(const Json& json, const std::string& name) {
+  if (!json.is_boolean()) reject(name + ": expected true or false");
   return json.get<bool>();
 }
 
 std::string text_of(const Json& json, const std::string& name) {
-  if (!json.is_string()) refuse(name + ": expected a text");
+  if (!json.is_string()) reject(name + ": expected a string");
   return json.get<std::string>();
 }
 
 const Json& member(const Json& json, const std::string& name) {
   const auto found = json.find(name);
-  if (found == json.end()) refuse("'" + name + "' is missing");
+  if (found == json.end()) reject("'" + name + "' is missing");
   return *found;
 }
 
 template <std::size_t N>
 std::array<double, N> numbers_of(const Json& json, const std::string& name) {
   if (!json.is_array() || json.size() != N)
-    refuse(name + ": expected " + std::to_string(N) + " numbers");
+    reject(name + ": expected " + std::to_string(N) + " numbers");
   std::array<double, N> numbers{};
   for (std::size_t i = 0; i < N; ++i)
-    numbers[i] = number_of(json[i], name, -kFarthest_m, kFarthest_m);
+    numbers[i] = number_of(json[i], name, -kMaxDistance_m, kMaxDistance_m);
   return numbers;
 }
 
@@ -65,13 +65,13 @@ Vec3d vector_of(const Json& json, const std::string& name) {
   return {x, y, z};
 }
 
-/// Larger than any clock's seconds.
-constexpr double kLatest_s = 1e11;
+/// Maximum time; more than any clock has seconds.
+constexpr double kMaxTime_s = 1e11;
 
 RigidTransform transform_of(const Json& json, Vec3d origin) {
   const auto [x, y, z, qx, qy, qz, qw] = numbers_of<7>(json, "pose");
   const double norm = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
-  if (!(std::fabs(norm - 1) <= kNormTolerance)) refuse("pose: the quaternion is not of length 1");
+  if (!(std::fabs(norm - 1) <= kNormTolerance)) reject("pose: expected a quaternion of length 1");
   return {rotation_from_quaternion(qw / norm, qx / norm, qy / norm, qz / norm),
           Vec3d{x, y, z} + origin};
 }
@@ -85,11 +85,11 @@ std::string short_number(double value) {
 double number_of(const Json& json, const Setting& setting) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (is_in_range(setting, value)) return value;
-  refuse(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
+  reject(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
          json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
 }
 
-/// Takes the setting of a key from JSON, and notes the option of `simulate` for it.
+/// Sets the setting of a key from JSON and appends the option of `simulate` for it.
 class SettingFromJson {
  public:
   SettingFromJson(const std::string& key, const Json& json, std::vector<std::string>& options)
@@ -102,13 +102,13 @@ class SettingFromJson {
     if (key_ != setting.key && key_ != setting.old_name) return;
     found_ = true;
     if constexpr (std::is_enum_v<T>) {
-      take_word(setting, value);
+      set_word(setting, value);
     } else if constexpr (std::is_same_v<T, int>) {
       const double number = number_of(json_, setting);
-      if (number != std::floor(number)) refuse(key_ + ": expected a whole number");
+      if (number != std::floor(number)) reject(key_ + ": expected a whole number");
       put(setting, static_cast<int>(number), value);
     } else if constexpr (std::is_same_v<T, double>) {
-      // What is infinite by default has no number: 0 and null stand for it.
+      // Settings that are infinite by default: 0 and null mean infinite.
       const bool none = json_.is_null() || json_ == 0;
       if (none && !std::isfinite(T(value))) return;
       put(setting, number_of(json_, setting), value);
@@ -119,7 +119,7 @@ class SettingFromJson {
 
  private:
   template <class T>
-  void take_word(const Setting& setting, T& value) {
+  void set_word(const Setting& setting, T& value) {
     const std::string word = text_of(json_, key_);
     for (const auto& [each, meaning] : words_of(value)) {
       if (each != word) continue;
@@ -130,7 +130,7 @@ class SettingFromJson {
     std::string known;
     for (const auto& [each, meaning] : words_of(value))
       known += (known.empty() ? "" : ", ") + std::string(each);
-    refuse(key_ + ": expected one of " + known);
+    reject(key_ + ": expected one of " + known);
   }
 
   template <class T, class Given>
@@ -147,31 +147,31 @@ class SettingFromJson {
   bool found_ = false;
 };
 
-/// The sensor's own values as settings.
+/// The sensor's values as settings.
 SensorOverrides overrides_of(const LidarModel& sensor) {
   return {sensor.range_noise_m, sensor.min_range_m, sensor.max_range_m, sensor.rotation_hz};
 }
 
 bool set_by_table(LiveSensor& sensor, const std::string& key, const Json& json) {
-  SettingFromJson take(key, json, sensor.options);
+  SettingFromJson setter(key, json, sensor.options);
   SensorOverrides overrides = overrides_of(sensor.settings.sensor);
-  visit_settings(overrides, take);
+  visit_settings(overrides, setter);
   overrides.apply(sensor.settings.sensor);
-  visit_settings(sensor.settings.beam, take);
-  visit_settings(sensor.settings.weather, take);
-  return take.found();
+  visit_settings(sensor.settings.beam, setter);
+  visit_settings(sensor.settings.weather, setter);
+  return setter.found();
 }
 
 void set(LiveSensor& sensor, const std::string& name, const Json& json) {
   if (set_by_table(sensor, name, json)) return;
   if (name == "noise") {
-    sensor.settings.noise = truth_of(json, name);
+    sensor.settings.noise = bool_of(json, name);
     if (!sensor.settings.noise) sensor.options.emplace_back("--no-noise");
   } else if (name == "rolling_shutter") {
-    sensor.rolling_shutter = truth_of(json, name);
+    sensor.rolling_shutter = bool_of(json, name);
     if (sensor.rolling_shutter) sensor.options.emplace_back("--rolling-shutter");
   } else {
-    refuse("unknown setting '" + name.substr(0, 60) + "'");
+    reject("unknown setting '" + name.substr(0, 60) + "'");
   }
 }
 
@@ -179,16 +179,16 @@ LiveSensor parse_sensor(const Json& json) {
   LiveSensor sensor = live_sensor(text_of(member(json, "name"), "name"));
   const auto settings = json.find("settings");
   if (settings == json.end()) return sensor;
-  if (!settings->is_object()) refuse("settings: expected an object");
+  if (!settings->is_object()) reject("settings: expected an object");
   for (const auto& [name, value] : settings->items()) set(sensor, name, value);
   if (!(sensor.settings.sensor.min_range_m < sensor.settings.sensor.max_range_m))
-    refuse("min_range_m: expected less than max_range_m");
+    reject("min_range_m: expected less than max_range_m");
   check(sensor.settings);
   const std::size_t firings = sensor.settings.sensor.rays_per_scan();
   const std::size_t hits = sensor.settings.beam.hits_per_firing();
   if (firings > kMaxRays / hits)
-    refuse(std::to_string(firings) + " firings of " + std::to_string(hits) +
-           " rays a scan, expected at most " + std::to_string(kMaxRays) + " rays");
+    reject(std::to_string(firings) + " firings of " + std::to_string(hits) +
+           " rays per scan; expected at most " + std::to_string(kMaxRays) + " rays");
   return sensor;
 }
 
@@ -200,7 +200,7 @@ LivePose parse_pose(const Json& json, Vec3d origin) {
   if (json.contains("yaw_rate_rad_s"))
     pose.yaw_rate_rad_s = number_of(json["yaw_rate_rad_s"], "yaw_rate_rad_s", -100, 100);
   if (json.contains("time_s"))
-    pose.time_s = number_of(json["time_s"], "time_s", -kLatest_s, kLatest_s);
+    pose.time_s = number_of(json["time_s"], "time_s", -kMaxTime_s, kMaxTime_s);
   return pose;
 }
 
@@ -217,7 +217,7 @@ PickMessage parse_pick(const Json& json, Vec3d origin) {
   pick.id = static_cast<std::int64_t>(number_of(member(json, "id"), "id", 0, 1e15));
   pick.origin = vector_of(member(json, "origin"), "origin") + origin;
   pick.direction = vector_of(member(json, "direction"), "direction");
-  if (!(length(pick.direction) > 0)) refuse("direction: expected one that is not zero");
+  if (!(length(pick.direction) > 0)) reject("direction: expected a non-zero vector");
   return pick;
 }
 
@@ -242,7 +242,7 @@ std::string LiveSensor::key() const { return name + dump(settings_json(*this)); 
 LiveSensor live_sensor(const std::string& name) {
   const std::vector<std::string> names = lidar_model_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    refuse(unknown_lidar_model(name.substr(0, 60)));
+    reject(unknown_lidar_model(name.substr(0, 60)));
   LiveSensor sensor;
   sensor.name = name;
   sensor.settings.sensor = load_lidar_model(name);
@@ -251,8 +251,8 @@ LiveSensor live_sensor(const std::string& name) {
 
 ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor) {
   const TimedPose reference = {pose.time_s, pose.world_from_sensor};
-  const bool stands = length(pose.velocity_m_s) == 0 && pose.yaw_rate_rad_s == 0;
-  if (!sensor.rolling_shutter || stands) return {reference, {}};
+  const bool is_at_rest = length(pose.velocity_m_s) == 0 && pose.yaw_rate_rad_s == 0;
+  if (!sensor.rolling_shutter || is_at_rest) return {reference, {}};
   const double duration_s = 1 / sensor.settings.sensor.rotation_hz;
   const auto at = [&](double time_s) {
     const Mat3d turn = rotation_from_yaw_pitch_roll(pose.yaw_rate_rad_s * time_s, 0, 0);
@@ -271,10 +271,10 @@ LiveMessage parse_live_message(std::string_view text, Vec3d origin) {
   if (type == "pose") return parse_pose(json, origin);
   if (type == "ready") return ReadyMessage();
   if (type == "sensor") return parse_sensor(json);
-  if (type == "run") return RunMessage{truth_of(member(json, "on"), "on")};
+  if (type == "run") return RunMessage{bool_of(member(json, "on"), "on")};
   if (type == "pick") return parse_pick(json, origin);
   if (type == "object") return parse_object(json, origin);
-  refuse("unknown type '" + type.substr(0, 60) + "'");
+  reject("unknown type '" + type.substr(0, 60) + "'");
 }
 
 std::string error_message(std::string_view what) {

@@ -15,32 +15,32 @@
 
 namespace adasplats {
 
-/// A LiDAR as the page chose it.
+/// A LiDAR as chosen on the page.
 struct LiveSensor {
-  std::string name;  ///< of the library; files are not read for somebody at the other end of a wire
+  std::string name;  ///< of the library; files are rejected, because the request is remote
   ScanSettings settings;
   bool rolling_shutter = false;
-  std::vector<std::string> options;  ///< that make `adasplats simulate` do the same
+  std::vector<std::string> options;  ///< of `adasplats simulate` for the same settings
 
   /// Equal for equal sensors and settings.
   std::string key() const;
 };
 
-/// A sensor of the library with its own settings. Errors: usage (an unknown name).
+/// A sensor of the library with its default settings. Errors: usage (an unknown name).
 LiveSensor live_sensor(const std::string& name);
 
-/// Where the sensor is and how it moves, in world axes.
+/// Pose and motion of the sensor in world axes.
 struct LivePose {
   RigidTransform world_from_sensor;
   Vec3d velocity_m_s;
   double yaw_rate_rad_s = 0;  ///< about its own z
-  double time_s = 0;          ///< of the world: what moves in it is where it is then
+  double time_s = 0;          ///< world time, for moving objects
 };
 
-/// One revolution around that pose; still where the sensor does not move or has no rolling shutter.
+/// One revolution around a pose; without motion if the sensor is at rest or has no rolling shutter.
 ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor);
 
-// What the page can say (docs/viewer_protocol.md, "WebSocket live").
+// Messages of the page (docs/viewer_protocol.md, "WebSocket live").
 struct RunMessage {
   bool on = false;
 };
@@ -52,14 +52,14 @@ struct PickMessage {
 };
 struct ObjectMessage {
   std::size_t id = 0;  ///< in scene.json
-  /// Where it stands from now on; nothing: where the world file has it.
+  /// New pose; nothing: back to the motion of the world file.
   std::optional<RigidTransform> world_from_object;
 };
 using LiveMessage =
     std::variant<LiveSensor, LivePose, RunMessage, ReadyMessage, PickMessage, ObjectMessage>;
 
-/// `origin`: of the page's positions, world coordinates. Errors: data (no JSON object), usage
-/// (anything else that is wrong: an unknown type, sensor or setting, a value out of range).
+/// `origin`: origin of the page's positions in world coordinates. Errors: data (not a JSON object),
+/// usage (an unknown type, sensor or setting, or a value out of range).
 LiveMessage parse_live_message(std::string_view text, Vec3d origin);
 
 /// {"type": "error", ...}

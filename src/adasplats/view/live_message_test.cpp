@@ -23,24 +23,24 @@ T parsed(const std::string& text) {
   return std::get<T>(parse_live_message(text, kOrigin));
 }
 
-/// The kind of the Error that a message gives and what it says.
-std::pair<ErrorKind, std::string> refusal(const std::string& text) {
+/// Kind and text of the error of a message.
+std::pair<ErrorKind, std::string> error_of(const std::string& text) {
   try {
     parse_live_message(text, kOrigin);
   } catch (const Error& error) {
     return {error.kind(), error.what()};
   }
-  ADD_FAILURE() << "taken: " << text.substr(0, 100);
+  ADD_FAILURE() << "accepted: " << text.substr(0, 100);
   return {};
 }
 
-void expect_refused(const std::string& text, const std::string& says) {
-  const auto [kind, message] = refusal(text);
+void expect_rejected(const std::string& text, const std::string& expected) {
+  const auto [kind, message] = error_of(text);
   EXPECT_EQ(kind, ErrorKind::usage) << text.substr(0, 100);
-  EXPECT_NE(message.find(says), std::string::npos) << message;
+  EXPECT_NE(message.find(expected), std::string::npos) << message;
 }
 
-TEST(LiveMessage, PosesComeToWorldCoordinates) {
+TEST(LiveMessage, PosesAreConvertedToWorldCoordinates) {
   const auto pose =
       parsed<LivePose>(R"({"type":"pose","pose":[1,2,3,0,0,0.7071067811865476,0.7071067811865476],)"
                        R"("velocity_m_s":[4,5,6],"yaw_rate_rad_s":0.5})");
@@ -58,20 +58,20 @@ TEST(LiveMessage, APoseMayHaveATime) {
   EXPECT_EQ(pose.time_s, 12.5);
   EXPECT_EQ(motion_of(pose, live_sensor("velodyne-vlp-16")).reference.time_s, 12.5);
   EXPECT_EQ(parsed<LivePose>(R"({"type":"pose","pose":[0,0,0,0,0,0,1]})").time_s, 0);
-  expect_refused(R"({"type":"pose","pose":[0,0,0,0,0,0,1],"time_s":"now"})", "time_s");
+  expect_rejected(R"({"type":"pose","pose":[0,0,0,0,0,0,1],"time_s":"now"})", "time_s");
 }
 
-TEST(LiveMessage, ObjectsAreTakenElsewhereAndLetGo) {
-  const auto taken = parsed<ObjectMessage>(R"({"type":"object","id":3,"pose":[1,2,3,0,0,0,1]})");
-  EXPECT_EQ(taken.id, 3U);
-  ASSERT_TRUE(taken.world_from_object);
-  EXPECT_EQ(taken.world_from_object->translation.x, 1001);
+TEST(LiveMessage, ObjectsAreMovedAndReset) {
+  const auto moved = parsed<ObjectMessage>(R"({"type":"object","id":3,"pose":[1,2,3,0,0,0,1]})");
+  EXPECT_EQ(moved.id, 3U);
+  ASSERT_TRUE(moved.world_from_object);
+  EXPECT_EQ(moved.world_from_object->translation.x, 1001);
   EXPECT_FALSE(parsed<ObjectMessage>(R"({"type":"object","id":0,"pose":null})").world_from_object);
-  expect_refused(R"({"type":"object","id":0})", "pose");
-  expect_refused(R"({"type":"object","id":-1,"pose":null})", "id");
+  expect_rejected(R"({"type":"object","id":0})", "pose");
+  expect_rejected(R"({"type":"object","id":-1,"pose":null})", "id");
 }
 
-TEST(LiveMessage, WordsWithoutMoreInThem) {
+TEST(LiveMessage, RunAndReady) {
   EXPECT_TRUE(parsed<RunMessage>(R"({"type":"run","on":true})").on);
   EXPECT_FALSE(parsed<RunMessage>(R"({"type":"run","on":false})").on);
   parsed<ReadyMessage>(R"({"type":"ready"})");
@@ -85,7 +85,7 @@ TEST(LiveMessage, PicksKeepTheirNumber) {
   EXPECT_EQ(pick.direction.z, -2);
 }
 
-TEST(LiveMessage, ASensorWithoutSettingsIsTheLibrarys) {
+TEST(LiveMessage, ASensorWithoutSettingsHasTheDefaults) {
   const auto sensor = parsed<LiveSensor>(R"({"type":"sensor","name":"velodyne-vlp-16"})");
   EXPECT_EQ(sensor.settings.sensor.rings(), 16U);
   EXPECT_TRUE(sensor.options.empty());
@@ -93,7 +93,7 @@ TEST(LiveMessage, ASensorWithoutSettingsIsTheLibrarys) {
   EXPECT_EQ(sensor.key(), live_sensor("velodyne-vlp-16").key());
 }
 
-TEST(LiveMessage, SettingsChangeTheSensorAndTellTheOptions) {
+TEST(LiveMessage, SettingsChangeTheSensorAndItsOptions) {
   const auto sensor = parsed<LiveSensor>(
       R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false,"max_range_m":40.5,)"
       R"("sub_rays":7,"returns":2,"rolling_shutter":true,"fog_visibility_m":150,"rain_mm_h":0}})");
@@ -101,74 +101,75 @@ TEST(LiveMessage, SettingsChangeTheSensorAndTellTheOptions) {
   EXPECT_EQ(sensor.settings.sensor.max_range_m, 40.5);
   EXPECT_EQ(sensor.settings.beam.sub_rays, 7);
   EXPECT_EQ(sensor.settings.weather.fog_visibility_m, 150);
-  // In the order in which they were given; what is as it was has no option.
+  // Unchanged settings have no option.
   const std::vector<std::string> options = {
       "--no-noise", "--max-range",       "40.5",  "--sub-rays", "7", "--returns",
       "2",          "--rolling-shutter", "--fog", "150"};
-  std::vector<std::string> told = sensor.options;
+  std::vector<std::string> found = sensor.options;
   std::vector<std::string> expected = options;
-  std::sort(told.begin(), told.end());
+  std::sort(found.begin(), found.end());
   std::sort(expected.begin(), expected.end());
-  EXPECT_EQ(told, expected);
+  EXPECT_EQ(found, expected);
   EXPECT_NE(sensor.key(), live_sensor("velodyne-vlp-16").key());
 }
 
-TEST(LiveMessage, WhatTheSensorMessageSaysCanBeSaidBack) {
+TEST(LiveMessage, ASensorMessageCanBeSentBack) {
   const auto sensor = parsed<LiveSensor>(
       R"({"type":"sensor","name":"ouster-os1-64","settings":{"returns":1,"rain_mm_h":12.5}})");
-  const Json told = Json::parse(sensor_message(sensor, 64, 1024, 65536));
-  EXPECT_EQ(told["rings"], 64);
-  EXPECT_EQ(told["options"], Json({"--rain", "12.5"}));
-  const Json said = {{"type", "sensor"}, {"name", told["name"]}, {"settings", told["settings"]}};
-  EXPECT_EQ(parsed<LiveSensor>(said.dump()).key(), sensor.key());
+  const Json message = Json::parse(sensor_message(sensor, 64, 1024, 65536));
+  EXPECT_EQ(message["rings"], 64);
+  EXPECT_EQ(message["options"], Json({"--rain", "12.5"}));
+  const Json request = {
+      {"type", "sensor"}, {"name", message["name"]}, {"settings", message["settings"]}};
+  EXPECT_EQ(parsed<LiveSensor>(request.dump()).key(), sensor.key());
 }
 
-// Files are not read for somebody at the other end of a wire.
-TEST(LiveMessage, FilesAreNoSensors) {
+// Remote requests must not read files.
+TEST(LiveMessage, FilesAreRejected) {
   for (const char* name : {"/etc/passwd", "../sensor.toml", "sensors/velodyne-vlp-16.toml", ""})
-    expect_refused(Json({{"type", "sensor"}, {"name", name}}).dump(), "unknown sensor");
+    expect_rejected(Json({{"type", "sensor"}, {"name", name}}).dump(), "unknown sensor");
 }
 
-TEST(LiveMessage, WhatIsNoObjectIsBadData) {
+TEST(LiveMessage, OtherThanAnObjectIsADataError) {
   for (const char* text : {"", "null", "[]", "3", "\"pose\"", "{", "{\"type\":\"run\",}", "\xff"})
-    EXPECT_EQ(refusal(text).first, ErrorKind::data) << text;
-  EXPECT_EQ(refusal(std::string(8000, '[')).first, ErrorKind::data);
-  EXPECT_EQ(refusal(std::string(8000, '[') + std::string(8000, ']')).first, ErrorKind::data);
+    EXPECT_EQ(error_of(text).first, ErrorKind::data) << text;
+  EXPECT_EQ(error_of(std::string(8000, '[')).first, ErrorKind::data);
+  EXPECT_EQ(error_of(std::string(8000, '[') + std::string(8000, ']')).first, ErrorKind::data);
 }
 
-TEST(LiveMessage, WrongMessagesAreRefusedByName) {
-  expect_refused("{}", "'type' is missing");
-  expect_refused(R"({"type":3})", "type");
-  expect_refused(R"({"type":"fly"})", "unknown type 'fly'");
-  expect_refused(R"({"type":"run"})", "'on' is missing");
-  expect_refused(R"({"type":"run","on":1})", "true or false");
-  expect_refused(R"({"type":"pose","pose":[1,2,3]})", "7 numbers");
-  expect_refused(R"({"type":"pose","pose":[1,2,"3",0,0,0,1]})", "number");
-  expect_refused(R"({"type":"pose","pose":[1,2,1e300,0,0,0,1]})", "number");
-  expect_refused(R"({"type":"pose","pose":[1,2,null,0,0,0,1]})", "number");
-  expect_refused(R"({"type":"pose","pose":[1,2,3,0,0,0,2]})", "length 1");
-  expect_refused(R"({"type":"pose","pose":[1,2,3,0,0,0,0]})", "length 1");
-  expect_refused(R"({"type":"pick","id":1,"origin":[0,0,0],"direction":[0,0,0]})", "direction");
-  expect_refused(R"({"type":"pick","id":-1,"origin":[0,0,0],"direction":[0,0,1]})", "id");
+TEST(LiveMessage, InvalidMessagesAreRejectedByName) {
+  expect_rejected("{}", "'type' is missing");
+  expect_rejected(R"({"type":3})", "type");
+  expect_rejected(R"({"type":"fly"})", "unknown type 'fly'");
+  expect_rejected(R"({"type":"run"})", "'on' is missing");
+  expect_rejected(R"({"type":"run","on":1})", "true or false");
+  expect_rejected(R"({"type":"pose","pose":[1,2,3]})", "7 numbers");
+  expect_rejected(R"({"type":"pose","pose":[1,2,"3",0,0,0,1]})", "number");
+  expect_rejected(R"({"type":"pose","pose":[1,2,1e300,0,0,0,1]})", "number");
+  expect_rejected(R"({"type":"pose","pose":[1,2,null,0,0,0,1]})", "number");
+  expect_rejected(R"({"type":"pose","pose":[1,2,3,0,0,0,2]})", "length 1");
+  expect_rejected(R"({"type":"pose","pose":[1,2,3,0,0,0,0]})", "length 1");
+  expect_rejected(R"({"type":"pick","id":1,"origin":[0,0,0],"direction":[0,0,0]})", "direction");
+  expect_rejected(R"({"type":"pick","id":-1,"origin":[0,0,0],"direction":[0,0,1]})", "id");
 }
 
-TEST(LiveMessage, SettingsOutOfRangeAreRefused) {
+TEST(LiveMessage, SettingsOutOfRangeAreRejected) {
   const auto with = [](const std::string& settings) {
     return R"({"type":"sensor","name":"velodyne-vlp-16","settings":)" + settings + "}";
   };
-  expect_refused(with("3"), "object");
-  expect_refused(with(R"({"colour":1})"), "unknown setting 'colour'");
-  expect_refused(with(R"({"max_range_m":-1})"), "max_range_m");
-  expect_refused(with(R"({"max_range_m":"far"})"), "max_range_m");
-  expect_refused(with(R"({"min_range_m":50,"max_range_m":50})"), "min_range_m");
-  expect_refused(with(R"({"sub_rays":1000000})"), "sub_rays");
-  expect_refused(with(R"({"sub_rays":2})"), "2");  // cannot stand evenly around the axis
-  expect_refused(with(R"({"returns":1.5})"), "whole");
-  expect_refused(with(R"({"rain_mm_h":-3})"), "rain_mm_h");
-  expect_refused(with(R"({"rotation_hz":0})"), "rotation_hz");
+  expect_rejected(with("3"), "object");
+  expect_rejected(with(R"({"colour":1})"), "unknown setting 'colour'");
+  expect_rejected(with(R"({"max_range_m":-1})"), "max_range_m");
+  expect_rejected(with(R"({"max_range_m":"far"})"), "max_range_m");
+  expect_rejected(with(R"({"min_range_m":50,"max_range_m":50})"), "min_range_m");
+  expect_rejected(with(R"({"sub_rays":1000000})"), "sub_rays");
+  expect_rejected(with(R"({"sub_rays":2})"), "2");  // cannot be spaced evenly around the axis
+  expect_rejected(with(R"({"returns":1.5})"), "whole");
+  expect_rejected(with(R"({"rain_mm_h":-3})"), "rain_mm_h");
+  expect_rejected(with(R"({"rotation_hz":0})"), "rotation_hz");
 }
 
-TEST(LiveMessage, EverySettingOfBeamsAndWeatherIsTaken) {
+TEST(LiveMessage, EverySettingOfBeamsAndWeatherIsAccepted) {
   const auto sensor = parsed<LiveSensor>(
       R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"depth":3,"depth_gap_m":0.2,)"
       R"("separation_m":0.5,"return_mode":"last","white_intensity":100,"fog_visibility_m":0}})");
@@ -184,25 +185,25 @@ TEST(LiveMessage, EverySettingOfBeamsAndWeatherIsTaken) {
   EXPECT_EQ(sensor.options, options);
 }
 
-TEST(LiveMessage, WordsThatAreNotKnownAreRefused) {
+TEST(LiveMessage, UnknownWordsAreRejected) {
   const std::string start = R"({"type":"sensor","name":"velodyne-vlp-16","settings":)";
-  expect_refused(start + R"({"return_mode":"best"}})", "strongest, first, last");
-  expect_refused(start + R"({"return_mode":1}})", "text");
-  expect_refused(start + R"({"sub_rays":65}})", "1 to 64");
-  expect_refused(start + R"({"rotation_hz":1e-300}})", "rotation_hz");
+  expect_rejected(start + R"({"return_mode":"best"}})", "strongest, first, last");
+  expect_rejected(start + R"({"return_mode":1}})", "string");
+  expect_rejected(start + R"({"sub_rays":65}})", "1 to 64");
+  expect_rejected(start + R"({"rotation_hz":1e-300}})", "rotation_hz");
 }
 
-TEST(LiveMessage, AScanThatTakesForeverIsRefused) {
-  expect_refused(R"({"type":"sensor","name":"livox-mid-40","settings":{"rotation_hz":0.1,)"
-                 R"("sub_rays":19,"returns":1}})",
-                 "rays a scan");
+TEST(LiveMessage, AScanWithTooManyRaysIsRejected) {
+  expect_rejected(R"({"type":"sensor","name":"livox-mid-40","settings":{"rotation_hz":0.1,)"
+                  R"("sub_rays":19,"returns":1}})",
+                  "rays per scan");
 }
 
-TEST(LiveMessage, NothingOfALongNameIsKept) {
-  EXPECT_LT(refusal(R"({"type":")" + std::string(10'000, 'x') + "\"}").second.size(), 200U);
+TEST(LiveMessage, ErrorsOfLongNamesAreShort) {
+  EXPECT_LT(error_of(R"({"type":")" + std::string(10'000, 'x') + "\"}").second.size(), 200U);
 }
 
-// Oracle: where something is that moves at a constant speed and turns at a constant rate.
+// Oracle: analytic motion at constant speed and turn rate.
 TEST(LivePose, ARollingShutterMovesTheSensorAroundItsPose) {
   LiveSensor sensor = live_sensor("velodyne-vlp-16");
   LivePose pose;
@@ -219,7 +220,7 @@ TEST(LivePose, ARollingShutterMovesTheSensorAroundItsPose) {
     EXPECT_NEAR(at.translation.x, 5 + 10 * time_s, 1e-9);
     EXPECT_NEAR(std::atan2(at.rotation.rows[1].x, at.rotation.rows[0].x), time_s, 1e-6);
   }
-  EXPECT_TRUE(motion_of({}, sensor).knots.empty()) << "that stands";
+  EXPECT_TRUE(motion_of({}, sensor).knots.empty()) << "at rest";
 }
 
 }  // namespace

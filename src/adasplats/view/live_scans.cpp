@@ -28,36 +28,36 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Scans that may be under way to a page that has not yet said that it drew them.
-constexpr int kMaxUnderWay = 2;
-/// Questions that a page may have open.
+/// Maximum number of scans sent to a page before it is ready for more.
+constexpr int kMaxPending = 2;
+/// Maximum number of open picks of a page.
 constexpr std::size_t kMaxPicks = 32;
-/// A page has nothing of more, and other pages wait.
+/// Minimum time between scans of a page; it could not show more, and other pages wait.
 constexpr Clock::duration kMinInterval = std::chrono::milliseconds(33);
-/// Sensors whose rays are kept, over all pages.
+/// Maximum number of cached simulators of all pages.
 constexpr std::size_t kMaxSimulators = 8;
 
 struct Client {
   std::shared_ptr<WebSocketPeer> peer;
   std::shared_ptr<const LiveSensor> sensor;
-  bool sensor_is_new = true;  ///< the page has not been sent it
+  bool sensor_is_new = true;  ///< the page has not received its description
   LivePose pose;
   bool running = false;
-  int under_way = 0;
+  int pending = 0;
   std::uint64_t next_number = 0;
   Clock::time_point next_scan;
   std::deque<PickMessage> picks;
-  std::map<std::size_t, RigidTransform> placed;  ///< objects that the page took elsewhere
+  std::map<std::size_t, RigidTransform> placed;  ///< objects that the page has moved
 
   bool wants_scan(Clock::time_point now) const {
-    return running && under_way < kMaxUnderWay && next_scan <= now;
+    return running && pending < kMaxPending && next_scan <= now;
   }
   bool has_work(Clock::time_point now) const {
     return sensor_is_new || !picks.empty() || wants_scan(now);
   }
 };
 
-/// What the simulating thread does next, taken out of a Client.
+/// The next work of the simulating thread, copied from a Client.
 struct Work {
   std::shared_ptr<WebSocketPeer> peer;
   std::shared_ptr<const LiveSensor> sensor;
@@ -75,7 +75,7 @@ struct Simulator {
   ImageSize size;
 };
 
-/// Rays of the sensors that were used last.
+/// Simulators of the most recently used sensors.
 class Simulators {
  public:
   Simulators(const ScanScene& scene, const Executor& executor)
@@ -98,10 +98,10 @@ class Simulators {
  private:
   const ScanScene& scene_;
   const Executor& executor_;
-  std::vector<Simulator> kept_;  ///< last used first
+  std::vector<Simulator> kept_;  ///< most recently used first
 };
 
-/// Objects where the page has them whose scan is next, the others on their own way.
+/// Places the objects for the page whose scan is next; unmoved objects have their own motion.
 class PlacedObjects {
  public:
   explicit PlacedObjects(const ViewScene& scene) : scene_(scene) {
@@ -173,39 +173,39 @@ class LiveScans::Implementation {
                                        [&](const Client& c) { return c.peer == peer; });
       if (client == clients_.end()) return;
       if (const auto* const object = std::get_if<ObjectMessage>(&message)) check(*object);
-      std::visit([&](auto&& part) { take(*client, std::forward<decltype(part)>(part)); },
+      std::visit([&](auto&& part) { apply(*client, std::forward<decltype(part)>(part)); },
                  std::move(message));
     }
     changed_.notify_all();
   }
 
  private:
-  static void take(Client& client, LiveSensor&& sensor) {
+  static void apply(Client& client, LiveSensor&& sensor) {
     client.sensor = std::make_shared<const LiveSensor>(std::move(sensor));
     client.sensor_is_new = true;
   }
-  static void take(Client& client, const LivePose& pose) { client.pose = pose; }
-  static void take(Client& client, const RunMessage& run) { client.running = run.on; }
-  static void take(Client& client, ReadyMessage /*ready*/) {
-    client.under_way = std::max(client.under_way - 1, 0);
+  static void apply(Client& client, const LivePose& pose) { client.pose = pose; }
+  static void apply(Client& client, const RunMessage& run) { client.running = run.on; }
+  static void apply(Client& client, ReadyMessage /*ready*/) {
+    client.pending = std::max(client.pending - 1, 0);
   }
   void check(const ObjectMessage& object) const {
     if (object.id >= scene_.objects.size())
-      throw Error(ErrorKind::usage, "there is no object " + std::to_string(object.id));
+      throw Error(ErrorKind::usage, "unknown object " + std::to_string(object.id));
   }
-  static void take(Client& client, const ObjectMessage& object) {
+  static void apply(Client& client, const ObjectMessage& object) {
     if (object.world_from_object)
       client.placed.insert_or_assign(object.id, *object.world_from_object);
     else
       client.placed.erase(object.id);
   }
-  static void take(Client& client, const PickMessage& pick) {
+  static void apply(Client& client, const PickMessage& pick) {
     if (client.picks.size() >= kMaxPicks)
-      throw Error(ErrorKind::usage, "more than " + std::to_string(kMaxPicks) + " open questions");
+      throw Error(ErrorKind::usage, "more than " + std::to_string(kMaxPicks) + " open picks");
     client.picks.push_back(pick);
   }
 
-  /// The next client's work; waits where there is none. Nothing: the end.
+  /// Waits for the next work of a client. Nothing: the server stops.
   std::optional<Work> next_work() {
     std::unique_lock lock(mutex_);
     while (!stopping_) {
@@ -213,7 +213,7 @@ class LiveScans::Implementation {
       for (std::size_t i = 0; i < clients_.size(); ++i) {
         if (!clients_[i].has_work(now)) continue;
         Work work = work_of(clients_[i], now);
-        // Behind the others: everybody's turn comes.
+        // Move it to the end, so that every client gets its turn.
         std::rotate(clients_.begin() + static_cast<std::ptrdiff_t>(i),
                     clients_.begin() + static_cast<std::ptrdiff_t>(i) + 1, clients_.end());
         return work;
@@ -235,16 +235,15 @@ class LiveScans::Implementation {
     work.placed = client.placed;
     work.number = client.next_number++;
     client.next_scan = now + kMinInterval;
-    ++client.under_way;
+    ++client.pending;
     return work;
   }
 
-  /// When a client that is ready may have its next scan.
+  /// The earliest time at which a waiting client may get its next scan.
   Clock::time_point wake_time(Clock::time_point now) const {
     Clock::time_point time = now + std::chrono::seconds(1);
     for (const Client& client : clients_)
-      if (client.running && client.under_way < kMaxUnderWay)
-        time = std::min(time, client.next_scan);
+      if (client.running && client.pending < kMaxPending) time = std::min(time, client.next_scan);
     return time;
   }
 
@@ -254,7 +253,7 @@ class LiveScans::Implementation {
         perform(*work);
       } catch (const std::exception& error) {
         work->peer->send_text(error_message(with_settings_as_options(error.what())));
-      } catch (...) {  // an interruption: whoever waits for it ends the server as well
+      } catch (...) {  // an interruption, which also ends the server
       }
     }
   }
@@ -288,13 +287,13 @@ class LiveScans::Implementation {
     work.peer->send_binary(scan_packet(scan, head));
   }
 
-  /// Of the model, once: the same for every scan.
+  /// Computed once per model, so that all scans have the same scale.
   float full_intensity() {
     if (full_intensity_) return *full_intensity_;
     if (scene_.model != nullptr) {
       full_intensity_ = full_intensity_of(scene_.model->attributes().intensities);
     } else {
-      // Of a city that is not in memory: most of them are no larger.
+      // Estimate for a city on disk: the upper end of its range of intensities.
       const float high = intensity_range_of(scene_.layers.front()).high;
       full_intensity_ = full_intensity_of(std::span(&high, 1));
     }
@@ -304,12 +303,12 @@ class LiveScans::Implementation {
   const ViewScene& scene_;
   const Executor& executor_;
   std::shared_ptr<const LiveSensor> first_sensor_;
-  Simulators simulators_;  ///< of the simulating thread alone, as the next two
+  Simulators simulators_;  ///< this and the next two: only used by the simulating thread
   PlacedObjects objects_;
   std::optional<float> full_intensity_;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< for the members below
   std::condition_variable changed_;
-  std::vector<Client> clients_;  ///< whose turn is next stands first
+  std::vector<Client> clients_;  ///< the next one to serve is first
   bool stopping_ = false;
   std::thread thread_;
 };
@@ -326,7 +325,7 @@ void LiveScans::opened(const std::shared_ptr<WebSocketPeer>& peer) {
 
 void LiveScans::received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) {
   try {
-    if (!implementation_) throw Error(ErrorKind::usage, "there is no model to simulate scans in");
+    if (!implementation_) throw Error(ErrorKind::usage, "no model to simulate scans in");
     implementation_->received(peer, text);
   } catch (const Error& error) {
     constexpr std::uint16_t kInvalidPayload = 1007;  // RFC 6455, 7.4.1

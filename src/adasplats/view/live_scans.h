@@ -10,9 +10,9 @@
 
 namespace adasplats {
 
-/// Drives a LiDAR for every page that is connected (docs/viewer_protocol.md, "WebSocket live"): one
-/// thread of its own simulates, page by page in turn, each with its own sensor and pose. A page
-/// gets a scan when it is ready for one, so one that stalls costs nothing.
+/// Simulates a LiDAR for every connected page (docs/viewer_protocol.md, "WebSocket live"), each
+/// with its own sensor and pose. One thread serves the pages in turn. A page gets a scan when it is
+/// ready for one, so a stalled page costs nothing.
 class LiveScans final : public WebSocketHandler {
  public:
   /// Scene and executor must outlive it.

@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
-/// The other end of a WebSocket that takes down what it is sent.
+/// A WebSocket peer that records what it is sent.
 class Listener final : public WebSocketPeer {
  public:
   void send_text(std::string text) override {
@@ -34,27 +34,28 @@ class Listener final : public WebSocketPeer {
     add([&] { close_code_ = code; });
   }
 
-  /// The next packet; null where none comes.
+  /// The next packet; null after the limit.
   SharedBytes packet(std::chrono::milliseconds limit = 10s) {
     std::unique_lock lock(mutex_);
-    if (!heard_.wait_for(lock, limit, [&] { return packets_.size() > packets_taken_; })) return {};
+    if (!changed_.wait_for(lock, limit, [&] { return packets_.size() > packets_taken_; }))
+      return {};
     return packets_[packets_taken_++];
   }
-  /// The next text of that type; null where none comes.
+  /// The next message of a type; null after 10 s.
   Json text(const std::string& type) {
     std::unique_lock lock(mutex_);
     Json found;
-    heard_.wait_for(lock, 10s, [&] {
+    changed_.wait_for(lock, 10s, [&] {
       while (texts_taken_ < texts_.size() && found.is_null())
         if (texts_[texts_taken_++]["type"] == type) found = texts_[texts_taken_ - 1];
       return !found.is_null();
     });
     return found;
   }
-  /// Whether so many texts come.
+  /// Waits for `count` messages.
   bool wait_for_texts(std::size_t count) {
     std::unique_lock lock(mutex_);
-    return heard_.wait_for(lock, 10s, [&] { return texts_.size() >= count; });
+    return changed_.wait_for(lock, 10s, [&] { return texts_.size() >= count; });
   }
   int close_code() {
     const std::lock_guard lock(mutex_);
@@ -63,16 +64,16 @@ class Listener final : public WebSocketPeer {
 
  private:
   template <class F>
-  void add(F&& what) {
+  void add(F&& append) {
     {
       const std::lock_guard lock(mutex_);
-      what();
+      append();
     }
-    heard_.notify_all();
+    changed_.notify_all();
   }
 
   std::mutex mutex_;
-  std::condition_variable heard_;
+  std::condition_variable changed_;
   std::vector<Json> texts_;
   std::vector<SharedBytes> packets_;
   std::size_t texts_taken_ = 0;
@@ -91,15 +92,15 @@ float number(const SharedBytes& packet, std::size_t index) {
   return value;
 }
 
-/// A page that is connected to the room.
+/// A page connected to the room.
 struct Page {
-  explicit Page(LiveScans& live) : live_(live) { live_.opened(ear); }
-  ~Page() { live_.closed(ear); }
+  explicit Page(LiveScans& live) : live_(live) { live_.opened(peer); }
+  ~Page() { live_.closed(peer); }
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
-  void say(const std::string& text) { live_.received(ear, text); }
+  void send(const std::string& text) { live_.received(peer, text); }
 
-  std::shared_ptr<Listener> ear = std::make_shared<Listener>();
+  std::shared_ptr<Listener> peer = std::make_shared<Listener>();
   LiveScans& live_;
 };
 
@@ -108,7 +109,7 @@ constexpr const char* kReady = R"({"type":"ready"})";
 constexpr const char* kVlp16 =
     R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false}})";
 
-/// A wall of 10 m x 10 m across x in the room, 4 m before the sensor.
+/// A room with a wall of 10 m x 10 m across x, 4 m in front of the sensor.
 struct RoomWithWall : Room {
   RoomWithWall() {
     MeshModel wall;
@@ -129,7 +130,7 @@ struct RoomWithWall : Room {
   }
 };
 
-/// Least x of the echoes of a class in the sensor's frame; 1000: there are none.
+/// Minimum x of the echoes of a class in the sensor's frame; 1000 without any.
 float nearest_of_class(const SharedBytes& packet, std::uint16_t class_id) {
   float nearest = 1000;
   for (std::size_t i = 0; i < word(packet, 3); ++i)
@@ -138,53 +139,53 @@ float nearest_of_class(const SharedBytes& packet, std::uint16_t class_id) {
   return nearest;
 }
 
-// Oracle: where the wall was put.
-TEST(LiveScans, AnObjectIsWhereThePageTookIt) {
+// Oracle: the position of the wall.
+TEST(LiveScans, AnObjectIsWhereThePageMovedIt) {
   RoomWithWall room;
   ASSERT_EQ(room.view.objects.size(), 1U);
   LiveScans live(room.view, room.executor);
   Page page(live), other(live);
-  const auto nearest = [](Page& each, const std::string& said) {
-    each.say(kVlp16);
-    each.say(R"({"type":"pose","pose":[1.5,0,1.7,0,0,0,1]})");
-    if (!said.empty()) each.say(said);
-    each.say(kRun);
-    // Two may have been under way before.
+  const auto nearest = [](Page& each, const std::string& message) {
+    each.send(kVlp16);
+    each.send(R"({"type":"pose","pose":[1.5,0,1.7,0,0,0,1]})");
+    if (!message.empty()) each.send(message);
+    each.send(kRun);
+    // Two scans may have been pending before.
     for (int i = 0; i < 3; ++i) {
-      each.ear->packet();
-      each.say(kReady);
+      each.peer->packet();
+      each.send(kReady);
     }
-    return nearest_of_class(each.ear->packet(), 99);
+    return nearest_of_class(each.peer->packet(), 99);
   };
   EXPECT_NEAR(nearest(page, ""), 4, 0.01);
   EXPECT_NEAR(nearest(page, R"({"type":"object","id":0,"pose":[3.5,0,1.7,0,0,0,1]})"), 2, 0.01);
-  EXPECT_NEAR(nearest(other, ""), 4, 0.01) << "another page's is where it was";
+  EXPECT_NEAR(nearest(other, ""), 4, 0.01) << "of another page";
   EXPECT_NEAR(nearest(page, R"({"type":"object","id":0,"pose":null})"), 4, 0.01);
-  page.say(R"({"type":"object","id":1,"pose":null})");
-  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("object 1"),
+  page.send(R"({"type":"object","id":1,"pose":null})");
+  EXPECT_NE(page.peer->text("error")["message"].get<std::string>().find("object 1"),
             std::string::npos);
 }
 
-TEST(LiveScans, APageIsToldItsSensorAndGetsNoScanBeforeItAsks) {
+TEST(LiveScans, APageGetsItsSensorAndNoScanBeforeItRuns) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  const Json sensor = page.ear->text("sensor");
+  const Json sensor = page.peer->text("sensor");
   EXPECT_EQ(sensor["name"], "hdl-64-paper");
   EXPECT_EQ(sensor["rings"], 64);
   EXPECT_EQ(sensor["columns"], 2250);
-  EXPECT_EQ(page.ear->packet(100ms), nullptr);
+  EXPECT_EQ(page.peer->packet(100ms), nullptr);
 }
 
-// Oracle: the floor is at 0, so points of the lower rings lie 1.7 m below the sensor.
+// Oracle: the floor is at 0, so points of the lower rings are 1.7 m below the sensor.
 TEST(LiveScans, ScansAreThoseOfTheChosenSensorAtThePose) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  page.say(kVlp16);
-  page.say(R"({"type":"pose","pose":[2,1,1.7,0,0,0,1]})");
-  page.say(kRun);
-  const SharedBytes packet = page.ear->packet();
+  page.send(kVlp16);
+  page.send(R"({"type":"pose","pose":[2,1,1.7,0,0,0,1]})");
+  page.send(kRun);
+  const SharedBytes packet = page.peer->packet();
   ASSERT_NE(packet, nullptr);
   EXPECT_EQ(word(packet, 0), 0x4e435341U);
   EXPECT_EQ(word(packet, 5), 16U) << "rings";
@@ -202,35 +203,35 @@ TEST(LiveScans, ScansAreThoseOfTheChosenSensorAtThePose) {
   EXPECT_GT(on_wall, 500U);
 }
 
-TEST(LiveScans, TwoScansAreUnderWayAndReadyLetsOneMoreCome) {
+TEST(LiveScans, TwoScansArePendingAndReadyRequestsOneMore) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  page.say(kVlp16);
-  page.say(kRun);
-  ASSERT_NE(page.ear->packet(), nullptr);
-  ASSERT_NE(page.ear->packet(), nullptr);
-  EXPECT_EQ(page.ear->packet(300ms), nullptr) << "a page that stalls gets no third one";
-  page.say(kReady);
-  const SharedBytes third = page.ear->packet();
+  page.send(kVlp16);
+  page.send(kRun);
+  ASSERT_NE(page.peer->packet(), nullptr);
+  ASSERT_NE(page.peer->packet(), nullptr);
+  EXPECT_EQ(page.peer->packet(300ms), nullptr) << "a third scan for a stalled page";
+  page.send(kReady);
+  const SharedBytes third = page.peer->packet();
   ASSERT_NE(third, nullptr);
   EXPECT_EQ(word(third, 2), 2U) << "number";
-  page.say(R"({"type":"run","on":false})");
-  page.say(kReady);
-  EXPECT_EQ(page.ear->packet(300ms), nullptr);
+  page.send(R"({"type":"run","on":false})");
+  page.send(kReady);
+  EXPECT_EQ(page.peer->packet(300ms), nullptr);
 }
 
-TEST(LiveScans, PagesDriveForThemselves) {
+TEST(LiveScans, PagesHaveTheirOwnSensors) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page first(live);
   Page second(live);
-  first.say(kVlp16);
-  second.say(R"({"type":"sensor","name":"velodyne-vlp-32c"})");
-  first.say(kRun);
-  second.say(kRun);
-  const SharedBytes of_first = first.ear->packet();
-  const SharedBytes of_second = second.ear->packet();
+  first.send(kVlp16);
+  second.send(R"({"type":"sensor","name":"velodyne-vlp-32c"})");
+  first.send(kRun);
+  second.send(kRun);
+  const SharedBytes of_first = first.peer->packet();
+  const SharedBytes of_second = second.peer->packet();
   ASSERT_TRUE(of_first != nullptr && of_second != nullptr);
   EXPECT_EQ(word(of_first, 5), 16U);
   EXPECT_EQ(word(of_second, 5), 32U);
@@ -240,8 +241,8 @@ TEST(LiveScans, APickNamesTheSplat) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  page.say(R"({"type":"pick","id":5,"origin":[0.05,0.05,3],"direction":[0,0,-2]})");
-  const Json hit = page.ear->text("picked");
+  page.send(R"({"type":"pick","id":5,"origin":[0.05,0.05,3],"direction":[0,0,-2]})");
+  const Json hit = page.peer->text("picked");
   EXPECT_EQ(hit["id"], 5);
   ASSERT_TRUE(hit["hit"]);
   EXPECT_NEAR(hit["range_m"], 3, 1e-5);
@@ -252,35 +253,35 @@ TEST(LiveScans, APickNamesTheSplat) {
   EXPECT_NEAR(hit["radius_m"], 0.09, 1e-6);
   const Disk& disk = room.model.splats()->disks.at(hit["primitive"]);
   EXPECT_NEAR(disk.center.x, 0.05, 0.1);
-  page.say(R"({"type":"pick","id":6,"origin":[0,0,3],"direction":[0,0,1]})");
-  EXPECT_FALSE(page.ear->text("picked")["hit"]);
+  page.send(R"({"type":"pick","id":6,"origin":[0,0,3],"direction":[0,0,1]})");
+  EXPECT_FALSE(page.peer->text("picked")["hit"]);
 }
 
-TEST(LiveScans, WhatIsWrongIsToldAndChangesNothing) {
+TEST(LiveScans, InvalidMessagesAreReportedAndChangeNothing) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  page.say(kVlp16);
-  page.say(R"({"type":"sensor","name":"/etc/passwd"})");
-  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("unknown sensor"),
+  page.send(kVlp16);
+  page.send(R"({"type":"sensor","name":"/etc/passwd"})");
+  EXPECT_NE(page.peer->text("error")["message"].get<std::string>().find("unknown sensor"),
             std::string::npos);
-  page.say(kRun);
-  const SharedBytes packet = page.ear->packet();
+  page.send(kRun);
+  const SharedBytes packet = page.peer->packet();
   ASSERT_NE(packet, nullptr);
   EXPECT_EQ(word(packet, 5), 16U);
-  EXPECT_EQ(page.ear->close_code(), 0);
-  page.say("no JSON");
-  EXPECT_EQ(page.ear->close_code(), 1007);
+  EXPECT_EQ(page.peer->close_code(), 0);
+  page.send("not JSON");
+  EXPECT_EQ(page.peer->close_code(), 1007);
 }
 
-TEST(LiveScans, EveryQuestionIsAnsweredOrRefused) {
+TEST(LiveScans, EveryPickIsAnsweredOrRejected) {
   const Room room;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  constexpr std::size_t kQuestions = 2000;
-  for (std::size_t i = 0; i < kQuestions; ++i)
-    page.say(R"({"type":"pick","id":1,"origin":[0,0,3],"direction":[0,0,-1]})");
-  EXPECT_TRUE(page.ear->wait_for_texts(kQuestions + 1)) << "and the sensor";
+  constexpr std::size_t kPicks = 2000;
+  for (std::size_t i = 0; i < kPicks; ++i)
+    page.send(R"({"type":"pick","id":1,"origin":[0,0,3],"direction":[0,0,-1]})");
+  EXPECT_TRUE(page.peer->wait_for_texts(kPicks + 1)) << "picks and the sensor";
 }
 
 TEST(LiveScans, WithoutAModelNothingIsSimulated) {
@@ -289,8 +290,8 @@ TEST(LiveScans, WithoutAModelNothingIsSimulated) {
   room.view.model = nullptr;
   LiveScans live(room.view, room.executor);
   Page page(live);
-  page.say(kRun);
-  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("no model"),
+  page.send(kRun);
+  EXPECT_NE(page.peer->text("error")["message"].get<std::string>().find("no model"),
             std::string::npos);
 }
 

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// A node is halved so often: along its longest side each time.
+/// A node is halved this often, each time along its longest side.
 constexpr int kHalvings = 3;
 
 Vec3f center_of(const MeshElement& t) {
@@ -17,7 +17,7 @@ Vec3f center_of(const MeshElement& t) {
 }
 
 std::uint8_t intensity_byte(float intensity) {
-  if (!(intensity > 0)) return 0;  // also where it is not known
+  if (!(intensity > 0)) return 0;  // also NaN
   return static_cast<std::uint8_t>(std::lround(255 * std::min(intensity, 1.0F)));
 }
 
@@ -81,24 +81,24 @@ std::vector<MeshTree::Part> MeshTree::split(const Part& part) {
   std::vector<Part> parts = {part};
   for (int halving = 0; halving < kHalvings; ++halving) {
     std::vector<Part> halves;
-    for (const Part& whole : parts) {
-      if (whole.end - whole.begin < 2) {
-        halves.push_back(whole);
+    for (const Part& half : parts) {
+      if (half.end - half.begin < 2) {
+        halves.push_back(half);
         continue;
       }
-      const LevelNode box = node_of(whole);
+      const LevelNode box = node_of(half);
       const Vec3f size = box.high - box.low;
       const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      const std::size_t middle = whole.begin + (whole.end - whole.begin) / 2;
+      const std::size_t middle = half.begin + (half.end - half.begin) / 2;
       const auto at = [&](std::size_t i) {
         return elements_.begin() + static_cast<std::ptrdiff_t>(i);
       };
-      std::nth_element(at(whole.begin), at(middle), at(whole.end),
+      std::nth_element(at(half.begin), at(middle), at(half.end),
                        [axis](const MeshElement& a, const MeshElement& b) {
                          return center_of(a)[axis] < center_of(b)[axis];
                        });
-      halves.push_back({whole.begin, middle, part.level + 1});
-      halves.push_back({middle, whole.end, part.level + 1});
+      halves.push_back({half.begin, middle, part.level + 1});
+      halves.push_back({middle, half.end, part.level + 1});
     }
     parts = std::move(halves);
   }

@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// One triangle as the page reads it (docs/viewer_protocol.md, "A layer's tree").
+/// One triangle in the layout of the page (docs/viewer_protocol.md, "A layer's tree").
 struct MeshElement {
   Vec3f corners[3];
   std::uint16_t class_id = 0;
@@ -23,19 +23,19 @@ struct MeshElement {
 };
 static_assert(sizeof(MeshElement) == 40);
 
-/// The triangles of a mesh in a tree of the form of a LevelTree: leaves hold at most `kLeafSize`
-/// triangles that lie near each other, inner nodes hold none, and are larger than any detail, so
-/// that they always give way to their children. Memory: 40 bytes a triangle.
+/// The triangles of a mesh in a tree like a LevelTree. Leaves have at most `kLeafSize` neighbouring
+/// triangles. Inner nodes have none; their spacing is so large that the page always replaces them
+/// by their children. Memory: 40 bytes per triangle.
 class MeshTree {
  public:
   static constexpr std::size_t kLeafSize = 16'384;
 
-  /// `shift` adds to the vertices to make them the page's. `intensities`: one a triangle (0..1), or
-  /// empty.
+  /// `shift` is added to the vertices to get the page's coordinates. `intensities`: one per
+  /// triangle (0..1), or empty.
   MeshTree(const TriangleMesh& mesh, std::span<const float> intensities, Vec3d shift);
 
   std::span<const LevelNode> nodes() const { return nodes_; }
-  /// Of node `n` (< nodes().size()).
+  /// Elements of node `n` (< nodes().size()).
   std::span<const MeshElement> elements(std::size_t n) const;
   std::size_t input_size() const { return elements_.size(); }
 
@@ -45,7 +45,7 @@ class MeshTree {
   std::vector<Part> split(const Part& part);
 
   std::vector<LevelNode> nodes_;
-  std::vector<std::size_t> firsts_;  ///< of each node in `elements_`; inner ones have no elements
+  std::vector<std::size_t> firsts_;  ///< first element of each node
   std::vector<MeshElement> elements_;
 };
 

@@ -57,7 +57,7 @@ TEST(MeshTree, EveryTriangleIsInOneLeafWithinItsBox) {
   EXPECT_EQ(classes, std::multiset<std::uint16_t>(mesh.classes.begin(), mesh.classes.end()));
 }
 
-TEST(MeshTree, OfNoneAndOfOne) {
+TEST(MeshTree, EmptyAndSmallMeshes) {
   const MeshTree none({}, {}, {});
   ASSERT_EQ(none.nodes().size(), 1U);
   EXPECT_EQ(none.nodes()[0].count, 0U);

@@ -7,14 +7,14 @@
 
 namespace adasplats {
 
-/// A file of the viewer's page (viewer/), embedded when the program is built.
+/// A file of the viewer's page (viewer/), embedded at build time.
 struct PageFile {
   std::string_view name;  ///< "index.html"
   std::string_view content_type;
   std::string_view bytes;
 };
 
-/// Empty where the program was built without Node.js, or with -DADASPLATS_VIEWER=OFF.
+/// Empty if the program was built without Node.js or with -DADASPLATS_VIEWER=OFF.
 std::span<const PageFile> page_files();
 
 }  // namespace adasplats

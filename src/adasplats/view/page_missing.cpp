@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/view/page_files.h"
 
-// Compiled where the page is not built (cmake/Viewer.cmake).
+// Used if the page is not built (cmake/Viewer.cmake).
 #ifndef ADASPLATS_HAVE_PAGE
 
 namespace adasplats {

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float kLongestPick_m = 1e5F;
+constexpr float kMaxPick_m = 1e5F;
 
 void add_class(Json& json, const ViewScene& scene, std::uint16_t id) {
   const SemanticClass* const known = scene.labels ? scene.labels->find(id) : nullptr;
@@ -47,7 +47,7 @@ void add_geometry(Json& json, const SceneView& view, std::uint32_t primitive) {
   add_disk(json, view.disks[primitive]);
 }
 
-/// What the ray meets in a model in memory; nothing: `false`.
+/// Adds the hit in a model in memory; false: no hit.
 bool add_hit_of_model(Json& json, const ViewScene& scene, const Ray& ray,
                       const Executor& executor) {
   Hit hit;
@@ -60,7 +60,7 @@ bool add_hit_of_model(Json& json, const ViewScene& scene, const Ray& ray,
   return true;
 }
 
-/// The same in a city on disk.
+/// Adds the hit in a city on disk; false: no hit.
 bool add_hit_of_city(Json& json, const ViewScene& scene, const Ray& ray) {
   const std::optional<CityHit> hit = scene.picker->nearest(ray);
   if (!hit) return false;
@@ -78,7 +78,7 @@ std::string picked_message(const ViewScene& scene, const PickMessage& pick,
                            const Executor& executor) {
   const Vec3d direction = (1 / length(pick.direction)) * pick.direction;
   const Ray ray = {vec_cast<float>(pick.origin - scene.place->origin()), 0,
-                   vec_cast<float>(direction), kLongestPick_m};
+                   vec_cast<float>(direction), kMaxPick_m};
   Json json = {{"type", "picked"}, {"id", pick.id}, {"hit", false}};
   const bool hit = scene.model != nullptr ? add_hit_of_model(json, scene, ray, executor)
                                           : add_hit_of_city(json, scene, ray);

@@ -10,7 +10,7 @@
 
 namespace adasplats {
 
-/// {"type": "picked", ...}: what a ray meets first in the scene's place (not null).
+/// {"type": "picked", ...}: the nearest hit of a ray in `scene.place`, which must not be null.
 std::string picked_message(const ViewScene& scene, const PickMessage& pick,
                            const Executor& executor);
 

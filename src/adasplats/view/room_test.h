@@ -9,8 +9,8 @@
 
 namespace adasplats {
 
-/// A floor of 20 m x 20 m at height 0 with a wall at x = 8 m, in disks a decimetre apart, far from
-/// the world's origin; the floor's points beside it with errors.
+/// A floor of 20 m x 20 m at height 0 with a wall at x = 8 m, far from the world's origin, of disks
+/// 0.1 m apart; and a layer of their centers with errors.
 struct Room {
   Executor executor{1};
   ProgressSink progress;

@@ -43,7 +43,7 @@ static_assert(sizeof(PacketPoint) == 24);
 
 std::uint16_t intensity_code(float intensity, float full) {
   const double share = static_cast<double>(intensity) / static_cast<double>(full);
-  // A comparison that NaN fails, too.
+  // Also rejects NaN.
   if (!(share > 0)) return 0;
   return static_cast<std::uint16_t>(std::lround(std::min(share, 1.0) * 65535));
 }
@@ -51,10 +51,11 @@ std::uint16_t intensity_code(float intensity, float full) {
 void require_size(std::size_t points, std::initializer_list<std::size_t> attributes) {
   for (const std::size_t size : attributes)
     if (size != 0 && size != points)
-      throw std::logic_error("scan packet: an attribute of another size than the points");
+      throw std::logic_error(
+          "scan packet: the size of an attribute differs from the number of points");
 }
 
-/// The packet without its points, which add_point() writes.
+/// Writes the head of a packet and then its points.
 class PacketWriter {
  public:
   PacketWriter(const ScanPacketHead& head, const RigidTransform& world_from_sensor,
@@ -78,14 +79,14 @@ class PacketWriter {
   }
 
   void add_point(const PacketPoint& point) {
-    std::memcpy(bytes_->data() + place_, &point, sizeof(point));
-    place_ += sizeof(point);
+    std::memcpy(bytes_->data() + offset_, &point, sizeof(point));
+    offset_ += sizeof(point);
   }
   std::shared_ptr<const std::string> bytes() const { return bytes_; }
 
  private:
   std::shared_ptr<std::string> bytes_;
-  std::size_t place_ = sizeof(PacketHead);
+  std::size_t offset_ = sizeof(PacketHead);
 };
 
 double elevation_rad(Vec3f point) {
@@ -93,7 +94,7 @@ double elevation_rad(Vec3f point) {
   return std::atan2(p.z, std::hypot(p.x, p.y));
 }
 
-/// Rows and columns of directions.
+/// Rings and columns of directions.
 class DirectionGrid {
  public:
   DirectionGrid(const KittiScan& scan, const std::vector<std::uint32_t>& points,
@@ -178,12 +179,12 @@ std::shared_ptr<const std::string> recorded_scan_packet(const KittiScan& scan,
 }
 
 float full_intensity_of(std::span<const float> intensities) {
-  float greatest = 0;
+  float max = 0;
   for (const float intensity : intensities)
-    if (std::isfinite(intensity)) greatest = std::max(greatest, intensity);
+    if (std::isfinite(intensity)) max = std::max(max, intensity);
   for (const float full : {1.0F, 255.0F, 65535.0F})
-    if (greatest <= full) return full;
-  return greatest;
+    if (max <= full) return full;
+  return max;
 }
 
 }  // namespace adasplats

@@ -15,7 +15,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kPi = 3.14159265358979323846;
 
-/// Reads a packet by the bytes that docs/viewer_protocol.md names.
+/// Reads a packet by the layout of docs/viewer_protocol.md.
 class Packet {
  public:
   explicit Packet(const std::shared_ptr<const std::string>& bytes) : bytes_(bytes) {}
@@ -112,14 +112,14 @@ TEST(ScanPacket, IntensitiesAreClamped) {
   EXPECT_EQ(bytes.intensity(1), 65535);
 }
 
-TEST(ScanPacket, OfNoPoints) {
+TEST(ScanPacket, WithoutPoints) {
   const Packet packet(scan_packet({}, {.rings = 64}));
   ASSERT_EQ(packet.size(), 80U);
   EXPECT_EQ(packet.word(3), 0U);
-  EXPECT_EQ(packet.real(14), 1.0F);  // qw of no turn
+  EXPECT_EQ(packet.real(14), 1.0F);  // qw of the identity
 }
 
-TEST(ScanPacket, RefusesAttributesOfAnotherSize) {
+TEST(ScanPacket, RejectsAttributesOfAnotherSize) {
   Scan scan = two_points();
   scan.rings.pop_back();
   EXPECT_THROW(scan_packet(scan, {}), std::logic_error);
@@ -161,7 +161,7 @@ TEST(RecordedScanPacket, WithoutAGridAllIsZero) {
   }
 }
 
-TEST(RecordedScanPacket, LeavesOutWhatIsNotFinite) {
+TEST(RecordedScanPacket, SkipsPointsThatAreNotFinite) {
   KittiScan scan;
   scan.positions = {{kNaN, 0, 0}, {1, 2, 3}, {0, HUGE_VALF, 0}, {0, 0, 0}};
   scan.classes = {1, 2, 3, 4};
@@ -178,7 +178,7 @@ TEST(RecordedScanPacket, LeavesOutWhatIsNotFinite) {
   EXPECT_THROW(recorded_scan_packet(scan, {}, {}), std::logic_error);
 }
 
-TEST(FullIntensity, IsWhatSensorsCallIt) {
+TEST(FullIntensity, IsTheSmallestCommonScale) {
   EXPECT_EQ(full_intensity_of({}), 1.0F);
   EXPECT_EQ(full_intensity_of(std::vector<float>{0.5F, kNaN}), 1.0F);
   EXPECT_EQ(full_intensity_of(std::vector<float>{1.5F}), 255.0F);

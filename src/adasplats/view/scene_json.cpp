@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <nlohmann/json.hpp>
 
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/view/pose_json.h"
 #include "adasplats/view/view_scene.h"
 
 namespace adasplats {
@@ -11,8 +12,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of docs/viewer_protocol.md.
+/// Version of docs/viewer_protocol.md.
 constexpr int kProtocolVersion = 2;
+
+/// A pose in the format of the page: x, y, z relative to `origin`, qx, qy, qz, qw.
+std::array<double, 7> pose_json(const RigidTransform& world_from_sensor, Vec3d origin) {
+  const Vec3d at = world_from_sensor.translation - origin;
+  const Quaternion q = quaternion_from_rotation(world_from_sensor.rotation);
+  return {at.x, at.y, at.z, q.x, q.y, q.z, q.w};
+}
 
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
 Json json_of(ByteRange range) { return {range.low, range.high}; }
@@ -67,7 +75,7 @@ Json trajectory_json(const std::string& name, const Trajectory& poses, Vec3d ori
   return json;
 }
 
-/// Sequences first: a recorded scan names its trajectory by number.
+/// Sequences come first, because recorded scans refer to their trajectory by index.
 Json trajectories_json(const ViewScene& scene) {
   Json json = Json::array();
   for (const ViewSequence& sequence : scene.sequences)
@@ -137,7 +145,7 @@ std::string scene_json(const ViewScene& scene) {
   json["start_pose"] = pose_json(scene.start_pose, scene.origin);
   json["device"] = scene.device;
   json["command"] = scene.command;
-  // Names of files need not be UTF-8; JSON must be.
+  // File names may have invalid UTF-8, which JSON must not.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

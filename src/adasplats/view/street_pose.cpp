@@ -15,25 +15,25 @@ namespace adasplats {
 namespace {
 
 constexpr float kCell_m = 1;
-/// Cells a side at most: of larger places the part around the middle counts.
+/// Maximum cells per side; of larger scenes, only the part around the median position is used.
 constexpr int kMaxCells = 2000;
-/// The ground is as thick as this, with its noise and slope.
+/// Thickness of the ground with its noise and slope.
 constexpr float kGround_m = 0.35F;
-/// What stands higher is passed below.
+/// Points higher above the ground do not block a cell.
 constexpr float kPassage_m = 2.2F;
 constexpr std::uint32_t kMinPoints = 3;
-constexpr int kOpenReach = 3;    ///< cells around that should be open, too
-constexpr int kDenseReach = 20;  ///< cells around whose points count
+constexpr int kOpenReach = 3;    ///< neighbouring cells that should be open, too
+constexpr int kDenseReach = 20;  ///< neighbouring cells for the density of points
 constexpr int kHeadings = 36;
 constexpr int kSightCells = 45;
 
 struct Cell {
   float low = HUGE_VALF;
   std::uint32_t points = 0;
-  std::uint32_t in_the_way = 0;
+  std::uint32_t obstacles = 0;
 };
 
-/// The plane in metre's cells around the middle point.
+/// A horizontal grid of cells around the median position.
 class Ground {
  public:
   explicit Ground(std::span<const Vec3f> positions) {
@@ -49,7 +49,7 @@ class Ground {
       Cell* const cell = at(p);
       if (cell == nullptr) continue;
       const float above = p.z - cell->low;
-      if (above > kGround_m && above < kPassage_m) ++cell->in_the_way;
+      if (above > kGround_m && above < kPassage_m) ++cell->obstacles;
     }
   }
 
@@ -63,7 +63,7 @@ class Ground {
   bool is_open(int x, int y) const {
     if (!is_inside(x, y)) return false;
     const Cell& c = cell(x, y);
-    return c.points >= kMinPoints && 20 * c.in_the_way < c.points;
+    return c.points >= kMinPoints && 20 * c.obstacles < c.points;
   }
   Vec3d middle_of(int x, int y) const {
     return {static_cast<double>(low_.x) + (x + 0.5) * static_cast<double>(kCell_m),
@@ -105,7 +105,7 @@ class Ground {
   std::vector<Cell> cells_;
 };
 
-/// Sums of a value of cells over squares of them.
+/// Sums of a value over squares of cells.
 class SquareSums {
  public:
   template <class Of>
@@ -135,7 +135,7 @@ class SquareSums {
   std::vector<double> sums_;
 };
 
-/// Open cells ahead, each counted less the farther it is; three lanes side by side.
+/// Number of open cells ahead, in five lanes side by side.
 double openness(const Ground& ground, int x, int y, double yaw_rad) {
   double sum = 0;
   for (int side = -2; side <= 2; ++side) {
@@ -149,14 +149,14 @@ double openness(const Ground& ground, int x, int y, double yaw_rad) {
 }
 
 double best_heading(const Ground& ground, int x, int y) {
-  double best_rad = 0, most = -1;
+  double best_rad = 0, max = -1;
   for (int k = 0; k < kHeadings; ++k) {
     const double yaw_rad = 2 * std::numbers::pi * k / kHeadings;
-    // What lies behind is seen over the shoulder of a follower.
+    // The follow camera also shows what is behind.
     const double found =
         openness(ground, x, y, yaw_rad) + 0.4 * openness(ground, x, y, yaw_rad + std::numbers::pi);
-    if (found > most) {
-      most = found;
+    if (found > max) {
+      max = found;
       best_rad = yaw_rad;
     }
   }
@@ -169,7 +169,7 @@ std::optional<RigidTransform> street_pose(std::span<const Vec3f> positions, doub
   if (positions.empty()) return {};
   const Ground ground(positions);
   const SquareSums open(ground, [&](int x, int y) { return ground.is_open(x, y) ? 1.0 : 0.0; });
-  // The root: a wall scanned from near must not outweigh a street.
+  // The square root keeps a wall scanned from near from outweighing a street.
   const SquareSums dense(ground, [&](int x, int y) { return std::sqrt(ground.cell(x, y).points); });
   double best = 0;
   int at_x = -1, at_y = -1;

@@ -10,10 +10,10 @@
 
 namespace adasplats {
 
-/// Where somebody who walks through a place would stand first: on open ground (a metre's cell whose
-/// lower two metres are empty but for the ground) among the most points, `eye_height_m` above it,
-/// looking along the way that stays open longest. `positions`: m, z up; the pose is in their frame.
-/// Nothing where no ground is open (a model of one object, an empty cloud).
+/// A start pose for a street scene: on open ground (a 1 m cell that is empty up to 2.2 m above the
+/// ground) where most points are, `eye_height_m` above it, facing the direction that stays open
+/// longest. `positions`: m, z up; the pose is in their frame. Nothing without open ground (a model
+/// of one object, an empty cloud).
 std::optional<RigidTransform> street_pose(std::span<const Vec3f> positions, double eye_height_m);
 
 }  // namespace adasplats

@@ -28,8 +28,8 @@ std::vector<Vec3f> street(float yaw_rad) {
   return points;
 }
 
-// Oracle: how the street was made.
-TEST(StreetPose, StandsOnTheStreetAndLooksAlongIt) {
+// Oracle: the geometry of the street.
+TEST(StreetPose, IsOnTheStreetAndFacesAlongIt) {
   for (const float yaw_rad : {0.0F, 0.6F, 1.5F, -1.0F}) {
     const std::vector<Vec3f> points = street(yaw_rad);
     const auto pose = street_pose(points, 1.8);
@@ -44,8 +44,8 @@ TEST(StreetPose, StandsOnTheStreetAndLooksAlongIt) {
   }
 }
 
-// Oracle: the same place without what lies 50 km away.
-TEST(StreetPose, OutliersDoNotDecide) {
+// Oracle: the same scene without an outlier 50 km away.
+TEST(StreetPose, OutliersHaveNoInfluence) {
   std::vector<Vec3f> points = street(0);
   const auto before = street_pose(points, 1.8);
   points.push_back({50'000, -50'000, 3});
@@ -54,7 +54,7 @@ TEST(StreetPose, OutliersDoNotDecide) {
   EXPECT_LT(length(before->translation - after->translation), 1.5);
 }
 
-TEST(StreetPose, WithoutOpenGroundThereIsNone) {
+TEST(StreetPose, NothingWithoutOpenGround) {
   EXPECT_FALSE(street_pose({}, 1.8));
   const std::vector<Vec3f> one = {{1, 2, 3}};
   EXPECT_FALSE(street_pose(one, 1.8));

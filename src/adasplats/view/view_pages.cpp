@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-/// Rows and columns of the range image of a recorded scan, whose rings are not known.
+/// Rows and columns of the range image of a recorded scan, which has no rings.
 constexpr std::uint32_t kRecordedRings = 64;
 constexpr std::uint32_t kRecordedColumns = 2048;
 
@@ -68,7 +68,7 @@ HttpReply ViewPages::get(std::string_view path) const {
   return not_found();
 }
 
-/// What objects are made of follows the layers.
+/// Layers are numbered first, then the geometries of objects.
 const ViewLayer* ViewPages::layer_of(std::string_view text) const {
   const auto number = number_of(text);
   const std::size_t layers = scene_.layers.size();
@@ -96,9 +96,9 @@ HttpReply ViewPages::layer(std::string_view path) const {
 }
 
 HttpReply ViewPages::recorded_scan(std::string_view name) const {
-  const auto asked = binary_number(name);
-  if (!asked) return not_found();
-  std::size_t number = *asked;  // among all sequences, then in its own
+  const auto index = binary_number(name);
+  if (!index) return not_found();
+  std::size_t number = *index;  // in all sequences, then in its own
   for (const ViewSequence& sequence : scene_.sequences) {
     const KittiSequence& scans = sequence.scans;
     if (number >= scans.scans.size()) {
@@ -107,7 +107,7 @@ HttpReply ViewPages::recorded_scan(std::string_view name) const {
     }
     const KittiScan scan = read_kitti_scan(scans, number);
     ScanPacketHead head;
-    head.number = static_cast<std::uint32_t>(*asked);
+    head.number = static_cast<std::uint32_t>(*index);
     head.rings = kRecordedRings;
     head.columns = kRecordedColumns;
     head.max_range_m = 120;

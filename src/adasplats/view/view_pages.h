@@ -10,17 +10,17 @@
 
 namespace adasplats {
 
-/// Nodes of a layer's table that the page asks for at a time: what a first picture needs is the
-/// same of a layer of any size.
+/// Nodes per block of a layer's table. The page loads blocks on demand, so that the first picture
+/// costs the same for layers of any size.
 inline constexpr std::size_t kTableBlock = 1024;
 
-/// Answers the page's GETs (docs/viewer_protocol.md): the page, scene.json, layers and recorded
-/// scans, and nothing else. `scene` must outlive it.
+/// Answers the GETs of the page (docs/viewer_protocol.md): page files, scene.json, layers and
+/// recorded scans. `scene` must outlive it.
 class ViewPages {
  public:
   explicit ViewPages(const ViewScene& scene);
-  /// Status 404 for what there is not, 500 where a recorded scan or the levels of a city can no
-  /// longer be read.
+  /// Status 404 for unknown paths. Errors (the server answers 500): those of reading a recorded
+  /// scan or the levels of a city.
   HttpReply get(std::string_view path) const;
 
  private:

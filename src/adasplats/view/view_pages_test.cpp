@@ -38,7 +38,7 @@ TEST(ViewPages, LayersAreTheirTrees) {
   EXPECT_EQ(in_leaves, room.model.splats()->size());
 }
 
-// Oracle: the tree. Its table is more than one block, and the last one is no whole one.
+// Oracle: the tree. Its table has several blocks, the last of which is not full.
 TEST(ViewPages, LargeTablesComeInBlocks) {
   std::vector<Vec3f> points;
   for (std::uint64_t i = 0; i < 20'000; ++i) {
@@ -70,11 +70,11 @@ TEST(ViewPages, LargeTablesComeInBlocks) {
   }
   ASSERT_EQ(all.size(), nodes.size_bytes());
   EXPECT_EQ(std::memcmp(all.data(), nodes.data(), all.size()), 0);
-  const std::size_t behind = nodes.size() / kTableBlock + 1;
-  EXPECT_EQ(pages.get("layers/0/table/" + std::to_string(behind) + ".bin").status, 404);
+  const std::size_t beyond = nodes.size() / kTableBlock + 1;
+  EXPECT_EQ(pages.get("layers/0/table/" + std::to_string(beyond) + ".bin").status, 404);
 }
 
-TEST(ViewPages, WhatThereIsNotIsNotFound) {
+TEST(ViewPages, UnknownPathsAreNotFound) {
   const Room room;
   const ViewPages pages(room.view);
   for (const char* path : {"layers",
@@ -107,7 +107,7 @@ TEST(ViewPages, WhatThereIsNotIsNotFound) {
     EXPECT_EQ(pages.get(path).status, 404) << path;
 }
 
-TEST(ViewPages, ThePageIsThereWhereItWasBuilt) {
+TEST(ViewPages, ServesThePageIfItWasBuilt) {
   const Room room;
   const ViewPages pages(room.view);
   if (page_files().empty()) {
@@ -118,7 +118,7 @@ TEST(ViewPages, ThePageIsThereWhereItWasBuilt) {
   EXPECT_EQ(page.status, 200);
   EXPECT_NE(page.body->find("app.js"), std::string::npos);
   EXPECT_EQ(pages.get("app.js").content_type, "text/javascript; charset=utf-8");
-  EXPECT_GT(pages.get("app.js").body->size(), 100'000U) << "three is in it";
+  EXPECT_GT(pages.get("app.js").body->size(), 100'000U) << "includes three.js";
 }
 
 }  // namespace

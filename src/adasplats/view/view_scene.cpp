@@ -19,23 +19,20 @@ std::span<const Vec3f> relative_to_origin(std::span<const Vec3f> positions, Vec3
   return storage;
 }
 
-/// Samples of a scene's layers that are enough to find a street by.
+/// Number of samples of a layer for finding a street.
 constexpr std::size_t kMaxSamples = 400'000;
 
-/// Classes that are all 0 and intensities that are all the same tell nothing.
-template <class T>
-bool tells(std::span<const T> values, T nothing) {
-  return std::ranges::any_of(values, [=](T value) { return value != nothing; });
+bool has_nonzero_class(std::span<const std::uint16_t> classes) {
+  return std::ranges::any_of(classes, [](std::uint16_t id) { return id != 0; });
 }
 
-bool tells_classes(std::span<const std::uint16_t> classes) {
-  return tells(classes, std::uint16_t{0});
-}
-bool tells_intensities(std::span<const float> intensities) {
-  return !intensities.empty() && tells(intensities, intensities.front());
+/// Whether intensities differ; a constant one carries no information.
+bool has_varying_intensity(std::span<const float> intensities) {
+  return std::ranges::any_of(intensities,
+                             [&](float value) { return value != intensities.front(); });
 }
 
-/// Corners of triangles, every so many.
+/// A corner of every n-th triangle.
 std::vector<Vec3f> samples_of(const MeshTree& tree) {
   const std::size_t step = 1 + tree.input_size() / kMaxSamples;
   std::vector<Vec3f> samples;
@@ -45,7 +42,7 @@ std::vector<Vec3f> samples_of(const MeshTree& tree) {
   return samples;
 }
 
-/// Of the leaves, every so many, as the page gets them.
+/// Positions of every n-th element of the leaves, as sent to the page.
 std::vector<Vec3f> samples_of(const ViewLayer& layer) {
   if (layer.city) return layer.city->samples(kMaxSamples);
   if (layer.mesh) return samples_of(*layer.mesh);
@@ -79,7 +76,7 @@ std::string node_bytes(const ViewLayer& layer, std::size_t node) {
   if (layer.city) return layer.city->node_bytes(node);
   const std::span<const std::byte> bytes = layer.mesh ? std::as_bytes(layer.mesh->elements(node))
                                                       : std::as_bytes(layer.tree.elements(node));
-  // Bytes as characters: what a reply's body is made of.
+  // As characters, for the body of a reply.
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -121,8 +118,8 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
   }
   return {std::move(name),
           true,
-          tells_classes(model.classes),
-          tells_intensities(model.intensities),
+          has_nonzero_class(model.classes),
+          has_varying_intensity(model.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},
@@ -133,19 +130,19 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
                      Vec3d origin) {
   return {std::move(name),
           false,
-          tells_classes(model.mesh.classes),
-          tells_intensities(intensities),
+          has_nonzero_class(model.mesh.classes),
+          has_varying_intensity(intensities),
           false,
           LevelTree({}, {}, Executor(1)),
           MeshTree(model.mesh, intensities, model.origin - origin),
           {}};
 }
 
-ViewLayer place_layer(std::string name, const AnyModel& place, Vec3d origin,
+ViewLayer place_layer(std::string name, const AnyModel& model, Vec3d origin,
                       const Executor& executor) {
-  if (const auto* const splats = std::get_if<SplatModel>(&place))
+  if (const auto* const splats = std::get_if<SplatModel>(&model))
     return splat_layer(std::move(name), *splats, {}, origin, executor);
-  return mesh_layer(std::move(name), std::get<MeshModel>(place), intensities_of(place), origin);
+  return mesh_layer(std::move(name), std::get<MeshModel>(model), intensities_of(model), origin);
 }
 
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
@@ -159,8 +156,8 @@ ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const
       .errors_m = errors_m};
   return {std::move(name),
           false,
-          tells_classes(cloud.classes),
-          tells_intensities(cloud.intensities),
+          has_nonzero_class(cloud.classes),
+          has_varying_intensity(cloud.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},
@@ -176,9 +173,9 @@ void add_world(ViewScene& scene, const Executor& executor) {
     if (object.only_scan) continue;
     std::size_t& number = number_of[object.geometry];
     if (number == world->geometry_count()) {
-      const AnyModel& place = world->geometry(object.geometry);
+      const AnyModel& geometry = world->geometry(object.geometry);
       number = scene.geometries.size();
-      scene.geometries.push_back(place_layer(object.name, place, {}, executor));
+      scene.geometries.push_back(place_layer(object.name, geometry, {}, executor));
     }
     scene.objects.push_back({object.name, i, number});
   }
@@ -202,7 +199,7 @@ RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
   pose.translation = 0.5 * (low + high);
   pose.translation.z = low.z + mount_height_m;
   if (scene.model == nullptr) return pose;
-  // Straight down from above: the ground, or the roof of what stands there.
+  // A ray straight down hits the ground or a roof.
   const Vec3d above = {pose.translation.x, pose.translation.y, high.z + 1};
   const Ray ray = {vec_cast<float>(above - scene.model->origin()),
                    0,

@@ -28,87 +28,86 @@
 
 namespace adasplats {
 
-/// One layer of what the page draws, relative to the view's origin.
+/// One layer of the page, relative to the view's origin.
 struct ViewLayer {
   std::string name;
   bool is_splats = false;
-  bool has_classes = false;      ///< more than class 0
-  bool has_intensities = false;  ///< not all the same
+  bool has_classes = false;      ///< other classes than 0
+  bool has_intensities = false;  ///< different values
   bool has_errors = false;
-  LevelTree tree;                ///< of splats or points
-  std::optional<MeshTree> mesh;  ///< instead, for triangles
-  std::string part;  ///< of the beams with errors (error_layers.h); empty: all, or no such layer
-  std::shared_ptr<const CityLevels> city = nullptr;  ///< instead of all of these, for a city
+  LevelTree tree;                ///< splats or points
+  std::optional<MeshTree> mesh;  ///< triangles, instead of `tree`
+  std::string part;  ///< part of the beams with errors (error_layers.h); empty: all, or no errors
+  std::shared_ptr<const CityLevels> city = nullptr;  ///< a city on disk, instead of `tree`
 };
 
-/// The tree of a layer, whatever it is of.
+/// The nodes of the tree of a layer of any kind.
 std::span<const LevelNode> nodes_of(const ViewLayer& layer);
 /// Errors: those of CityLevels::node_bytes().
 std::string node_bytes(const ViewLayer& layer, std::size_t node);
 std::size_t size_of(const ViewLayer& layer);
 ByteRange intensity_range_of(const ViewLayer& layer);
 
-/// A city that stays on disk; the view's origin must be the city's.
+/// A layer of a city on disk. The view must have the city's origin.
 ViewLayer city_layer(std::string name, std::shared_ptr<const CityLevels> levels);
 
-/// Triangles.
+/// A layer of triangles.
 ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
                      Vec3d origin);
-/// Splats or triangles.
-ViewLayer place_layer(std::string name, const AnyModel& place, Vec3d origin,
+/// A layer of splats or triangles.
+ViewLayer place_layer(std::string name, const AnyModel& model, Vec3d origin,
                       const Executor& executor);
 
-/// `errors_m`: empty, or one a splat.
+/// `errors_m`: empty, or one per splat.
 ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor);
-/// `errors_m`: empty, or one a point.
+/// `errors_m`: empty, or one per point.
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor);
 
-/// Something of a world file, in all scans.
+/// An object of a world file that is in all scans.
 struct ViewObject {
   std::string name;
-  std::size_t object = 0;    ///< of the world
-  std::size_t geometry = 0;  ///< of ViewScene::geometries
+  std::size_t object = 0;    ///< index in the world
+  std::size_t geometry = 0;  ///< index in ViewScene::geometries
 };
 
-/// Recorded scans; they are read when the page asks for one.
+/// Recorded scans, read on demand.
 struct ViewSequence {
   std::string name;
   KittiSequence scans;
 };
 
-/// What a browser is shown. All of it stays as it is while it is served.
+/// The scene that the page shows. Does not change while it is served.
 struct ViewScene {
   std::string name;
-  Vec3d origin;  ///< of what the page is sent, world coordinates
+  Vec3d origin;  ///< of the data sent to the page, world coordinates
   std::vector<ViewLayer> layers;
-  std::vector<std::pair<std::string, Trajectory>> trajectories;  ///< besides those of `sequences`
+  std::vector<std::pair<std::string, Trajectory>>
+      trajectories;  ///< other than those of `sequences`
   std::vector<ViewSequence> sequences;
   std::optional<LabelScheme> labels;
-  std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates: where to look first
-  /// That scans are simulated in; null: none.
+  std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates; initial view
+  /// Scene for simulated scans; null: none.
   const ScanScene* place = nullptr;
-  /// The same where it is in memory, whose objects a page may move; null: it is not.
+  /// The same scene if it is in memory; pages may move its objects. Else null.
   ModelScene* model = nullptr;
-  /// What rays of a page meet where the place is a city on disk; used by the simulating thread
-  /// alone.
+  /// Casts picking rays if the scene is a city on disk; used only by the simulating thread.
   CityPicker* picker = nullptr;
-  std::vector<ViewLayer> geometries;  ///< of objects, each in a frame of its own
+  std::vector<ViewLayer> geometries;  ///< of objects, each in its own frame
   std::vector<ViewObject> objects;
   std::string sensor = kDefaultSensor;  ///< chosen at the start
   RigidTransform start_pose;            ///< of the sensor, world coordinates
   std::string device = "cpu";
-  std::vector<std::string> command;  ///< that 'copy command line' begins with
+  std::vector<std::string> command;  ///< start of the command that the page copies
 };
 
-/// Where a sensor begins to drive: at the first pose that there is, else `mount_height_m` above the
-/// ground of a street that is found in the layers (street_pose.h), else above what lies in the
-/// middle.
+/// Start pose of the driven sensor: the first pose of the scene, else `mount_height_m` above the
+/// ground of a street in the first layer (street_pose.h), else above the surface in the middle.
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
                              const Executor& executor);
 
-/// The objects of the model's world that are in all scans, and what they are made of.
+/// Adds the objects of the model's world that are in all scans, and their geometries.
 void add_world(ViewScene& scene, const Executor& executor);
 
 /// "scene.json".

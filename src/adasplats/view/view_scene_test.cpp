@@ -14,11 +14,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json told(const ViewScene& scene) { return Json::parse(scene_json(scene)); }
+Json parsed(const ViewScene& scene) { return Json::parse(scene_json(scene)); }
 
-TEST(ViewScene, TheSceneIsWhatThereIs) {
+TEST(ViewScene, SceneJsonDescribesTheScene) {
   const Room room;
-  const Json json = told(room.view);
+  const Json json = parsed(room.view);
   EXPECT_EQ(json["version"], 2);
   EXPECT_EQ(json["origin_m"], Json({5000, 6000, 0}));
   ASSERT_EQ(json["layers"].size(), 2U);
@@ -37,17 +37,17 @@ TEST(ViewScene, TheSceneIsWhatThereIs) {
   EXPECT_TRUE(has_road);
 }
 
-TEST(ViewScene, PointsOfAnotherOriginLieInTheSamePlace) {
+TEST(ViewScene, PointsOfAnotherOriginHaveTheSamePosition) {
   const Room room;
   const LevelNode& splats = room.view.layers[0].tree.nodes().front();
   const LevelNode& points = room.view.layers[1].tree.nodes().front();
-  // Of merged elements: equal but for half a cell.
+  // Boxes of merged elements differ by at most half a cell.
   EXPECT_NEAR(points.low.x, splats.low.x, 0.2);
   EXPECT_NEAR(points.high.y, splats.high.y, 0.2);
 }
 
 // Oracle: the floor is at 0.
-TEST(ViewScene, WithoutPosesTheSensorStandsAboveTheGround) {
+TEST(ViewScene, WithoutPosesTheSensorIsAboveTheGround) {
   Room room;
   room.view.trajectories.clear();
   EXPECT_NEAR(start_pose_of(room.view, 1.8, room.executor).translation.z, 1.8, 1e-3);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The ways in which the camera moves, as buttons.
+// Buttons that choose the camera mode.
 
 import type { CameraMode } from './camera_rig';
 import { segments } from '../panels/dom';
@@ -30,7 +30,7 @@ export class CameraModes {
     this.set(mode);
   }
 
-  /** By its key, 1 for the first. Whether there is one. */
+  /** Chooses a mode by its key, '1' for the first. Returns whether the key has a mode. */
   chooseNumber(key: string): boolean {
     const found = kModes[Number(key) - 1];
     if (found) this.choose(found[0]);

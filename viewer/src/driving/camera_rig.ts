@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The eye: turned around a point, behind the sensor, or straight above.
+// The camera: orbits a point, follows the sensor or looks down from above.
 
 import { MOUSE, PerspectiveCamera, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -21,7 +21,7 @@ export class CameraRig {
   mode: CameraMode = 'orbit';
   private sensor = new Vector3();
   private yaw_rad = 0;
-  /** Heading that the eye has reached, in the mode 'follow'. */
+  /** Current camera heading in the mode 'follow'. */
   private followedYaw_rad = 0;
   private sceneSizeM = 100;
 
@@ -45,13 +45,13 @@ export class CameraRig {
     this.camera.position.copy(eye);
     this.controls.target.copy(target);
     this.controls.update();
-    // Damping would carry an earlier gesture on.
+    // update() still applies the damping of an earlier gesture; undo that.
     this.camera.position.copy(eye);
     this.controls.target.copy(target);
     this.camera.lookAt(target);
   }
 
-  /** The whole of a box. */
+  /** Shows all of a box. */
   frame(box: Box) {
     const low = new Vector3(...box[0]);
     const high = new Vector3(...box[1]);
@@ -80,7 +80,7 @@ export class CameraRig {
     else this.leaveTop();
   }
 
-  /** Follows, in the mode for it. Whether the eye moved. */
+  /** Follows the sensor in the mode 'follow'. Returns whether the camera moved. */
   followSensor(position: Vector3, yaw_rad: number, dt: number): boolean {
     const moved = position.clone().sub(this.sensor);
     this.sensor.copy(position);
@@ -95,7 +95,7 @@ export class CameraRig {
     return true;
   }
 
-  /** Depth that holds the scene and still tells near things apart. */
+  /** Sets near and far planes: as far as the scene, with enough depth precision nearby. */
   fitDepth() {
     const away = this.camera.position.distanceTo(this.controls.target);
     const near = Math.min(Math.max(away * 0.01, 0.05), 5);

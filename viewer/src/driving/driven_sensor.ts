@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The sensor that is driven: shown where it is, with the path behind it, and told to the server.
+// The driven sensor: draws it and its path, and sends its pose to the server.
 
 import { Plane, Vector3 } from 'three';
 import { Driver, type Pick } from './driver';
@@ -14,8 +14,8 @@ import { SensorBody } from '../picture/sensor_body';
 
 const kMotionMs = 33;
 const kPathColor = 0x3aa0e6;
-/** Near the horizon a pixel is a kilometre. */
-const kFarthestDragM = 500;
+/** Maximum drag distance: near the horizon one pixel covers a kilometre. */
+const kMaxDragM = 500;
 
 export class DrivenSensor {
   readonly body = new SensorBody();
@@ -28,23 +28,23 @@ export class DrivenSensor {
     private readonly view: SceneView,
     { start_pose, can_simulate }: SceneInfo,
     pick: Pick,
-    private readonly tell: (motion: Motion) => void,
+    private readonly send: (motion: Motion) => void,
   ) {
     this.driver = new Driver(start_pose, pick);
     this.body.object.visible = this.path.object.visible = can_simulate;
   }
 
-  /** To be taken with the mouse, and moved in its own plane. */
+  /** Lets the mouse drag the sensor in its horizontal plane. */
   get grabbable(): Grabbable {
     const { body } = this;
     return {
-      isAt: (camera, place, height_px) => body.isAt(camera, place, height_px),
+      isAt: (camera, screen, height_px) => body.isAt(camera, screen, height_px),
       highlight: (on) => body.highlight(on),
       grab: () => {},
       drag: (ray) => {
         const plane = new Plane(new Vector3(0, 0, 1), -body.object.position.z);
         const hit = ray.intersectPlane(plane, new Vector3());
-        if (hit && hit.distanceTo(ray.origin) < kFarthestDragM) this.moveTo(hit.x, hit.y);
+        if (hit && hit.distanceTo(ray.origin) < kMaxDragM) this.moveTo(hit.x, hit.y);
       },
     };
   }
@@ -53,19 +53,19 @@ export class DrivenSensor {
     return [this.path.object, this.body.object];
   }
 
-  /** Somewhere else: a new path begins there. */
+  /** Moves the sensor and starts a new path there. */
   setPose(pose: Pose) {
     this.driver.setPose(pose);
     this.moved();
   }
 
-  /** Where a recording has it. */
+  /** Moves the sensor to a recorded pose. */
   place(pose: Pose) {
     this.driver.place(pose);
     this.moved();
   }
 
-  /** Time of the world goes on, with or without the sensor. */
+  /** World time in seconds; it advances even if the sensor is at rest. */
   setTime(time_s: number) {
     if (time_s === this.time_s) return;
     this.time_s = time_s;
@@ -83,13 +83,13 @@ export class DrivenSensor {
     this.moved();
   }
 
-  /** In each frame. */
+  /** Called in each frame. */
   step(dt: number) {
     if (this.driver.step(dt)) this.moved();
-    if (this.motionDue) this.tellMotion();
+    if (this.motionDue) this.sendMotion();
   }
 
-  /** Shows where it is, and has the server told. */
+  /** Updates the picture and schedules a message to the server. */
   moved() {
     this.body.setPose(this.driver.pose);
     this.path.set(this.driver.finishedPath().map((p) => p.pose));
@@ -101,11 +101,11 @@ export class DrivenSensor {
     return { ...this.driver.motion, time_s: this.time_s };
   }
 
-  private tellMotion() {
+  private sendMotion() {
     const now = performance.now();
     if (now - this.lastMotionMs < kMotionMs) return;
     this.lastMotionMs = now;
     this.motionDue = false;
-    this.tell(this.motion);
+    this.send(this.motion);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Where the sensor is: driven by keys, moved by hand, held over the ground; and where it was.
+// The pose of the sensor: driven by keys, dragged, kept at its height above ground; and its path.
 
 import { Quaternion, Vector3 } from 'three';
 import { poseOf, rotationOf, withYaw, yawOf } from './pose';
@@ -29,14 +29,14 @@ const kIdle: Controls = {
   fast: false,
   stop: false,
 };
-/** A slow page drives as fast as a quick one. */
-const kLongestStepS = 0.05;
+/** Maximum time step, so that the speed does not depend on the frame rate. */
+const kMaxStepS = 0.05;
 const kGroundPeriodMs = 80;
-/** Looked for from so far above the sensor, and told from what hangs over it by the height. */
+/** The ray for the ground starts this far above the sensor once its height is known. */
 const kAboveM = 0.5;
 const kGroundPullHz = 6;
 const kDefaultHeightM = 1.8;
-const kHighestMountM = 8;
+const kMaxMountM = 8;
 const kPathPoints = 100_000;
 
 export interface TimedPose {
@@ -46,7 +46,7 @@ export interface TimedPose {
 
 export type Pick = (origin: number[], direction: number[]) => Promise<PickedMessage | null>;
 
-/** Whether a key belongs to what has the focus: a field that is typed in, a button to press. */
+/** Whether the focused element uses the key: an input field or a button. */
 export function typing(event: KeyboardEvent): boolean {
   const { target } = event;
   if (event.ctrlKey || event.metaKey || event.altKey || !(target instanceof HTMLElement))
@@ -60,9 +60,9 @@ export function typing(event: KeyboardEvent): boolean {
 
 export class Driver {
   followGround = true;
-  /** What was driven, one pose a revolution at most. */
+  /** The driven path, at most one pose per revolution. */
   path: TimedPose[] = [];
-  /** Between poses of the path. */
+  /** Time between poses of the path. */
   pathPeriodS = 0.1;
   private controls: Controls = { ...kIdle };
   private vehicle: Vehicle;
@@ -90,7 +90,7 @@ export class Driver {
     return this.vehicle.speed_m_s;
   }
 
-  /** Whether a key drives it. */
+  /** Whether a driving key is pressed. */
   get isSteered(): boolean {
     return Object.values(this.controls).some((on) => on);
   }
@@ -101,7 +101,7 @@ export class Driver {
     return { pose: this.pose, velocity_m_s, yaw_rate_rad_s };
   }
 
-  /** Somewhere else: a new path begins there. */
+  /** Moves the sensor and starts a new path there. */
   setPose(pose: Pose) {
     this.rotation = rotationOf(pose);
     this.vehicle = standing(pose[0], pose[1], pose[2], yawOf(this.rotation));
@@ -109,14 +109,14 @@ export class Driver {
     this.clearPath();
   }
 
-  /** Where a recording has it: that is not driven, so the path stays as it is. */
+  /** Moves the sensor to a recorded pose; the driven path stays as it is. */
   place(pose: Pose) {
     this.rotation = rotationOf(pose);
     this.vehicle = standing(pose[0], pose[1], pose[2], yawOf(this.rotation));
     this.heightM = this.groundZ = null;
   }
 
-  /** Moved by hand, in its own plane. */
+  /** Drags the sensor in its horizontal plane. */
   moveTo(x: number, y: number) {
     this.vehicle = { ...this.vehicle, x, y, speed_m_s: 0, steering_rad: 0, yaw_rate_rad_s: 0 };
     this.groundZ = null;
@@ -133,7 +133,7 @@ export class Driver {
     this.path = [{ time_s: 0, pose: this.pose }];
   }
 
-  /** The path, and its end where the sensor is now. */
+  /** The path, with the current pose as its end. */
   finishedPath(): TimedPose[] {
     const last = this.path[this.path.length - 1];
     if (samePose(last.pose, this.pose)) return this.path;
@@ -157,9 +157,9 @@ export class Driver {
     this.controls = { ...kIdle };
   }
 
-  /** Whether the sensor moved. */
+  /** Returns whether the sensor moved. */
   step(dt: number): boolean {
-    const steps = Math.max(1, Math.ceil(dt / kLongestStepS));
+    const steps = Math.max(1, Math.ceil(dt / kMaxStepS));
     let moved = false;
     for (let i = 0; i < steps; ++i) moved = this.shortStep(dt / steps) || moved;
     return moved;
@@ -177,7 +177,7 @@ export class Driver {
     return this.settle(step) || driven || moves(before);
   }
 
-  /** Pulls the sensor to its height over the ground. */
+  /** Pulls the sensor to its height above ground. Returns whether it moved. */
   private settle(dt: number): boolean {
     if (!this.followGround || this.groundZ === null || this.heightM === null) return false;
     const missing = this.groundZ + this.heightM - this.vehicle.z;
@@ -199,7 +199,7 @@ export class Driver {
     const ground = found.position[2];
     if (this.heightM === null) {
       const height = z - ground;
-      this.heightM = height > 0.2 && height < kHighestMountM ? height : kDefaultHeightM;
+      this.heightM = height > 0.2 && height < kMaxMountM ? height : kDefaultHeightM;
     }
     this.groundZ = ground;
   }

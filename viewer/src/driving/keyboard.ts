@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The keys: those that drive go to the driver, the others are shortcuts.
+// Key presses: driving keys go to the driver, the others are shortcuts.
 
 import { type Driver, typing } from './driver';
 
-export interface Keyboard {
+interface Keyboard {
   driver: Driver;
   escape(): void;
-  /** Whether the key is one. */
+  /** Handles a shortcut. Returns whether the key is one. */
   shortcut(key: string): boolean;
 }
 

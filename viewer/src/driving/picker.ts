@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A click into the scene: what the server's ray meets there, and the echo that was meant.
+// Shows what was clicked: the splat that the server's ray hits, and the nearest echo.
 
 import { Raycaster, type Vector2, type Vector3 } from 'three';
 import { byId } from '../panels/dom';
@@ -25,17 +25,17 @@ export class Picker {
     this.card = new PickCard(byId('card'), view.palette, origin_m);
   }
 
-  /** `place` on the camera's screen, -1..1; the card says how far it is from the sensor. */
-  async pick(place: Vector2, sensor: Vector3) {
+  /** `screen`: on the camera's screen, -1..1. The card shows the distance from `sensor`. */
+  async pick(screen: Vector2, sensor: Vector3) {
     const { camera } = this.view.rig;
     const caster = new Raycaster();
-    caster.setFromCamera(place, camera);
+    caster.setFromCamera(screen, camera);
     const { origin, direction } = caster.ray;
     let echo = null;
     for (const cloud of this.clouds)
-      echo ??= cloud.nearest(camera, place.x, place.y, this.view.height_px, kEchoPixels);
+      echo ??= cloud.nearest(camera, screen.x, screen.y, this.view.height_px, kEchoPixels);
     const found = await this.live.pick(origin.toArray(), direction.toArray());
-    // An echo behind what the ray meets is not what was clicked.
+    // An echo behind the hit surface was not clicked.
     const hidden = echo && found?.hit && echo.position.distanceTo(origin) > found.range_m + 0.5;
     this.card.show(found, hidden ? null : echo, sensor);
   }

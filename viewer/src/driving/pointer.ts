@@ -1,25 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The mouse over the scene: takes what can be taken (the sensor, a handle, an object), or clicks;
-// the rest is the camera's.
+// Mouse input: drags the sensor, a handle or an object, or clicks. Other gestures move the camera.
 
 import { Raycaster, Vector2, type PerspectiveCamera, type Ray } from 'three';
 import type { SceneView } from '../picture/scene_view';
 
-/** Where a click was. */
-export interface Place {
+/** Position of a click. */
+export interface Click {
   /** On the camera's screen, -1..1. */
   screen: Vector2;
-  /** Of the canvas, from its lower left corner. */
+  /** Pixel of the canvas, from its lower left corner. */
   pixel: Vector2;
 }
 
-/** What can be taken with the mouse. */
+/** An object that can be dragged with the mouse. */
 export interface Grabbable {
-  isAt(camera: PerspectiveCamera, place: Vector2, height_px: number): boolean;
+  isAt(camera: PerspectiveCamera, screen: Vector2, height_px: number): boolean;
   highlight(on: boolean): void;
-  grab(camera: PerspectiveCamera, place: Vector2, height_px: number): void;
+  grab(camera: PerspectiveCamera, screen: Vector2, height_px: number): void;
   drag(ray: Ray): void;
 }
 
@@ -29,7 +28,7 @@ interface Press {
   x: number;
   y: number;
   id: number;
-  taken: Grabbable | null;
+  grabbed: Grabbable | null;
 }
 
 export class Pointer {
@@ -39,11 +38,11 @@ export class Pointer {
   constructor(
     private readonly view: SceneView,
     private readonly canvas: HTMLCanvasElement,
-    /** The first that is hit is taken. */
+    /** The first one under the mouse is grabbed. */
     private readonly grabbables: Grabbable[],
-    private readonly clicked: (place: Place) => void,
+    private readonly clicked: (click: Click) => void,
   ) {
-    // Before the camera's own listener, which then leaves what was taken alone.
+    // In the capture phase, before the camera's own listener: pressed() may disable that.
     canvas.addEventListener('pointerdown', (e) => this.pressed(e), true);
     canvas.addEventListener('pointermove', (e) => this.movedTo(e));
     canvas.addEventListener('pointerup', (e) => this.released(e));
@@ -53,24 +52,24 @@ export class Pointer {
   private pressed(event: PointerEvent) {
     if (event.button !== 0 || !event.isPrimary) return;
     this.canvas.focus();
-    const taken = this.at(event);
-    this.down = { x: event.clientX, y: event.clientY, id: event.pointerId, taken };
-    if (!taken) return;
+    const grabbed = this.at(event);
+    this.down = { x: event.clientX, y: event.clientY, id: event.pointerId, grabbed };
+    if (!grabbed) return;
     const { camera } = this.view.rig;
-    taken.grab(camera, this.screen(event), this.view.height_px);
+    grabbed.grab(camera, this.screen(event), this.view.height_px);
     this.view.rig.controls.enabled = false;
     this.canvas.setPointerCapture(event.pointerId);
   }
 
   private movedTo(event: PointerEvent) {
     if (!this.down) this.highlight(this.at(event));
-    else if (this.down.taken) this.down.taken.drag(this.ray(event));
+    else if (this.down.grabbed) this.down.grabbed.drag(this.ray(event));
   }
 
   private released(event: PointerEvent) {
     const { down } = this;
     this.stop();
-    if (!down || down.taken || down.id !== event.pointerId) return;
+    if (!down || down.grabbed || down.id !== event.pointerId) return;
     if (Math.hypot(event.clientX - down.x, event.clientY - down.y) >= kClickPixels) return;
     this.clicked({ screen: this.screen(event), pixel: this.pixel(event) });
   }
@@ -85,18 +84,18 @@ export class Pointer {
     this.under?.highlight(false);
     under?.highlight(true);
     this.under = under;
-    this.canvas.classList.toggle('taking', under !== null);
+    this.canvas.classList.toggle('grabbing', under !== null);
     this.view.invalidate();
   }
 
   private at(event: PointerEvent): Grabbable | null {
-    const place = this.screen(event);
+    const screen = this.screen(event);
     const { camera } = this.view.rig;
-    return this.grabbables.find((g) => g.isAt(camera, place, this.view.height_px)) ?? null;
+    return this.grabbables.find((g) => g.isAt(camera, screen, this.view.height_px)) ?? null;
   }
 
   private screen(event: PointerEvent): Vector2 {
-    return this.view.screenPlace(event.clientX, event.clientY);
+    return this.view.screenPosition(event.clientX, event.clientY);
   }
 
   private pixel(event: PointerEvent): Vector2 {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Poses as three's matrices, and the heading in them.
+// Poses as matrices and quaternions of three.js, and their heading.
 
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { Pose } from '../server/protocol';
@@ -20,13 +20,13 @@ export function matrixOf(pose: Pose): Matrix4 {
   );
 }
 
-/** Where the sensor's x axis points in the plane of the ground, from x to y. */
+/** Heading: the angle of the sensor's x axis in the horizontal plane, from x to y, in rad. */
 export function yawOf(rotation: Quaternion): number {
   const forward = new Vector3(1, 0, 0).applyQuaternion(rotation);
   return Math.atan2(forward.y, forward.x);
 }
 
-/** The rotation turned to another heading, with its tilt. */
+/** The rotation with another heading and the same tilt. */
 export function withYaw(rotation: Quaternion, yaw_rad: number): Quaternion {
   return new Quaternion().setFromAxisAngle(kUp, yaw_rad - yawOf(rotation)).multiply(rotation);
 }

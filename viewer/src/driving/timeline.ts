@@ -1,30 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Time along a recording: where the sensor was, which scan it took, and how fast it all goes by.
+// Playback time of a recording: the sensor pose and the scan at a time, and the playback speed.
 
 import { Vector3 } from 'three';
 import { poseOf, rotationOf } from './pose';
 import type { Pose, SceneInfo } from '../server/protocol';
 
-export interface TrackScan {
-  /** Among all recorded scans of the scene. */
+interface TrackScan {
+  /** Index among all recorded scans of the scene. */
   index: number;
   time_s: number;
 }
 
-/** What can be played: a trajectory, with its recorded scans if it has any. */
+/** A trajectory that can be played, with its recorded scans if it has any. */
 export interface Track {
   name: string;
   poses: Pose[];
-  /** Of the poses, from 0 on, ascending. */
+  /** Times of the poses: from 0, ascending. */
   times_s: number[];
   scans: TrackScan[];
-  /** Time of the world at its begin. */
+  /** World time at its start. */
   begin_s: number;
 }
 
-/** Trajectories of more than one pose, and what moves without any. */
+/** Trajectories of more than one pose; without any, the motion of the objects. */
 export function tracksOf(scene: SceneInfo): Track[] {
   const tracks = scene.trajectories.map(({ name, poses, times_s, begin_s }, number) => ({
     name,
@@ -39,7 +39,7 @@ export function tracksOf(scene: SceneInfo): Track[] {
   return moving.length > 0 ? moving : objectTracks(scene);
 }
 
-/** Of a world without a path: the time in which its objects move. */
+/** For a world without a trajectory: the period in which its objects move. */
 function objectTracks({ objects }: SceneInfo): Track[] {
   const times = objects.flatMap((o) => o.times_s);
   const begin_s = Math.min(...times);
@@ -48,8 +48,8 @@ function objectTracks({ objects }: SceneInfo): Track[] {
   return [{ name: 'objects', poses: [], times_s: [0, duration_s], scans: [], begin_s }];
 }
 
-/** Index of the last of ascending times that is not after `time`; 0 where all are. */
-export function indexAt(times: number[], time: number): number {
+/** Index of the last of ascending times that is not after `time`; 0 if all are later. */
+function indexAt(times: number[], time: number): number {
   let [low, high] = [0, times.length];
   while (high - low > 1) {
     const middle = (low + high) >> 1;
@@ -59,7 +59,7 @@ export function indexAt(times: number[], time: number): number {
   return low;
 }
 
-/** Between two poses: evenly, and along the shortest arc. */
+/** Interpolates poses: linear in position, spherical (shortest arc) in rotation. */
 export function poseAt(poses: Pose[], times: number[], time: number): Pose {
   const i = indexAt(times, time);
   const next = Math.min(i + 1, poses.length - 1);
@@ -81,29 +81,29 @@ export class Timeline {
     return this.track.times_s[this.track.times_s.length - 1];
   }
 
-  /** Of the world. */
+  /** World time. */
   get world_s(): number {
     return this.track.begin_s + this.time_s;
   }
 
-  /** Null: the track moves no sensor. */
+  /** Null: the track has no sensor poses. */
   get pose(): Pose | null {
     const { poses, times_s } = this.track;
     return poses.length > 0 ? poseAt(poses, times_s, this.time_s) : null;
   }
 
-  /** Number within the track of the scan that was the last to be taken; -1 without scans. */
+  /** Number within the track of the last scan before the current time; -1 without scans. */
   get scanNumber(): number {
     const { scans } = this.track;
     if (scans.length === 0) return -1;
-    // Times are written with some digits: a scan counts from half a millisecond before its own.
+    // Times are rounded: a scan counts from half a millisecond before its own time.
     return indexAt(
       scans.map((s) => s.time_s),
       this.time_s + 5e-4,
     );
   }
 
-  /** From the end it begins anew. */
+  /** At the end, starts from the beginning. */
   play() {
     if (this.time_s >= this.duration_s) this.time_s = 0;
     this.playing = true;
@@ -113,7 +113,7 @@ export class Timeline {
     this.time_s = Math.min(Math.max(time_s, 0), this.duration_s);
   }
 
-  /** To the next scan or pose, or the one before; stops. */
+  /** Stops and moves to the next or previous scan, or pose if there are no scans. */
   stepBy(direction: 1 | -1) {
     this.playing = false;
     const { scans, times_s } = this.track;
@@ -123,7 +123,7 @@ export class Timeline {
     this.seek(stops[Math.min(Math.max(direction > 0 ? at + 1 : back, 0), stops.length - 1)]);
   }
 
-  /** In each frame; whether time went on. */
+  /** Called in each frame. Returns whether time advanced. */
   step(dt: number): boolean {
     if (!this.playing) return false;
     this.seek(this.time_s + dt * this.speed);

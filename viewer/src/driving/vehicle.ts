@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How the sensor moves when it is driven: like a bicycle, seen from above.
+// Motion of the driven sensor: the kinematic bicycle model.
 
 export interface Controls {
   forward: boolean;
@@ -21,15 +21,15 @@ export interface Vehicle {
   yaw_rad: number;
   speed_m_s: number;
   steering_rad: number;
-  /** Of the last step, to be told to the server. */
+  /** Of the last step; sent to the server. */
   yaw_rate_rad_s: number;
   climb_m_s: number;
 }
 
 const kWheelbaseM = 2.7;
-const kGreatestSteeringRad = 0.55;
+const kMaxSteeringRad = 0.55;
 const kSteeringRateRadS = 2.2;
-/** Sideways: the faster, the less it steers. */
+/** Maximum lateral acceleration: limits the steering angle at speed. */
 const kSidewaysMS2 = 5;
 const kTurnOnSpotRadS = 0.8;
 const kSlowMS = 0.3;
@@ -56,7 +56,7 @@ function steeringGoal(v: Vehicle, c: Controls): number {
   const side = Number(c.left) - Number(c.right);
   const speed = Math.max(Math.abs(v.speed_m_s), 1);
   const grip = Math.atan((kSidewaysMS2 * kWheelbaseM) / (speed * speed));
-  return side * Math.min(kGreatestSteeringRad, grip);
+  return side * Math.min(kMaxSteeringRad, grip);
 }
 
 function yawRate(v: Vehicle, c: Controls): number {
@@ -64,7 +64,7 @@ function yawRate(v: Vehicle, c: Controls): number {
   return (v.speed_m_s * Math.tan(v.steering_rad)) / kWheelbaseM;
 }
 
-/** The vehicle after `dt` seconds; x and y follow the arc. */
+/** The vehicle after `dt` seconds; x and y follow an arc. */
 export function drive(v: Vehicle, c: Controls, dt: number): Vehicle {
   const next = { ...v };
   next.speed_m_s = nextSpeed(v, c, dt);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Files that the user gives the page: dropped on it, or chosen. They stay on this machine.
+// Adds files that the user drops or chooses as layers. The files are not uploaded.
 
 import { byId, make } from '../panels/dom';
 import { showToast } from '../panels/notices';
@@ -12,11 +12,11 @@ import type { Vec3 } from '../server/protocol';
 import { makeLocalTree } from './local_tree';
 import { parsePly } from './ply_file';
 
-/** Beyond what a server numbers its layers with. */
+/** Larger than any layer id of the server. */
 const kFirstId = 1_000_000;
-const kLargestBytes = 2_000_000_000;
-/** A layer so far from the others would not be seen, and floats would not hold it. */
-const kFarthestM = 100_000;
+const kMaxBytes = 2_000_000_000;
+/** Maximum distance from the scene: floats are too coarse for farther layers. */
+const kMaxDistanceM = 100_000;
 
 export class DroppedFiles {
   private nextId = kFirstId;
@@ -54,11 +54,11 @@ export class DroppedFiles {
 
   private async add(file: File) {
     try {
-      if (file.size > kLargestBytes) throw new Error('larger than 2 GB: name it to the program');
+      if (file.size > kMaxBytes) throw new Error("larger than 2 GB; pass it to 'adasplats view'");
       const points = parsePly(await file.arrayBuffer());
       if (points.count === 0) throw new Error('no points');
       const tree = makeLocalTree(points, file.name, this.nextId++, this.origin_m);
-      if (Math.max(...tree.info.box.flat().map(Math.abs)) > kFarthestM)
+      if (Math.max(...tree.info.box.flat().map(Math.abs)) > kMaxDistanceM)
         throw new Error('more than 100 km from the scene');
       const table = NodeTable.of(tree.nodes);
       this.view.set.add(new Layer(tree.info, table, this.view.shared, tree.bytes));

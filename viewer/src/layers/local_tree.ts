@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The tree of a layer that no server has: as docs/viewer_protocol.md has it, of samples.
+// The tree of a local layer in the format of docs/viewer_protocol.md. Inner nodes are samples.
 
 import { kElementBytes, type TreeNode } from '../server/binary';
 import type { LayerInfo, Vec3 } from '../server/protocol';
 import type { FilePoints } from './ply_file';
 
-const kLeaf = 16_384;
-/** Elements of an inner node: every so many of its own. */
+const kMaxLeaf = 16_384;
+/** Approximate number of elements of an inner node. */
 const kSample = 8_192;
-/** Equal points cannot be parted. */
-const kDeepest = 24;
+/** Limits the depth, because equal points cannot be separated. */
+const kMaxLevel = 24;
 
 interface Block {
   rows: Uint32Array;
@@ -37,7 +37,7 @@ function box(points: FilePoints, rows: Uint32Array, origin_m: Vec3): { low: Vec3
   return rows.length > 0 ? { low, high } : { low: [0, 0, 0], high: [0, 0, 0] };
 }
 
-/** Eight parts around the middle of the box; without those that are empty. */
+/** The non-empty octants around the middle of the box. */
 function octants(points: FilePoints, block: Block, { low, high }: TreeNode, origin_m: Vec3) {
   const middle = low.map((v, i) => (v + high[i]) / 2 + origin_m[i]);
   const octant = (row: number) =>
@@ -55,17 +55,17 @@ function octants(points: FilePoints, block: Block, { low, high }: TreeNode, orig
   return parts.filter((p) => p.length > 0);
 }
 
-/** Every so many, and those that reach farthest: their box is the box of all. */
+/** Every n-th row and the extreme rows of each axis, so that the box stays the same. */
 function sampled({ x, y, z }: FilePoints, rows: Uint32Array): Uint32Array {
   const step = Math.ceil(rows.length / kSample);
   const chosen = new Set(rows.filter((_, i) => i % step === 0));
   for (const axis of [x, y, z]) {
-    let [least, most] = [rows[0], rows[0]];
+    let [first, last] = [rows[0], rows[0]];
     for (const row of rows) {
-      if (axis[row] < axis[least]) least = row;
-      if (axis[row] > axis[most]) most = row;
+      if (axis[row] < axis[first]) first = row;
+      if (axis[row] > axis[last]) last = row;
     }
-    chosen.add(least).add(most);
+    chosen.add(first).add(last);
   }
   return Uint32Array.from(chosen);
 }
@@ -84,7 +84,7 @@ class Encoder {
     private readonly intensity: [number, number],
   ) {}
 
-  /** `enlarge`: of splats that stand for others. */
+  /** `enlarge`: factor on the radii of splats that replace others. */
   node(rows: Uint32Array, level: number, enlarge: number): { node: TreeNode; bytes: ArrayBuffer } {
     const { points, origin_m } = this;
     const { low, high } = box(points, rows, origin_m);
@@ -132,7 +132,7 @@ class Encoder {
   }
 }
 
-/** 2nd and 98th percentile of a sample. */
+/** 2nd and 98th percentile, estimated from a sample. */
 function intensityRange(values: Float32Array | null): [number, number] {
   if (!values) return [0, 1];
   const step = Math.max(1, Math.floor(values.length / 20_000));
@@ -142,7 +142,7 @@ function intensityRange(values: Float32Array | null): [number, number] {
   return high > low ? [low, high] : [0, 1];
 }
 
-/** `id`: one that no layer of the server has. Points that are not finite are left out. */
+/** `id` must differ from all ids of the server. Points that are not finite are skipped. */
 export function makeLocalTree(
   points: FilePoints,
   name: string,
@@ -158,7 +158,7 @@ export function makeLocalTree(
   const bytes: ArrayBuffer[] = [];
   for (let n = 0; n < blocks.length; ++n) {
     const block = blocks[n];
-    const isLeaf = block.rows.length <= kLeaf || block.level >= kDeepest;
+    const isLeaf = block.rows.length <= kMaxLeaf || block.level >= kMaxLevel;
     const rows = isLeaf ? block.rows : sampled(points, block.rows);
     const enlarge = Math.sqrt(block.rows.length / (rows.length || 1));
     const made = encoder.node(rows, block.level, enlarge);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Points of a PLY file that was dropped on the page: ASCII or binary, any numeric properties.
+// Reads points or splats from PLY files: ASCII or binary, any numeric properties.
 
-/** A file that is no PLY of points. */
-export class FileError extends Error {}
+/** The file is not a supported PLY file. */
+class FileError extends Error {}
 
 export interface FilePoints {
   count: number;
@@ -14,7 +14,7 @@ export interface FilePoints {
   z: Float64Array;
   classes: Uint16Array | null;
   intensities: Float32Array | null;
-  /** Of splats, with normals; else null. */
+  /** Null for points; splats have radii and normals. */
   radii: Float32Array | null;
   normals: [Float32Array, Float32Array, Float32Array] | null;
 }
@@ -40,8 +40,8 @@ const kOtherNames: Record<string, string> = {
   float32: 'float',
   float64: 'double',
 };
-const kLongestHeader = 1 << 16;
-const kMostPoints = 30_000_000;
+const kMaxHeaderBytes = 1 << 16;
+const kMaxPoints = 30_000_000;
 
 interface Property {
   name: string;
@@ -60,15 +60,15 @@ interface Header {
 
 function typeOf(word: string) {
   const found = kTypes[kOtherNames[word] ?? word];
-  if (!found) throw new FileError(`property type '${word}' is not known`);
+  if (!found) throw new FileError(`unknown property type '${word}'`);
   return found;
 }
 
-/** Vertices stand first in every PLY that anything writes. */
+/** Requires vertices to be the first element, as usual. */
 function parseHeader(bytes: Uint8Array): Header {
-  const text = new TextDecoder('latin1').decode(bytes.subarray(0, kLongestHeader));
+  const text = new TextDecoder('latin1').decode(bytes.subarray(0, kMaxHeaderBytes));
   const end = text.match(/end_header\r?\n/);
-  if (!/^ply\r?\n/.test(text) || !end) throw new FileError('no PLY file');
+  if (!/^ply\r?\n/.test(text) || !end) throw new FileError('not a PLY file');
   const header: Header = {
     format: '',
     count: -1,
@@ -83,27 +83,27 @@ function parseHeader(bytes: Uint8Array): Header {
     if (words[0] === 'element') {
       element = words[1];
       if (element === 'vertex') header.count = Number(words[2]);
-      else if (header.count < 0) throw new FileError(`'${element}' before the vertices`);
+      else if (header.count < 0) throw new FileError(`element '${element}' precedes the vertices`);
     }
     if (words[0] !== 'property' || element !== 'vertex') continue;
-    if (words[1] === 'list') throw new FileError('vertices with lists');
+    if (words[1] === 'list') throw new FileError('list properties of vertices are not supported');
     const [size, read] = typeOf(words[1]);
     header.properties.push({ name: words[2].toLowerCase(), size, read, offset: header.stride });
     header.stride += size;
   }
   if (!(header.count >= 0 && Number.isInteger(header.count))) throw new FileError('no vertices');
-  if (header.count > kMostPoints)
-    throw new FileError(`${header.count} points, the page takes ${kMostPoints} at most`);
+  if (header.count > kMaxPoints)
+    throw new FileError(`${header.count} points; the maximum is ${kMaxPoints}`);
   return header;
 }
 
-/** One column; null where the file has none of that name. */
+/** Reader of the first column with one of the names; null if there is none. */
 type Column = (names: string[]) => ((row: number) => number) | null;
 
 function binaryColumns(buffer: ArrayBuffer, header: Header): Column {
   const { bytes, count, stride, properties, format } = header;
   if (buffer.byteLength < bytes + count * stride)
-    throw new FileError(`cut short: ${count} points of ${stride} bytes are not there`);
+    throw new FileError(`truncated: ${count} points of ${stride} bytes do not fit in the file`);
   const view = new DataView(buffer, bytes);
   const little = format === 'binary_little_endian';
   return (names) => {
@@ -117,7 +117,7 @@ function textColumns(buffer: ArrayBuffer, header: Header): Column {
   const words = new TextDecoder('latin1').decode(new Uint8Array(buffer, header.bytes)).split(/\s+/);
   if (words[0] === '') words.shift();
   if (words.length < header.count * width)
-    throw new FileError(`cut short: ${header.count} points of ${width} values are not there`);
+    throw new FileError(`truncated: expected ${header.count} points of ${width} values`);
   return (names) => {
     const at = header.properties.findIndex((p) => names.includes(p.name));
     return at < 0 ? null : (row) => Number(words[row * width + at]);
@@ -137,7 +137,7 @@ export function parsePly(buffer: ArrayBuffer): FilePoints {
   const header = parseHeader(new Uint8Array(buffer));
   const { count, format } = header;
   if (!['ascii', 'binary_little_endian', 'binary_big_endian'].includes(format))
-    throw new FileError(`format '${format}' is not known`);
+    throw new FileError(`unknown format '${format}'`);
   const column = format === 'ascii' ? textColumns(buffer, header) : binaryColumns(buffer, header);
   const axes = ['x', 'y', 'z'].map((name) => column([name]));
   if (axes.some((a) => a === null)) throw new FileError('the vertices have no x, y and z');

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How the model is coloured, and which of its classes are shown.
+// Chooses the colour mode of the model and the classes to show.
 
-import { button, choice, fill, make, tick } from './dom';
+import { button, dropdown, fill, make, checkbox } from './dom';
 import { cssColor } from '../picture/color_maps';
 import type { LayerInfo, SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
@@ -25,7 +25,7 @@ function available(layers: LayerInfo[], mode: ColorMode): boolean {
   return true;
 }
 
-/** The mode that tells most of a scene: by its first layer. */
+/** The most informative mode for the first layer of a scene. */
 export function firstMode({ layers, classes }: SceneInfo): ColorMode {
   const [first] = layers;
   if (!first) return 'shading';
@@ -50,13 +50,13 @@ export class ColorPanel {
       text: kNames[m],
       disabled: !available(infos, m),
     }));
-    this.select = choice('Colour by', options, view.colorMode, (value) =>
+    this.select = dropdown('Colour by', options, view.colorMode, (value) =>
       this.choose(value as ColorMode),
     );
     this.select.id = 'color';
-    const safe = tick('For the colour-blind', view.maps.isColorBlind, (on) => this.setSafe(on));
-    safe.querySelector('input')!.id = 'color-blind';
-    fill(this.element, this.select, safe, this.classes);
+    const colorBlind = checkbox('Colour-blind palette', view.maps.isColorBlind, (on) => this.setColorBlind(on));
+    colorBlind.querySelector('input')!.id = 'color-blind';
+    fill(this.element, this.select, colorBlind, this.classes);
     this.update();
     this.choose(view.colorMode);
   }
@@ -68,14 +68,14 @@ export class ColorPanel {
     this.changed();
   }
 
-  /** The next mode that the scene has. */
+  /** Chooses the next available mode. */
   chooseNext() {
     const options = [...this.select.options].filter((o) => !o.disabled);
     const next = (options.findIndex((o) => o.value === this.view.colorMode) + 1) % options.length;
     if (options[next]) this.choose(options[next].value as ColorMode);
   }
 
-  /** Lists the classes that have been seen; a scheme has many that a scene has not. */
+  /** Lists the classes in the loaded nodes; a label scheme has many that a scene lacks. */
   update() {
     const ids = this.view.seenClasses;
     if (ids.join() === this.listed) return;
@@ -83,7 +83,7 @@ export class ColorPanel {
     this.fillClasses(ids);
   }
 
-  private setSafe(on: boolean) {
+  private setColorBlind(on: boolean) {
     this.view.maps.colorBlind = on;
     this.view.palette.colorBlind = on;
     this.fillClasses(this.view.seenClasses);
@@ -100,7 +100,7 @@ export class ColorPanel {
     const rows = ids.map((id) => {
       const swatch = make('i', { className: 'swatch' });
       swatch.style.background = cssColor(palette.color(id));
-      return tick(make('span', {}, swatch, palette.name(id)), palette.shows(id), (on) => {
+      return checkbox(make('span', {}, swatch, palette.name(id)), palette.shows(id), (on) => {
         palette.show(id, on);
         this.shown();
       });

@@ -1,13 +1,37 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The command that simulates what was driven, for the user to copy.
+// A dialog with the command that simulates the driven path, and the file of poses that it reads.
 
-import { commandLine, kPosesFile, posesCsv } from './command_line';
 import { button, byId, download, fill, make, short } from './dom';
-import type { Driver } from '../driving/driver';
+import type { Driver, TimedPose } from '../driving/driver';
 import type { LidarPanel } from './lidar_panel';
 import type { SceneSource } from '../scene_source';
+import type { Vec3 } from '../server/protocol';
+
+const kPosesFile = 'poses.csv';
+
+/** Quotes a word for a POSIX shell. */
+function quoted(word: string): string {
+  return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replace(/'/g, "'\\''")}'`;
+}
+
+function commandLine(begin: string[], sensor: string, options: string[]): string {
+  const target = ['--sensor', sensor, '--trajectory', kPosesFile];
+  const words = [...begin, ...target, ...options, '-o', 'scans'];
+  return words.map(quoted).join(' ');
+}
+
+/** The path in world coordinates, in the format of `adasplats simulate --trajectory`. */
+function posesCsv(path: TimedPose[], origin_m: Vec3): string {
+  const lines = path.map(({ time_s, pose: [x, y, z, qx, qy, qz, qw] }) => {
+    const norm = Math.hypot(qx, qy, qz, qw);
+    const position = [x + origin_m[0], y + origin_m[1], z + origin_m[2]];
+    const rotation = [qw, qx, qy, qz].map((q) => q / norm);
+    return [time_s, ...position, ...rotation].map((v) => v.toFixed(9)).join(',');
+  });
+  return ['time,x,y,z,qw,qx,qy,qz', ...lines, ''].join('\n');
+}
 
 export class CommandDialog {
   constructor(
@@ -30,7 +54,7 @@ export class CommandDialog {
     const { command, poses } = this;
     const count = this.driver.finishedPath().length;
     const dialog = byId<HTMLDialogElement>('command');
-    const save = button(`Save ${kPosesFile}`, 'The poses that were driven', () =>
+    const save = button(`Save ${kPosesFile}`, 'Save the poses of the driven path', () =>
       download(kPosesFile, new Blob([poses], { type: 'text/csv' })),
     );
     save.className = 'primary';
@@ -45,8 +69,8 @@ export class CommandDialog {
       make(
         'p',
         {},
-        `${kPosesFile} holds the driven path: ` +
-          `${short(count)} ${count === 1 ? 'pose' : 'poses'}, one a revolution.`,
+        `${kPosesFile} contains the driven path: ` +
+          `${short(count)} ${count === 1 ? 'pose' : 'poses'}, one per revolution.`,
       ),
       make(
         'div',

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Elements of the page, made in one line each.
+// Helpers that make elements of the page.
 
 type Child = Node | string | null;
 
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no #${id}`);
+  if (!found) throw new Error(`the page has no element #${id}`);
   return found as T;
 }
 
@@ -25,8 +25,8 @@ export function fill(element: HTMLElement, ...children: Child[]) {
   element.replaceChildren(...children.filter((c): c is Node | string => c !== null));
 }
 
-/** A box to tick, and its text. */
-export function tick(
+/** A checkbox with its label. */
+export function checkbox(
   text: Child,
   checked: boolean,
   changed: (on: boolean) => void,
@@ -41,7 +41,7 @@ export function tick(
   );
 }
 
-export function choice(
+export function dropdown(
   label: string,
   options: { value: string; text: string; disabled?: boolean }[],
   value: string,
@@ -57,14 +57,14 @@ export function choice(
   select.value = value;
   select.ariaLabel = label;
   select.onchange = () => {
-    // The next key drives, it does not choose.
+    // Otherwise the next driving key would change the selection.
     select.blur();
     changed(select.value);
   };
   return select;
 }
 
-/** A few buttons of which one is down. */
+/** A group of buttons, one of which is selected. */
 export function segments(
   label: string,
   options: { value: string; text: string }[],
@@ -103,6 +103,15 @@ export function slider(
   return input;
 }
 
+/** A list of names with their values. */
+export function definitions(lines: Iterable<[string, string | Node]>): HTMLDListElement {
+  return make(
+    'dl',
+    {},
+    ...[...lines].flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)]),
+  );
+}
+
 export function row(text: string, ...children: Child[]): HTMLElement {
   return make('div', { className: 'row' }, make('span', { className: 'name' }, text), ...children);
 }
@@ -111,7 +120,7 @@ export function button(text: string, title: string, clicked: () => void): HTMLBu
   return make('button', { type: 'button', textContent: text, title, onclick: clicked });
 }
 
-/** Shapes in a square of 16, drawn by the page itself: fonts need not have them. */
+/** SVG paths in a 16 x 16 box; fonts may lack these symbols. */
 const kIcons = {
   play: 'M4 2l10 6-10 6z',
   pause: 'M4 2h3v12h-3zM9 2h3v12h-3z',
@@ -131,7 +140,7 @@ export function icon(name: IconName): SVGElement {
   return svg;
 }
 
-/** A file for the user to keep. */
+/** Saves a file on the user's machine. */
 export function download(name: string, content: Blob) {
   const url = URL.createObjectURL(content);
   make('a', { href: url, download: name }).click();

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How the camera moves, and the sensor where one is driven.
+// Controls of the camera and of the driven sensor.
 
 import type { CameraModes } from '../driving/camera_modes';
-import { button, make, row, tick } from './dom';
+import { button, make, row, checkbox } from './dom';
 import type { DrivenSensor } from '../driving/driven_sensor';
 import type { SceneSource } from '../scene_source';
 
@@ -21,17 +21,17 @@ export class DrivePanel {
     this.element.append(cameras.element);
     if (!source.scene.can_simulate) return;
     this.element.append(
-      tick('Keep the height over the ground', driver.followGround, (on) =>
+      checkbox('Keep the height above ground', driver.followGround, (on) =>
         driver.setFollowGround(on),
       ),
       row('Speed', this.speed),
       make(
         'div',
         { className: 'buttons small' },
-        button('Start pose', 'Back to where it began', () =>
+        button('Start pose', 'Return to the start pose', () =>
           sensor.setPose(source.scene.start_pose),
         ),
-        button('Clear path', 'The path begins here', () => sensor.clearPath()),
+        button('Clear path', 'Start a new path at the current pose', () => sensor.clearPath()),
       ),
     );
   }

@@ -1,33 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The help: what keys and mouse do.
+// The help dialog: keys and mouse.
 
 import { button, fill, make } from './dom';
 
 const kKeys: [string[], string][] = [
-  [['W', 'S'], 'accelerate, brake and go back'],
-  [['A', 'D'], 'steer; on the spot where the sensor stands'],
+  [['W', 'S'], 'accelerate; brake and reverse'],
+  [['A', 'D'], 'steer; turn on the spot when stopped'],
   [['Shift'], 'faster'],
   [['Q', 'E'], 'down, up'],
   [['Space'], 'stop'],
   [['R'], 'run or pause the LiDAR'],
   [['1', '2', '3'], 'camera: orbit, follow, top'],
   [['K'], 'play or pause the recording'],
-  [[',', '.'], 'one scan back, one on'],
+  [[',', '.'], 'previous, next scan'],
   [['M', 'B', 'V'], 'measure, clipping box, profile'],
   [['C'], 'next colour mode'],
-  [['F'], 'look at the whole scene'],
-  [['P'], 'fold the panel'],
-  [['Esc'], 'close what is open'],
+  [['F'], 'show all of the scene'],
+  [['P'], 'collapse the panel'],
+  [['Esc'], 'close the open card or tool'],
 ];
 const kMouse: [string, string][] = [
-  ['Drag', 'turn the view (from above: move it)'],
+  ['Drag', 'rotate the view (top view: move it)'],
   ['Right drag', 'move the view'],
-  ['Wheel', 'nearer, farther, to where the mouse is'],
-  ['Drag the sensor', 'move it in its plane'],
+  ['Wheel', 'zoom at the mouse position'],
+  ['Drag the sensor', 'move it at its height'],
   ['Drag an object', 'move it over the ground'],
-  ['Click', 'what is there: class, range, splat'],
+  ['Click', 'show class, range and splat'],
 ];
 
 export function fillHelp(dialog: HTMLDialogElement) {
@@ -43,8 +43,8 @@ export function fillHelp(dialog: HTMLDialogElement) {
     make(
       'p',
       {},
-      'Splats are drawn merged where they are small on the screen; ' +
-        'the LiDAR always meets the whole model.',
+      'Splats that are small on the screen are drawn merged; ' +
+        'the LiDAR always uses the full model.',
     ),
     button('Close', 'Close (Esc)', () => dialog.close()),
   );

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The few keys and gestures that a new user needs, over the picture until they are sent away.
+// Hints with the main keys and gestures, shown over the picture until closed.
 
 import { button, byId, fill, make } from './dom';
 
@@ -17,7 +17,7 @@ const kAlways: Hint[] = [
   [['?'], 'all keys'],
 ];
 
-/** Storage is denied in private windows: then the hints are there each time. */
+/** Private windows deny storage; the hints then appear each time. */
 function remembered(): boolean {
   try {
     return window.localStorage.getItem(kRemembered) === 'off';
@@ -33,7 +33,7 @@ export function showKeyHints(plays: boolean) {
     try {
       window.localStorage.setItem(kRemembered, 'off');
     } catch {
-      // They come again with the next page.
+      // The hints will appear again.
     }
   };
   const playing: Hint[] = plays ? [[['K'], 'play']] : [];

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What is drawn: layers over each other or two side by side.
+// Chooses the layers to draw: all overlaid, or two side by side.
 
-import { button, choice, fill, make, row, segments, slider, tick } from './dom';
-import { sizeText } from './loading';
+import { button, dropdown, fill, make, row, segments, slider, checkbox } from './dom';
+import { sizeText } from './notices';
 import type { SceneView } from '../picture/scene_view';
 
 export function layersPanel(view: SceneView, add: () => void): HTMLElement {
@@ -19,7 +19,7 @@ export function layersPanel(view: SceneView, add: () => void): HTMLElement {
     view.moved();
   };
   const side = (which: 0 | 1, label: string) =>
-    choice(
+    dropdown(
       label,
       view.layers.map((l, i) => ({ value: String(i), text: `${label}: ${l.info.name}` })),
       String(sides[which]),
@@ -29,7 +29,7 @@ export function layersPanel(view: SceneView, add: () => void): HTMLElement {
       },
     );
   const list = view.layers.map((layer) =>
-    tick(
+    checkbox(
       make(
         'span',
         {},
@@ -55,7 +55,7 @@ export function layersPanel(view: SceneView, add: () => void): HTMLElement {
   );
   split.id = 'arrangement';
   const points = slider(
-    'Size of points',
+    'Point size',
     { low: 1, high: 8, step: 0.5, value: view.shared.point_px.value },
     (value) => {
       view.shared.point_px.value = value;
@@ -75,7 +75,7 @@ export function layersPanel(view: SceneView, add: () => void): HTMLElement {
     make(
       'div',
       { className: 'buttons small' },
-      button('Add a file …', 'PLY points or splats; or drop them on the picture', add),
+      button('Add a file …', 'Add PLY points or splats; or drop files on the picture', add),
     ),
     many ? split : null,
     many ? pair : null,

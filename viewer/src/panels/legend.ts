@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the colours of the picture stand for: a bar with its unit for the model, one for the scan.
+// The legend: a colour scale with its unit for the model and one for the scan.
 
 import { byId, fill, make } from './dom';
 import { cssColor, type ColorMaps, type ColorRole } from '../picture/color_maps';
@@ -9,11 +9,11 @@ import type { ClassPalette } from '../picture/class_palette';
 import type { LayerInfo, SceneInfo } from '../server/protocol';
 import type { ColorMode, ScanMode } from '../picture/shaders';
 
-/** Of a scale of numbers. */
+/** A colour scale. */
 interface Bar {
   title: string;
   role: ColorRole;
-  /** Where in the map the scale begins. */
+  /** Position in the colour map (0..1) where the scale starts. */
   from: number;
   ends: string[];
   note?: string;
@@ -22,17 +22,17 @@ interface Bar {
 export interface LegendSubject {
   layers: LayerInfo[];
   mode: ColorMode;
-  /** Classes that have been seen. */
+  /** Classes in the loaded nodes. */
   classes: number[];
   scan: { mode: ScanMode; maxRange_m: number; rings: number } | null;
-  /** A recorded scan lies over the simulated one, in one colour. */
+  /** Whether a recorded scan is drawn in one colour over the simulated one. */
   both: boolean;
 }
 
-const kMostClasses = 10;
+const kMaxClasses = 10;
 const kNames: Record<string, string> = {
-  normal: 'Direction of surfaces',
-  shading: 'Shape alone',
+  normal: 'Surface normal',
+  shading: 'Shape only',
 };
 
 function numbers(low: number, high: number, digits: number): string[] {
@@ -44,15 +44,15 @@ function errorBar(layers: LayerInfo[]): Bar | null {
   if (!layer) return null;
   const [low, high] = layer.error_range_m;
   if (low >= 0) {
-    const [least, middle, most] = numbers(low, high, 3);
-    return { title: 'Distance, m', role: 'amount', from: 0, ends: [least, middle, `≥ ${most}`] };
+    const [min, middle, max] = numbers(low, high, 3);
+    return { title: 'Distance, m', role: 'amount', from: 0, ends: [min, middle, `≥ ${max}`] };
   }
   return {
     title: 'Range error, m: model minus measured',
     role: 'signed',
     from: 0,
     ends: [`≤ −${high.toFixed(2)} early`, '0', `≥ ${high.toFixed(2)} late`],
-    note: 'Yellow: the beam meets nothing. Grey: no beam tells.',
+    note: 'Yellow: beam without a hit. Grey: no data.',
   };
 }
 
@@ -74,7 +74,7 @@ function modelBar(scene: SceneInfo, { layers, mode }: LegendSubject): Bar | null
 function scanBar(scan: NonNullable<LegendSubject['scan']>): Bar | null {
   const { mode, maxRange_m, rings } = scan;
   if (mode === 'range') {
-    // A quarter of the range is in the middle: the scale goes by the root.
+    // The scale is a square root, so a quarter of the range is at the middle.
     const ends = ['0', (maxRange_m / 4).toFixed(0), maxRange_m.toFixed(0)];
     return { title: 'Scan: range, m', role: 'distance', from: 0.15, ends };
   }
@@ -99,7 +99,7 @@ export class Legend {
     private readonly palette: ClassPalette,
   ) {}
 
-  /** Makes it anew where something changed. */
+  /** Rebuilds the legend if something changed. */
   show(subject: LegendSubject, version: number) {
     const key = JSON.stringify([subject, version]);
     if (key === this.shown) return;
@@ -135,7 +135,7 @@ export class Legend {
   private classes(ids: number[]): HTMLElement | null {
     if (ids.length === 0) return null;
     const shown = ids.filter((id) => this.palette.shows(id));
-    const rows = shown.slice(0, kMostClasses).map((id) => {
+    const rows = shown.slice(0, kMaxClasses).map((id) => {
       const swatch = make('i', { className: 'swatch' });
       swatch.style.background = cssColor(this.palette.color(id));
       return make('span', {}, swatch, this.palette.name(id));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The LiDAR: which, with which parameters, and whether it scans.
+// Chooses the LiDAR and its parameters, and starts or pauses it.
 
-import { button, choice, fill, grouped, make, tick } from './dom';
+import { button, dropdown, fill, grouped, make, checkbox } from './dom';
 import type { SensorInfo, SensorMessage, Settings } from '../server/protocol';
 
 interface Field {
@@ -14,7 +14,7 @@ interface Field {
   high: number;
   step: number;
   help: string;
-  /** Means the same with every sensor, so it outlives a change of the sensor. */
+  /** Independent of the sensor, so it is kept when the sensor changes. */
   general?: boolean;
 }
 
@@ -26,7 +26,7 @@ const kFields: Field[] = [
     low: 0,
     high: 1,
     step: 0.005,
-    help: 'Standard deviation of the noise on ranges',
+    help: 'Standard deviation of the range noise',
   },
   {
     key: 'rotation_hz',
@@ -35,34 +35,34 @@ const kFields: Field[] = [
     low: 0.5,
     high: 50,
     step: 0.5,
-    help: 'Revolutions a second',
+    help: 'Revolutions per second',
   },
   {
     key: 'min_range_m',
-    text: 'Nearest',
+    text: 'Minimum range',
     unit: 'm',
     low: 0,
     high: 100,
     step: 0.1,
-    help: 'Echoes nearer than this are not told',
+    help: 'Closer returns are suppressed',
   },
   {
     key: 'max_range_m',
-    text: 'Farthest',
+    text: 'Maximum range',
     unit: 'm',
     low: 1,
     high: 1000,
     step: 1,
-    help: 'Echoes farther than this are not told',
+    help: 'Farther returns are suppressed',
   },
   {
     key: 'sub_rays',
-    text: 'Rays a beam',
+    text: 'Rays per beam',
     unit: '',
     low: 1,
     high: 19,
     step: 1,
-    help: 'Rays over the cross-section of a beam',
+    help: 'Rays across the cross-section of a beam',
     general: true,
   },
   {
@@ -72,7 +72,7 @@ const kFields: Field[] = [
     low: 1,
     high: 3,
     step: 1,
-    help: 'Most returns of a firing',
+    help: 'Maximum returns per firing',
   },
   {
     key: 'rain_mm_h',
@@ -81,7 +81,7 @@ const kFields: Field[] = [
     low: 0,
     high: 200,
     step: 1,
-    help: 'Rate of rain',
+    help: 'Rainfall rate',
     general: true,
   },
   {
@@ -91,7 +91,7 @@ const kFields: Field[] = [
     low: 0,
     high: 10000,
     step: 10,
-    help: 'How far one sees in the fog; empty: no fog',
+    help: 'Visibility in the fog; empty: no fog',
     general: true,
   },
   {
@@ -101,20 +101,20 @@ const kFields: Field[] = [
     low: 0,
     high: 50,
     step: 0.5,
-    help: 'Rate of snow, as water',
+    help: 'Snowfall rate, as water equivalent',
     general: true,
   },
 ];
 const kSwitches = [
-  { key: 'noise', text: 'Noise', help: 'Of the sensor, on ranges and angles' },
-  { key: 'rolling_shutter', text: 'Rolling shutter', help: 'The sensor moves while it turns' },
+  { key: 'noise', text: 'Noise', help: 'Sensor noise on ranges and angles' },
+  { key: 'rolling_shutter', text: 'Rolling shutter', help: 'Sensor motion during a revolution' },
 ];
 const kGeneral = new Set([
   ...kSwitches.map((s) => s.key),
   ...kFields.filter((f) => f.general).map((f) => f.key),
 ]);
 
-/** Whether two values of a setting mean the same; null and 0 are both "none". */
+/** Whether two values of a setting are equivalent; null and 0 both mean none. */
 function same(a: number | boolean | null, b: number | boolean | null | undefined): boolean {
   if (typeof a === 'boolean') return a === b;
   return typeof b !== 'boolean' && Math.abs((a ?? 0) - (b ?? 0)) <= 1e-6 * Math.abs(a ?? 0);
@@ -129,13 +129,13 @@ export class LidarPanel {
   readonly element = make('div');
   name: string;
   running = false;
-  /** What the server uses; null before its first answer. */
+  /** The server's settings; null before its first answer. */
   confirmed: SensorMessage | null = null;
-  /** What the user changed, and what of it the server took. */
+  /** Settings changed by the user, and those of them that the server last accepted. */
   private changed: Settings = {};
-  private taken: { name: string; settings: Settings } | null = null;
-  /** What was asked for has not been answered. */
-  private asked = false;
+  private accepted: { name: string; settings: Settings } | null = null;
+  /** Whether a request has not been answered yet. */
+  private isPending = false;
   private readonly select: HTMLSelectElement;
   private readonly facts = make('p', { className: 'facts' });
   private readonly inputs = new Map<string, HTMLInputElement>();
@@ -149,14 +149,14 @@ export class LidarPanel {
     this.name = chosen;
     const options = sensors.map((s) => ({ value: s.name, text: s.title }));
     if (!sensors.some((s) => s.name === chosen)) options.unshift({ value: chosen, text: chosen });
-    this.select = choice('LiDAR', options, chosen, (name) => this.chooseSensor(name));
+    this.select = dropdown('LiDAR', options, chosen, (name) => this.chooseSensor(name));
     this.select.id = 'sensor';
-    this.runButton = button('', 'Scan without end, or stop (R)', () =>
+    this.runButton = button('', 'Start or pause scanning (R)', () =>
       this.setRunning(!this.running),
     );
     this.runButton.id = 'run';
     this.runButton.className = 'primary';
-    const reset = button('Reset', "The sensor's own parameters", () => this.reset());
+    const reset = button('Reset', "Restore the sensor's own parameters", () => this.reset());
     fill(
       this.element,
       this.select,
@@ -180,39 +180,37 @@ export class LidarPanel {
     this.changed = Object.fromEntries(
       Object.entries(this.changed).filter(([key]) => kGeneral.has(key)),
     );
-    this.ask();
+    this.send();
   }
 
-  /**
-   * Tells the server what was chosen. A new one tells what it begins with before it answers.
-   */
-  ask() {
-    this.asked = true;
+  /** Sends the chosen sensor and settings to the server. */
+  send() {
+    this.isPending = true;
     this.events.choose(this.name, { ...this.changed });
   }
 
   set(key: string, value: number | boolean | null) {
     if (value === null) delete this.changed[key];
     else this.changed[key] = value;
-    this.ask();
+    this.send();
   }
 
-  /** The server's answer; one to an earlier question is not the last word. */
+  /** The server's answer; answers to earlier requests do not change the fields. */
   confirm(message: SensorMessage) {
     this.confirmed = message;
-    if (this.asked && !this.isAnswer(message)) return;
-    this.asked = false;
-    this.taken = { name: message.name, settings: { ...this.changed } };
+    if (this.isPending && !this.isAnswer(message)) return;
+    this.isPending = false;
+    this.accepted = { name: message.name, settings: { ...this.changed } };
     this.name = this.select.value = message.name;
     this.showSettings(message);
   }
 
-  /** The server kept what it had: so do the fields. */
-  refuse() {
-    if (!this.asked || !this.confirmed) return;
-    this.asked = false;
+  /** The server rejected the request: restores the fields. */
+  reject() {
+    if (!this.isPending || !this.confirmed) return;
+    this.isPending = false;
     const { name } = this.confirmed;
-    this.changed = this.taken?.name === name ? { ...this.taken.settings } : {};
+    this.changed = this.accepted?.name === name ? { ...this.accepted.settings } : {};
     this.name = this.select.value = name;
     this.showSettings(this.confirmed);
   }
@@ -225,7 +223,7 @@ export class LidarPanel {
 
   private reset() {
     this.changed = {};
-    this.ask();
+    this.send();
   }
 
   private showRunning() {
@@ -235,7 +233,7 @@ export class LidarPanel {
 
   private showSettings({ rings, rays, columns, settings }: SensorMessage) {
     const image = `${rings} rings × ${grouped(columns)} columns`;
-    this.facts.textContent = `${image}, ${grouped(rays)} rays a scan`;
+    this.facts.textContent = `${image}, ${grouped(rays)} rays per scan`;
     for (const [key, input] of this.inputs) {
       const value = settings[key];
       input.parentElement?.classList.toggle('changed', key in this.changed);
@@ -246,7 +244,7 @@ export class LidarPanel {
   }
 
   private makeSwitch({ key, text, help }: (typeof kSwitches)[number]): HTMLElement {
-    const label = tick(text, false, (on) => this.set(key, on));
+    const label = checkbox(text, false, (on) => this.set(key, on));
     label.title = help;
     const input = label.querySelector('input') as HTMLInputElement;
     input.id = `setting-${key}`;

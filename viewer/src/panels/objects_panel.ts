@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The objects of a world, and where those stand that were dragged.
+// Lists the objects of a world and the positions of the dragged ones.
 
-import { button, fill, make } from './dom';
+import { button, definitions, fill, make } from './dom';
 import type { WorldObjects } from '../picture/world_objects';
 import type { Vec3 } from '../server/protocol';
 
-const kMost = 30;
+const kMaxObjects = 30;
 
 export class ObjectsPanel {
   readonly element = make('div');
@@ -19,26 +19,26 @@ export class ObjectsPanel {
   ) {}
 
   update() {
-    const rows = this.objects.objects.slice(0, kMost).map(({ info, dragged }) => {
+    const rows = this.objects.objects.slice(0, kMaxObjects).map(({ info, dragged }) => {
       const at = dragged
         ? [0, 1, 2].map((i) => (dragged[i] + this.origin_m[i]).toFixed(2)).join(', ')
         : info.poses.length > 1
-          ? 'moves'
-          : 'stands';
-      return [info.name, at];
+          ? 'moving'
+          : 'static';
+      return [info.name, at] as [string, string];
     });
     if (JSON.stringify(rows) === this.shown) return;
     this.shown = JSON.stringify(rows);
     const more = this.objects.objects.length - rows.length;
     fill(
       this.element,
-      make('p', { className: 'facts' }, 'Drag an object to move it; the LiDAR sees it there.'),
-      make('dl', {}, ...rows.flatMap(([n, at]) => [make('dt', {}, n), make('dd', {}, at)])),
+      make('p', { className: 'facts' }, 'Drag an object to move it; the LiDAR sees the move.'),
+      definitions(rows),
       more > 0 ? make('p', { className: 'facts' }, `and ${more} more`) : null,
       make(
         'div',
         { className: 'buttons small' },
-        button('Let go', 'Objects that were dragged go their own way again', () =>
+        button('Reset objects', 'Return dragged objects to their own motion', () =>
           this.objects.release(),
         ),
       ),

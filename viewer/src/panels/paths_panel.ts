@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The trajectories of the scene, as lines.
+// Draws the trajectories of the scene as lines.
 
-import { grouped, make, tick } from './dom';
+import { grouped, make, checkbox } from './dom';
 import { PathLine } from '../picture/path_line';
 import type { SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
@@ -26,7 +26,7 @@ export class PathsPanel {
     });
     this.element.append(
       ...trajectories.map(({ name, poses }, i) =>
-        tick(`${name}, ${grouped(poses.length)} poses`, true, (on) => {
+        checkbox(`${name}, ${grouped(poses.length)} poses`, true, (on) => {
           this.lines[i].object.visible = on;
           view.invalidate();
         }),

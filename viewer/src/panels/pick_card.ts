@@ -1,20 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What lies under a click, told on a card.
+// A card with the properties of the clicked splat or echo.
 
 import { Vector3 } from 'three';
-import { button, fill, grouped, make } from './dom';
+import { button, definitions, fill, grouped, make } from './dom';
 import type { ClassPalette } from '../picture/class_palette';
 import { cssColor } from '../picture/color_maps';
 import type { PickedMessage, Vec3 } from '../server/protocol';
 import type { Echo } from '../picture/scan_cloud';
+import { worldText } from '../tools/coordinates';
 
 type Line = [string, string | Node];
-
-function triple(v: Vec3, digits: number): string {
-  return v.map((c) => c.toFixed(digits)).join(', ');
-}
 
 export class PickCard {
   constructor(
@@ -27,11 +24,7 @@ export class PickCard {
     this.element.hidden = true;
   }
 
-  get shown(): boolean {
-    return !this.element.hidden;
-  }
-
-  /** `sensor`: where the LiDAR is, in the layers' coordinates. */
+  /** `sensor`: position of the LiDAR in the layers' coordinates. */
   show(found: PickedMessage | null, echo: Echo | null, sensor: Vector3) {
     const lines: Line[] = [];
     if (echo) lines.push(...this.echoLines(echo));
@@ -43,12 +36,7 @@ export class PickCard {
       make('strong', {}, echo ? 'Echo' : 'Splat'),
       button('×', 'Close (Esc)', () => this.hide()),
     );
-    const table = make(
-      'dl',
-      {},
-      ...lines.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)]),
-    );
-    fill(this.element, title, table);
+    fill(this.element, title, definitions(lines));
     this.element.hidden = false;
   }
 
@@ -59,7 +47,7 @@ export class PickCard {
       ['Range', `${echo.range_m.toFixed(3)} m`],
       ['Ring, column', `${echo.ring}, ${echo.column}`],
     );
-    lines.push(['Position', this.world(echo.position.toArray() as Vec3)]);
+    lines.push(['Position', worldText(echo.position, this.origin_m)]);
     if (echo.intensity !== null) lines.push(['Intensity', echo.intensity.toFixed(3)]);
     if (echo.return_index > 0) lines.push(['Return', String(echo.return_index + 1)]);
     return lines;
@@ -67,13 +55,13 @@ export class PickCard {
 
   private splatLines(found: PickedMessage, echo: Echo | null, sensor: Vector3): Line[] {
     const lines: Line[] = [];
-    const range = new Vector3(...found.position).distanceTo(sensor);
+    const position = new Vector3(...found.position);
     if (found.class !== undefined)
       lines.push([echo ? 'Splat class' : 'Class', this.className(found.class, found.class_name)]);
-    if (!echo) lines.push(['From the sensor', `${range.toFixed(3)} m`]);
+    if (!echo) lines.push(['Distance to sensor', `${position.distanceTo(sensor).toFixed(3)} m`]);
     lines.push(['Splat', grouped(found.primitive)], ['Radius', `${found.radius_m.toFixed(3)} m`]);
-    if (!echo) lines.push(['Position', this.world(found.position)]);
-    lines.push(['Normal', triple(found.normal, 3)]);
+    if (!echo) lines.push(['Position', worldText(position, this.origin_m)]);
+    lines.push(['Normal', found.normal.map((c) => c.toFixed(3)).join(', ')]);
     if (found.intensity !== undefined)
       lines.push([echo ? 'Splat intensity' : 'Intensity', found.intensity.toFixed(3)]);
     return lines;
@@ -83,9 +71,5 @@ export class PickCard {
     const swatch = make('i', { className: 'swatch' });
     swatch.style.background = cssColor(this.palette.color(id));
     return make('span', {}, swatch, name ?? this.palette.name(id));
-  }
-
-  private world(position: Vec3): string {
-    return triple(position.map((v, i) => v + this.origin_m[i]) as Vec3, 3);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The strip below the scene: the live scan as a range image, and what it is.
+// The strip below the scene: the scan as a range image, with its size.
 
 import { byId, fill, make, segments } from './dom';
 import type { ClassPalette } from '../picture/class_palette';
@@ -41,12 +41,12 @@ export class RangeStrip {
     if (packet) this.image.draw(packet);
   }
 
-  /** Another scan is shown: soon, in a frame. */
+  /** Schedules a redraw for another scan. */
   renew() {
     this.dirty = true;
   }
 
-  /** In each frame; a new scan is drawn soon, not in all of them. */
+  /** Called in each frame; redraws at most every kImageMs. */
   step(isNewScan: boolean) {
     this.dirty ||= isNewScan;
     if (!this.dirty || performance.now() - this.lastMs <= kImageMs) return;

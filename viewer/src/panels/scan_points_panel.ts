@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How the points of scans are drawn, live and recorded ones alike.
+// Chooses colour and size of the points of live and recorded scans.
 
-import { make, row, segments, slider, tick } from './dom';
+import { make, row, segments, slider, checkbox } from './dom';
 import type { ScanCloud } from '../picture/scan_cloud';
 import type { SceneView } from '../picture/scene_view';
 import { kScanModes, type ScanMode } from '../picture/shaders';
@@ -29,21 +29,21 @@ export class ScanPointsPanel {
       },
     );
     const size = slider(
-      'Size of scan points',
+      'Scan point size',
       { low: 1, high: 8, step: 0.5, value: this.pixels },
       (value) => {
         this.pixels = value;
         this.style();
       },
     );
-    const show = tick('Live scan', live.object.visible, (on) => {
+    const show = checkbox('Live scan', live.object.visible, (on) => {
       live.object.visible = on;
       view.invalidate();
     });
     this.element = make('div', {}, canSimulate ? show : null, modes, row('Points', size));
   }
 
-  /** Of the scan that is drawn, for the legend; null: none is. */
+  /** What the legend shows of the visible scan; null: no scan is visible. */
   get subject() {
     if (this.view.colorMode === 'error') return null;
     const cloud = this.clouds.find((c) => c.packet !== null && c.object.visible);
@@ -52,7 +52,7 @@ export class ScanPointsPanel {
     return { mode: this.mode, maxRange_m: max_range_m, rings };
   }
 
-  /** Draws the clouds as it was chosen, and as large on the screen of now. */
+  /** Applies mode and size to the clouds, at the current pixel ratio. */
   style() {
     for (const cloud of this.clouds) {
       cloud.mode = this.mode;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The panel beside the scene: a section a subject, made anew for each scene.
+// The side panel: one section per topic, rebuilt for each scene.
 
 import { ColorPanel } from './color_panel';
-import { byId, fill, make, tick } from './dom';
+import { byId, fill, make, checkbox } from './dom';
 import type { DrivePanel } from './drive_panel';
 import type { ObjectsPanel } from './objects_panel';
 import { layersPanel } from './layers_panel';
@@ -15,7 +15,7 @@ import { PathsPanel } from './paths_panel';
 import type { SceneView } from '../picture/scene_view';
 import type { ColorMode } from '../picture/shaders';
 
-/** As in app.css. */
+/** Same width as in app.css. */
 const kNarrow = '(max-width: 640px)';
 
 export interface SidePanelParts {
@@ -40,7 +40,7 @@ export class SidePanel {
     private readonly events: SidePanelEvents,
   ) {
     byId('fold').onclick = () => this.fold();
-    // On a phone the picture comes first.
+    // On a phone the panel starts collapsed.
     if (window.matchMedia(kNarrow).matches) this.fold();
   }
 
@@ -78,7 +78,7 @@ export class SidePanel {
     this.colors?.chooseNext();
   }
 
-  /** Follows what has been loaded. */
+  /** Updates what depends on the loaded nodes. */
   update() {
     this.parts.objects.update();
     this.colors?.update();
@@ -91,12 +91,12 @@ function section(title: string, content: HTMLElement, open = true): HTMLElement 
 
 function drawingPanel(view: SceneView): HTMLElement {
   const { stage } = view;
-  const usual = stage.outline;
+  const defaultOutline = stage.outline;
   return make(
     'div',
     {},
-    tick('Darken edges', stage.outline > 0, (on) => {
-      stage.outline = on ? usual : 0;
+    checkbox('Darken edges', stage.outline > 0, (on) => {
+      stage.outline = on ? defaultOutline : 0;
       view.invalidate();
     }),
   );

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The bar below the scene by which a recording is played.
+// The playback bar below the scene.
 
 import {
   button,
   byId,
-  choice,
+  dropdown,
   fill,
   icon,
   make,
@@ -17,12 +17,12 @@ import {
 import { kScanSources, type Playback, type ScanSource } from '../playback';
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** Positions of the slider. */
+/** Steps of the slider. */
 const kSteps = 10_000;
 
 export class TimelinePanel {
   private readonly play: HTMLButtonElement;
-  private readonly place: HTMLInputElement;
+  private readonly timeSlider: HTMLInputElement;
   private readonly facts = make('span', { id: 'timeline-facts', className: 'facts' });
   private readonly sources: ReturnType<typeof segments>;
 
@@ -33,12 +33,12 @@ export class TimelinePanel {
     const { timeline, tracks } = playback;
     this.play = iconButton('play', 'Play or pause (K)', () => this.toggle());
     this.play.id = 'play';
-    this.place = slider('Time', { low: 0, high: kSteps, step: 1, value: 0 }, (value) => {
+    this.timeSlider = slider('Time', { low: 0, high: kSteps, step: 1, value: 0 }, (value) => {
       if (timeline) this.playback.seek((value / kSteps) * timeline.duration_s);
       this.show();
     });
-    this.place.id = 'time';
-    const speed = choice(
+    this.timeSlider.id = 'time';
+    const speed = dropdown(
       'Speed',
       kSpeeds.map((s) => ({ value: String(s), text: `${s} ×` })),
       '1',
@@ -48,13 +48,13 @@ export class TimelinePanel {
     );
     speed.id = 'speed';
     this.sources = segments(
-      'Scans that are shown',
+      'Scans to show',
       kScanSources.map((s) => ({ value: s, text: s[0].toUpperCase() + s.slice(1) })),
       playback.source,
       (source) => playback.choose(source as ScanSource),
     );
     this.sources.id = 'scan-source';
-    const track = choice(
+    const track = dropdown(
       'Recording',
       tracks.map((t, i) => ({ value: String(i), text: t.name })),
       '0',
@@ -64,10 +64,10 @@ export class TimelinePanel {
     bar.hidden = timeline === null;
     fill(
       bar,
-      iconButton('back', 'One scan back (,)', () => this.stepBy(-1)),
+      iconButton('back', 'Previous scan (,)', () => this.stepBy(-1)),
       this.play,
-      iconButton('forward', 'One scan on (.)', () => this.stepBy(1)),
-      this.place,
+      iconButton('forward', 'Next scan (.)', () => this.stepBy(1)),
+      this.timeSlider,
       this.facts,
       speed,
       tracks.length > 1 ? track : null,
@@ -86,12 +86,7 @@ export class TimelinePanel {
     this.show();
   }
 
-  choose(source: ScanSource) {
-    this.sources.choose(source);
-    this.playback.choose(source);
-  }
-
-  /** Where it is now. */
+  /** Shows the current time. */
   show() {
     const { timeline } = this.playback;
     if (!timeline) return;
@@ -100,10 +95,10 @@ export class TimelinePanel {
       fill(this.play, icon(playing ? 'pause' : 'play'));
       this.play.ariaPressed = String(playing);
     }
-    this.place.value = String(duration_s > 0 ? Math.round((time_s / duration_s) * kSteps) : 0);
+    this.timeSlider.value = String(duration_s > 0 ? Math.round((time_s / duration_s) * kSteps) : 0);
     const scan = scanNumber < 0 ? '' : ` · scan ${scanNumber + 1} of ${track.scans.length}`;
     const text = `${time_s.toFixed(1)} of ${duration_s.toFixed(1)} s`;
-    this.place.setAttribute('aria-valuetext', text + scan);
+    this.timeSlider.setAttribute('aria-valuetext', text + scan);
     this.facts.textContent = text + scan;
   }
 }

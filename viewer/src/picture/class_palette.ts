@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Colours of classes, one texel an id.
+// Colours of classes, one texel per id.
 
 import { DataTexture, NearestFilter, RGBAFormat, UnsignedByteType } from 'three';
 import type { ClassInfo, Vec3 } from '../server/protocol';
 
 const kSide = 256;
 const kNoColor: Vec3 = [150, 156, 164];
-/** The darkest class is still seen before the background. */
-const kLeastBrightness = 70;
+/** Minimum brightness, so that dark classes stand out from the background. */
+const kMinBrightness = 70;
 
-/** Black (mostly "unlabeled") and other dark colours, lifted off the background. */
-export function visibleColor(color: Vec3): Vec3 {
+/** Brightens black (usually "unlabeled") and other dark colours. */
+function visibleColor(color: Vec3): Vec3 {
   const brightest = Math.max(...color);
-  if (brightest >= kLeastBrightness) return color;
-  if (brightest === 0) return [kLeastBrightness, kLeastBrightness, kLeastBrightness];
-  return color.map((c) => (c * kLeastBrightness) / brightest) as Vec3;
+  if (brightest >= kMinBrightness) return color;
+  if (brightest === 0) return [kMinBrightness, kMinBrightness, kMinBrightness];
+  return color.map((c) => (c * kMinBrightness) / brightest) as Vec3;
 }
 
-/** Of a class that no scheme tells of: neighbouring ids differ by the golden angle. */
+/** Colour of a class outside the label scheme: successive hues differ by the golden angle. */
 function colorOfUnknown(id: number): Vec3 {
   if (id === 0) return kNoColor;
   const hue = (id * 137.508) % 360;
@@ -40,7 +40,7 @@ const kSafeHues: Vec3[] = [
   [213, 94, 0],
   [204, 121, 167],
 ];
-/** Of hues that are used again, by how often they were: as they are, darker, lighter. */
+/** Shades for repeated use of the hues: unchanged, darker, lighter, darkest. */
 const kSafeShades: ((c: number) => number)[] = [
   (c) => c,
   (c) => 0.6 * c,
@@ -48,14 +48,14 @@ const kSafeShades: ((c: number) => number)[] = [
   (c) => 0.4 * c,
 ];
 
-/** Of the class with this number in its scheme, for eyes that do not tell red from green. */
+/** Colour of the class at this index of its scheme, for viewers with a red-green deficiency. */
 function safeColor(number: number): Vec3 {
   const hue = kSafeHues[number % kSafeHues.length];
   const shade = kSafeShades[Math.floor(number / kSafeHues.length) % kSafeShades.length];
   return visibleColor(hue.map((c) => Math.round(shade(c))) as Vec3);
 }
 
-/** What each of the 65,536 classes looks like: colour, and alpha 0 where it is hidden. */
+/** Colours of all 65,536 class ids; alpha 0 hides a class. */
 export class ClassPalette {
   readonly texture: DataTexture;
   private readonly bytes = new Uint8Array(kSide * kSide * 4);
@@ -77,7 +77,7 @@ export class ClassPalette {
     this.fill();
   }
 
-  /** What is hidden stays so. */
+  /** Hidden classes stay hidden. */
   set colorBlind(on: boolean) {
     this.safe = on;
     this.fill();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A box that cuts: only what lies in it is drawn, or only what does not.
+// The clipping box: only its inside is drawn, or only its outside.
 
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
@@ -13,22 +13,22 @@ const kUp = new Vector3(0, 0, 1);
 export class ClipBox {
   mode: ClipMode = 'off';
   readonly center = new Vector3();
-  /** Half the sides. */
+  /** Half the side lengths, m. */
   readonly half = new Vector3(10, 10, 5);
   yaw_rad = 0;
-  /** For the shaders; the same objects in every material. */
+  /** Shared by all materials. */
   readonly uniforms = {
     clip_mode: { value: 0 },
     clip_from_world: { value: new Matrix4() },
   };
 
-  /** After any change. */
+  /** Must be called after any change. */
   apply() {
     this.uniforms.clip_mode.value = kClipModes.indexOf(this.mode);
     this.uniforms.clip_from_world.value.copy(this.worldFromBox()).invert();
   }
 
-  /** Of a cube from -1 to 1. */
+  /** Transform of the cube from -1 to 1. */
   worldFromBox(): Matrix4 {
     return new Matrix4().compose(this.center, this.rotation, this.half);
   }
@@ -37,7 +37,7 @@ export class ClipBox {
     return new Quaternion().setFromAxisAngle(kUp, this.yaw_rad);
   }
 
-  /** Of the box, in world coordinates. */
+  /** Axis of the box in world coordinates. */
   axis(index: number): Vector3 {
     return new Vector3().setComponent(index, 1).applyQuaternion(this.rotation);
   }

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Colours of numbers: perceptual maps, each in a role that a palette for the colour-blind can fill
-// with another one.
+// Colour maps for numbers. Each role has a usual map and one for the colour-blind.
 
 import { DataTexture, LinearFilter, RGBAFormat, UnsignedByteType } from 'three';
 import type { Vec3 } from '../server/protocol';
 
 /**
- * Even steps of matplotlib's maps (van der Walt and Smith, CC0), of cividis (Nunez, Anderton and
- * Renslow 2018), which looks the same with a red-green deficiency, and of ColorBrewer's RdBu
- * (Brewer 2013), which both kinds of eyes tell apart.
+ * Evenly spaced samples of matplotlib's maps (van der Walt and Smith, CC0), of cividis (Nunez,
+ * Anderton and Renslow 2018), which looks the same with a red-green deficiency, and of ColorBrewer's
+ * RdBu (Brewer 2013), which remains distinguishable with one.
  */
 const kMaps = {
   viridis: '440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725',
@@ -21,11 +20,11 @@ const kMaps = {
 };
 type MapName = keyof typeof kMaps;
 
-/** What a map is for; its row in the texture. */
+/** Roles of the maps, in the order of the rows of the texture. */
 export const kRoles = ['distance', 'amount', 'strength', 'signed'] as const;
 export type ColorRole = (typeof kRoles)[number];
 
-const kUsual: Record<ColorRole, MapName> = {
+const kDefault: Record<ColorRole, MapName> = {
   distance: 'viridis',
   amount: 'plasma',
   strength: 'inferno',
@@ -57,10 +56,10 @@ export function cssColor(color: Vec3): string {
 }
 
 export class ColorMaps {
-  /** One row a role. */
+  /** One row per role. */
   readonly texture: DataTexture;
   private readonly bytes = new Uint8Array(kWidth * kRoles.length * 4);
-  private names = kUsual;
+  private names = kDefault;
 
   constructor() {
     this.texture = new DataTexture(this.bytes, kWidth, kRoles.length, RGBAFormat, UnsignedByteType);
@@ -69,7 +68,7 @@ export class ColorMaps {
   }
 
   set colorBlind(on: boolean) {
-    this.names = on ? kForColorBlind : kUsual;
+    this.names = on ? kForColorBlind : kDefault;
     this.fill();
   }
 
@@ -85,7 +84,7 @@ export class ColorMaps {
     );
   }
 
-  /** From `from` of 0..1 on, left to right. */
+  /** The map from position `from` (0..1) to its end, left to right. */
   cssGradient(role: ColorRole, from = 0): string {
     const steps = stepsOf(this.names[role]);
     const stops = Array.from({ length: 11 }, (_, i) =>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Texts that stand at places of the scene.
+// Text labels at positions of the scene.
 
 import { Vector3, type PerspectiveCamera } from 'three';
 import { make } from '../panels/dom';
@@ -29,7 +29,7 @@ export class Labels {
     this.shown.delete(label);
   }
 
-  /** In each frame, before it is drawn. */
+  /** Called before each frame is drawn. */
   place(camera: PerspectiveCamera) {
     const { clientWidth, clientHeight } = this.parent;
     for (const [label, element] of this.shown) {

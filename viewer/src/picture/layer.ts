@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A layer of splats or points: its tree, and a mesh for each node that is there.
+// A layer of splats, points or triangles: its tree and a drawable object per loaded node.
 
 import {
   BufferAttribute,
@@ -20,7 +20,7 @@ import {
 import type { Tree } from './lod';
 import { NodeTable } from './node_table';
 import { elementBytes, kTriangleBytes, parseElements, parseNodes } from '../server/binary';
-import { ask } from '../server/early';
+import { fetchBytes } from '../server/early';
 import type { LayerInfo } from '../server/protocol';
 import {
   kDiskFragment,
@@ -30,7 +30,7 @@ import {
   kTriangleVertex,
 } from './shaders';
 
-/** What all layers are drawn with; the same objects in every material. */
+/** Uniforms shared by the materials of all layers. */
 export interface SharedUniforms {
   [name: string]: IUniform;
   classes: IUniform;
@@ -43,7 +43,7 @@ export interface SharedUniforms {
   clip_from_world: IUniform;
 }
 
-/** A tip and four corners. */
+/** Tip and four corners of the pyramid of a disk. */
 const kCorners = new Float32Array([0, 0, -1, -1, 1, -1, 1, 1, -1, 1]);
 const kTriangles = new Uint16Array([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1]);
 
@@ -59,14 +59,14 @@ interface Loaded {
   used: number;
 }
 
-/** The GPU has it; the page need not keep it as well. */
-function forget(attribute: BufferAttribute) {
+/** Frees the page's copy once the GPU has the data. */
+function freeAfterUpload(attribute: BufferAttribute) {
   attribute.onUpload(function (this: BufferAttribute) {
     (this as { array: unknown }).array = new Uint32Array(0);
   });
 }
 
-/** A layer of the server, with the first block of its table. Rejects as Layer.load(). */
+/** Opens a layer of the server with the first block of its table. Rejects like Layer.load(). */
 export async function openLayer(info: LayerInfo, shared: SharedUniforms): Promise<Layer> {
   const layer = new Layer(info, new NodeTable(info.nodes), shared);
   layer.addBlock(0, await layer.loadBlock(0, new AbortController().signal));
@@ -76,7 +76,7 @@ export async function openLayer(info: LayerInfo, shared: SharedUniforms): Promis
 export class Layer implements Tree {
   visible = true;
   bytes = 0;
-  /** Of the nodes that have come so far. */
+  /** Classes of the nodes loaded so far. */
   readonly classes = new Set<number>();
   private readonly loaded = new Map<number, Loaded>();
   private readonly material: RawShaderMaterial;
@@ -87,7 +87,7 @@ export class Layer implements Tree {
     readonly info: LayerInfo,
     readonly table: NodeTable,
     shared: SharedUniforms,
-    /** The bytes of each node where no server has them. */
+    /** The bytes of each node of a layer that is not on the server. */
     private readonly local: ArrayBuffer[] | null = null,
   ) {
     const { has_classes, has_intensities, has_errors } = info;
@@ -125,35 +125,35 @@ export class Layer implements Tree {
     return this.loaded.has(node) || this.table.node(node).count === 0;
   }
 
-  /** Whether the page holds its data, and no server does. */
+  /** Whether the page holds the data instead of the server. */
   get isLocal(): boolean {
     return this.local !== null;
   }
 
-  /** The bytes of a node. Rejects as fetch does, and where the server does not have it. */
+  /** The bytes of a node. Rejects like fetch, and if the server does not have it. */
   async load(node: number, signal: AbortSignal): Promise<ArrayBuffer> {
-    return this.local ? this.local[node] : ask(this.url(`nodes/${node}.bin`), signal);
+    return this.local ? this.local[node] : fetchBytes(this.url(`nodes/${node}.bin`), signal);
   }
 
-  /** The bytes of a block of the table. Rejects likewise. */
+  /** The bytes of a block of the table. Rejects like load(). */
   loadBlock(block: number, signal: AbortSignal): Promise<ArrayBuffer> {
-    return ask(this.url(`table/${block}.bin`), signal);
+    return fetchBytes(this.url(`table/${block}.bin`), signal);
   }
 
-  /** Takes what the server said of a block. Errors: ProtocolError. */
+  /** Adds a block of the table. Errors: ProtocolError. */
   addBlock(block: number, bytes: ArrayBuffer) {
     if (!this.table.hasBlock(block))
       this.table.add(block, parseNodes(bytes, block, this.table.size));
   }
 
-  /** The children of a node, of which the table tells from now on. Rejects as addBlock(). */
+  /** The children of a node; loads missing blocks. Rejects like loadBlock() and addBlock(). */
   async childrenOf(node: number, signal: AbortSignal): Promise<number[]> {
     for (const block of this.table.missingBelow(node))
       this.addBlock(block, await this.loadBlock(block, signal));
     return this.table.childrenOf(node);
   }
 
-  /** Takes what the server said of a node. Errors: ProtocolError. */
+  /** Adds the elements of a node. Errors: ProtocolError. */
   add(node: number, bytes: ArrayBuffer) {
     if (this.loaded.has(node)) return;
     const count = this.table.node(node).count;
@@ -171,7 +171,7 @@ export class Layer implements Tree {
     this.bytes += bytes.byteLength;
   }
 
-  /** What is loaded once more, to stand elsewhere: for one of the objects that are made of it. */
+  /** Copies of the loaded nodes that share their geometry, for one object of a world. */
   instances(oneClass: number | null): (Mesh | Points)[] {
     return [...this.loaded].map(([node, { object }]) => {
       const { geometry } = object;
@@ -183,14 +183,14 @@ export class Layer implements Tree {
     });
   }
 
-  /** An element that is nowhere, to make ready what the layer is drawn with. */
+  /** A dummy element that compiles the layer's shaders. */
   sample(): Mesh | Points {
     const object = this.make(new Uint32Array(elementBytes(this.info.kind) / 4));
     object.frustumCulled = false;
     return object;
   }
 
-  /** Null where a node is empty. */
+  /** Null for a node that is empty or not loaded. */
   object(node: number): Mesh | Points | null {
     return this.loaded.get(node)?.object ?? null;
   }
@@ -202,7 +202,7 @@ export class Layer implements Tree {
     }
   }
 
-  /** Nodes that were not used since `before`, with the time they were. */
+  /** Nodes last used before `before`, with the time of their last use. */
   idle(before: number): { layer: Layer; node: number; used: number }[] {
     return [...this.loaded]
       .filter(([, l]) => l.used < before)
@@ -248,7 +248,7 @@ export class Layer implements Tree {
     geometry.setIndex(new BufferAttribute(kTriangles, 1));
     geometry.setAttribute('corner', new BufferAttribute(kCorners, 2));
     const attribute = new InstancedBufferAttribute(elements, 4);
-    forget(attribute);
+    freeAfterUpload(attribute);
     geometry.setAttribute('element', attribute);
     geometry.instanceCount = elements.length / 4;
     return new Mesh(geometry, this.material);
@@ -273,7 +273,7 @@ export class Layer implements Tree {
   private points(elements: Uint32Array): Points {
     const geometry = new BufferGeometry();
     const attribute = new BufferAttribute(elements, 4);
-    forget(attribute);
+    freeAfterUpload(attribute);
     geometry.setAttribute('element', attribute);
     geometry.setDrawRange(0, elements.length / 4);
     return new Points(geometry, this.material);

@@ -1,27 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The layers that there are, which of them are shown, and their nodes as they are wanted.
+// All layers: their visibility, and loading and unloading of their nodes.
 
 import type { Box3 } from 'three';
 import { openLayer, type Layer, type SharedUniforms } from './layer';
 import type { BlockRef, Cut, NodeRef } from './lod';
-import { FetchQueue, type Fetch } from '../server/node_store';
+import { FetchQueue, type Fetch } from '../server/fetch_queue';
 import type { LayerInfo, SceneInfo } from '../server/protocol';
 
-/** A node that was used so lately is not unloaded. */
+/** A node used within this time is not unloaded. */
 const kKeepMs = 2000;
 
 export class LayerSet {
   layers: Layer[] = [];
-  /** A node has come since this was last set to false. */
+  /** Whether a node or block has arrived since this was last set to false. */
   arrivals = false;
-  /** Called when a node or a block of a table has come. */
+  /** Called when a node or a block of a table has arrived. */
   arrived: () => void = () => {};
   private readonly queue: FetchQueue;
   private generation = 0;
-  /** Which layers were visible before errors were looked at. */
-  private usual: Map<Layer, boolean> | null = null;
+  /** Visibility of the layers before errors were shown. */
+  private visibleBefore: Map<Layer, boolean> | null = null;
 
   constructor(
     private readonly shared: SharedUniforms,
@@ -39,7 +39,7 @@ export class LayerSet {
     this.queue.retry();
   }
 
-  /** Replaces the server's layers, keeps what the page added. False: another call came since. */
+  /** Replaces the server's layers and keeps added files. False: superseded by a later call. */
   async load(scene: SceneInfo): Promise<boolean> {
     const generation = ++this.generation;
     const layers = await Promise.all(scene.layers.map((info) => openLayer(info, this.shared)));
@@ -49,7 +49,7 @@ export class LayerSet {
     for (const layer of this.layers) if (!layer.isLocal) layer.dispose();
     this.layers = [...layers, ...added];
     for (const layer of layers) layer.visible = startsVisible(layer.info, scene);
-    this.usual = null;
+    this.visibleBefore = null;
     return true;
   }
 
@@ -62,19 +62,19 @@ export class LayerSet {
     layer.dispose();
   }
 
-  /** Errors lie on what they are the errors of: layers without any would hide them. */
+  /** Hides the layers without errors, which would cover those with errors; or restores them. */
   showErrors(on: boolean) {
     if (on && this.layers.some((l) => l.info.has_errors)) {
-      this.usual = new Map(this.layers.map((l) => [l, l.visible]));
+      this.visibleBefore = new Map(this.layers.map((l) => [l, l.visible]));
       for (const layer of this.layers)
         layer.visible = layer.info.has_errors && layer.info.part === '';
-    } else if (!on && this.usual) {
-      for (const [layer, visible] of this.usual) layer.visible = visible;
-      this.usual = null;
+    } else if (!on && this.visibleBefore) {
+      for (const [layer, visible] of this.visibleBefore) layer.visible = visible;
+      this.visibleBefore = null;
     }
   }
 
-  /** Of the nodes that have come so far. */
+  /** Classes of the nodes loaded so far, ascending. */
   get classes(): number[] {
     return [...new Set(this.layers.flatMap((l) => [...l.classes]))].sort((a, b) => a - b);
   }
@@ -83,7 +83,7 @@ export class LayerSet {
     return this.layers.filter((l) => l.table.size > 0).map((l) => l.table.box(0));
   }
 
-  /** Notes what a picture was made of, and drops what no picture needed for long. */
+  /** Marks the nodes of a picture as used and unloads the least recently used ones. */
   keepUsed(cuts: Cut[], now: number) {
     for (const layer of this.layers) {
       const nodes = cuts
@@ -142,7 +142,7 @@ export class LayerSet {
   }
 }
 
-/** The cloud that a model was made of would only hide it; parts of the beams are for who asks. */
+/** Point clouds start hidden beside a model, which they would cover; so do parts of the errors. */
 function startsVisible(info: LayerInfo, scene: SceneInfo): boolean {
   if (info.part !== '') return false;
   return info.kind !== 'points' || scene.layers.every((l) => l.kind === 'points');

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Level of detail: which nodes of the layers' trees are drawn, within a budget of elements.
+// Level of detail: chooses the nodes of the layers' trees to draw within a budget of elements.
 
 import type { Frustum, Vector3 } from 'three';
 import type { NodeTable } from './node_table';
 
-/** A tree whose nodes come one by one. */
+/** A tree that is loaded node by node. */
 export interface Tree {
-  /** Of which the first block is there. */
+  /** Its first block must be loaded. */
   table: NodeTable;
   has(node: number): boolean;
-  /** Whether a node is drawn at any cost: nothing coarser stands for it. */
+  /** Whether the tree has no coarser levels, so that its leaves are drawn whatever the budget. */
   isWhole: boolean;
 }
 
@@ -31,31 +31,31 @@ export interface BlockRef {
 export interface View {
   frustum: Frustum;
   eye: Vector3;
-  /** Pixels of a metre at a distance of one metre. */
+  /** Pixels per metre at a distance of one metre. */
   focal_px: number;
 }
 
 export interface Cut {
-  /** Drawn, nearest first. */
+  /** Nodes to draw, nearest first. */
   drawn: NodeRef[];
-  /** Asked for, most wanted first. */
+  /** Nodes to load, coarsest on the screen first. */
   wanted: NodeRef[];
-  /** Blocks of tables that tell what else to ask for, likewise. */
+  /** Blocks of tables to load, in order of discovery. */
   blocks: BlockRef[];
-  /** Of the drawn nodes. */
+  /** Elements of the drawn nodes. */
   elements: number;
-  /** The budget, not the screen, decided. */
+  /** Whether the budget, not the screen, limits the detail. */
   limited: boolean;
-  /** All in sight has come that the budget and the screen allow. */
+  /** Whether every visible node that budget and screen allow is loaded. */
   complete: boolean;
 }
 
-/** A spacing of fewer pixels than this is not refined. */
+/** A node with a smaller spacing on the screen is not refined. */
 const kFinePixels = 1.2;
-/** Nodes out of sight come after all that are in sight, however coarse these look. */
+/** Weight of nodes outside the view: they are loaded after all visible ones. */
 const kUnseen = 1e-6;
 
-/** Largest first. */
+/** A heap with the largest item on top. */
 class Heap<T extends { pixels: number }> {
   private items: T[] = [];
 
@@ -90,12 +90,11 @@ class Heap<T extends { pixels: number }> {
   }
 }
 
-/** A node in sight; whether it is drawn, or what is above it meanwhile. */
+/** A visible node; `drawn`: whether it is drawn itself, not an ancestor in its place. */
 interface Step extends NodeRef {
   drawn: boolean;
 }
 
-/** Chooses a cut. */
 class Cutter {
   private readonly cut: Cut = {
     drawn: [],
@@ -106,7 +105,7 @@ class Cutter {
     complete: true,
   };
   private readonly heap = new Heap<Step>();
-  /** Elements once all that is asked for has come. */
+  /** Elements once all requested nodes are loaded. */
   private planned = 0;
 
   constructor(
@@ -117,7 +116,7 @@ class Cutter {
   run(trees: Tree[]): Cut {
     const { cut, heap, view } = this;
     for (const tree of trees) if (tree.table.size > 0) this.begin(tree);
-    for (let step = heap.pop(); step !== undefined; step = heap.pop()) this.take(step);
+    for (let step = heap.pop(); step !== undefined; step = heap.pop()) this.refine(step);
     const distance = ({ tree, node }: NodeRef) => tree.table.box(node).distanceToPoint(view.eye);
     cut.drawn.sort((a, b) => distance(a) - distance(b));
     cut.wanted.sort((a, b) => b.pixels - a.pixels);
@@ -134,7 +133,7 @@ class Cutter {
     this.heap.push(root);
   }
 
-  private take(step: Step) {
+  private refine(step: Step) {
     const { cut, budget } = this;
     const { tree, node, pixels } = step;
     const { count, child_count } = tree.table.node(node);
@@ -156,7 +155,7 @@ class Cutter {
     for (const child of children)
       if (!tree.has(child.node))
         cut.wanted.push({ ...child, pixels: seen.includes(child) ? pixels : pixels * kUnseen });
-    // What is below is asked for at once, not when the children have come.
+    // Deeper nodes are requested now, not after the children have arrived.
     const drawn = step.drawn && seen.every((child) => tree.has(child.node));
     if (drawn) {
       cut.elements += added;
@@ -188,9 +187,9 @@ class Cutter {
 }
 
 /**
- * Refines the node that looks coarsest until the screen is fine or the budget is spent. A node
- * gives way only where all of its children in sight are there, so nothing ever has a hole. All
- * that the finest such picture has, and what is above it, is asked for together.
+ * Refines the node with the largest spacing on the screen until all are fine enough or the budget is
+ * used up. A node is replaced only if all of its visible children are loaded, so there are no holes.
+ * All nodes of the final picture and their ancestors are requested at once.
  */
 export function chooseCut(trees: Tree[], view: View, budget: number): Cut {
   return new Cutter(view, budget).run(trees);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Lines and dots over everything: what tools draw.
+// Lines and dots that tools draw over everything else.
 
 import {
   BufferGeometry,
@@ -33,8 +33,8 @@ export class Marks {
     this.object.add(this.lines, this.dots);
   }
 
-  /** Pairs of ends, and places. */
-  set(ends: Vector3[], places: Vector3[]) {
+  /** Line ends in pairs, and dots. */
+  set(ends: Vector3[], dots: Vector3[]) {
     const fill = (geometry: BufferGeometry, all: Vector3[]) => {
       geometry.dispose();
       geometry.setAttribute(
@@ -46,8 +46,8 @@ export class Marks {
       );
     };
     fill(this.lines.geometry, ends);
-    fill(this.dots.geometry, places);
+    fill(this.dots.geometry, dots);
     this.lines.visible = ends.length > 0;
-    this.dots.visible = places.length > 0;
+    this.dots.visible = dots.length > 0;
   }
 }

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What is known of a tree's nodes: the table of a large one comes block by block, as it is wanted.
+// The table of a tree's nodes, loaded block by block.
 
 import { Box3, Vector3 } from 'three';
 import { kBlockNodes, type TreeNode } from '../server/binary';
 
 /**
- * The box that a node and all below it fill: the centers of its splats, around them the largest
- * radius, and the cells whose means the centers are; those are of cells half as large, and so on.
+ * The box of a node and its descendants: the box of its centers, enlarged by the largest radius and by
+ * 2 * spacing_m. A center is the mean of a cell of spacing_m, and cells halve with each level.
  */
 function nodeBox(node: TreeNode): Box3 {
   return new Box3(new Vector3(...node.low), new Vector3(...node.high)).expandByScalar(
@@ -23,15 +23,15 @@ export function blockOf(node: number): number {
 export class NodeTable {
   private readonly nodes: TreeNode[][] = [];
   private readonly boxes: Box3[][] = [];
-  /** Of children of nodes that are there. */
+  /** Parent of each node, for children of loaded rows; else -1. */
   private readonly parents: Int32Array;
 
-  /** `size`: of the whole tree. */
+  /** `size`: number of nodes of the tree. */
   constructor(readonly size: number) {
     this.parents = new Int32Array(size).fill(-1);
   }
 
-  /** All of a tree. */
+  /** The complete table of a tree. */
   static of(nodes: TreeNode[]): NodeTable {
     const table = new NodeTable(nodes.length);
     for (let block = 0; block * kBlockNodes < nodes.length; ++block)
@@ -55,7 +55,7 @@ export class NodeTable {
     return this.hasBlock(blockOf(node));
   }
 
-  /** Of a node that is there. */
+  /** The row of a node; its block must be loaded. */
   node(node: number): TreeNode {
     return this.nodes[blockOf(node)][node % kBlockNodes];
   }
@@ -69,7 +69,7 @@ export class NodeTable {
     return Array.from({ length: child_count }, (_, i) => first_child + i);
   }
 
-  /** Blocks that tell of a node's children, and have not come. */
+  /** Blocks with rows of a node's children that are not loaded. */
   missingBelow(node: number): number[] {
     const { first_child, child_count } = this.node(node);
     if (child_count === 0) return [];
@@ -77,7 +77,7 @@ export class NodeTable {
     return [...blocks].filter((block) => !this.hasBlock(block));
   }
 
-  /** Nodes, all above them, and the root. */
+  /** The nodes, their ancestors and the root. */
   withAncestors(nodes: Iterable<number>): Set<number> {
     const found = new Set<number>();
     for (const node of nodes)

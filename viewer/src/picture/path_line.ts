@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A line through poses: a trajectory, or what was driven.
+// A line through poses: a trajectory or the driven path.
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Line, LineBasicMaterial } from 'three';
 import type { Pose } from '../server/protocol';

@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The strip below the scene: a scan as its sensor has it, rings over columns.
+// The range image of a scan: rings over columns.
 
 import type { ClassPalette } from './class_palette';
 import type { ColorMaps } from './color_maps';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 
 export type ImageMode = 'range' | 'class' | 'intensity';
 
-/** A LiDAR without rows (a Livox) is shown by its angles instead. */
+/** A LiDAR with fewer rings (a Livox) is drawn over its angles instead. */
 const kFewRings = 4;
 const kAngleColumns = 720;
 const kAngleRows = 72;
-const kMostPixels = 4_000_000;
+const kMaxPixels = 4_000_000;
 const kEmpty = [17, 20, 25];
 
 interface Grid {
   width: number;
   height: number;
-  /** Of a point of the packet, -1 where it lies outside. */
+  /** Cell of a point of the packet; -1 if it is outside. */
   cell(index: number): number;
 }
 
@@ -38,13 +38,9 @@ export class RangeImage {
   }
 
   draw(packet: ScanPacket) {
-    const floats = new Float32Array(
-      packet.words.buffer,
-      packet.words.byteOffset,
-      packet.words.length,
-    );
+    const floats = floatsOf(packet);
     const grid = packet.rings < kFewRings ? angleGrid(packet, floats) : ringGrid(packet);
-    if (!this.context || grid.width * grid.height > kMostPixels) return;
+    if (!this.context || grid.width * grid.height > kMaxPixels) return;
     const image = this.blank(grid.width, grid.height);
     this.table = this.maps.table(this.mode === 'intensity' ? 'strength' : 'distance');
     const nearest = new Float32Array(grid.width * grid.height).fill(Infinity);
@@ -52,17 +48,13 @@ export class RangeImage {
       const cell = grid.cell(i);
       if (cell < 0) continue;
       const at = i * kScanPointWords;
-      // Not Math.hypot: it is ten times as slow.
+      // Math.hypot would be ten times as slow.
       const range = Math.sqrt(floats[at] ** 2 + floats[at + 1] ** 2 + floats[at + 2] ** 2);
       if (range >= nearest[cell]) continue;
       nearest[cell] = range;
       this.paint(image.data, 4 * cell, packet, at, range);
     }
     this.context.putImageData(image, 0, 0);
-  }
-
-  clear() {
-    this.context?.putImageData(this.blank(this.canvas.width, this.canvas.height), 0, 0);
   }
 
   private paint(

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The points of a scan, in one buffer that is written again for each.
+// Draws the points of a scan from one buffer that is reused for each scan.
 
 import {
   BufferGeometry,
@@ -16,11 +16,11 @@ import {
   Vector3,
 } from 'three';
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 import type { SharedUniforms } from './layer';
 import { kPointFragment, kScanModes, kScanVertex, type ScanMode } from './shaders';
 
-/** One echo, to be told to the user. */
+/** Properties of one echo. */
 export interface Echo {
   /** In the layers' coordinates. */
   position: Vector3;
@@ -63,7 +63,7 @@ export class ScanCloud {
     this.object.matrixAutoUpdate = false;
   }
 
-  /** In one colour, whatever the mode. */
+  /** Draws all points in one colour, whatever the mode. */
   set isPlain(on: boolean) {
     this.material.uniforms.is_plain.value = on ? 1 : 0;
   }
@@ -93,12 +93,7 @@ export class ScanCloud {
     this.object.matrixWorldNeedsUpdate = true;
   }
 
-  clear() {
-    this.packet = null;
-    this.geometry.setDrawRange(0, 0);
-  }
-
-  /** The echo that is seen nearest to a place on the screen (-1..1), within `pixels`; else null. */
+  /** The echo nearest to the camera within `pixels` of (x, y) on the screen (-1..1), or null. */
   nearest(
     camera: PerspectiveCamera,
     x: number,
@@ -111,22 +106,18 @@ export class ScanCloud {
     const matrix = new Matrix4()
       .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
       .multiply(this.object.matrix);
-    const floats = new Float32Array(
-      packet.words.buffer,
-      packet.words.byteOffset,
-      packet.words.length,
-    );
-    const place = new Vector3();
+    const floats = floatsOf(packet);
+    const seen = new Vector3();
     const reach = (2 * pixels) / height_px;
     let best = -1;
     let bestDepth = Infinity;
     for (let i = 0; i < packet.points; ++i) {
       const at = i * kScanPointWords;
-      place.set(floats[at], floats[at + 1], floats[at + 2]).applyMatrix4(matrix);
-      if (!(place.z < 1) || !(place.z < bestDepth)) continue;
-      if (Math.hypot((place.x - x) * camera.aspect, place.y - y) > reach) continue;
+      seen.set(floats[at], floats[at + 1], floats[at + 2]).applyMatrix4(matrix);
+      if (!(seen.z < 1) || !(seen.z < bestDepth)) continue;
+      if (Math.hypot((seen.x - x) * camera.aspect, seen.y - y) > reach) continue;
       best = i;
-      bestDepth = place.z;
+      bestDepth = seen.z;
     }
     return best < 0 ? null : this.echo(packet, best);
   }
@@ -134,8 +125,7 @@ export class ScanCloud {
   private echo(packet: ScanPacket, index: number): Echo {
     const at = index * kScanPointWords;
     const { words } = packet;
-    const floats = new Float32Array(words.buffer, words.byteOffset + 4 * at, 3);
-    const own = new Vector3(floats[0], floats[1], floats[2]);
+    const own = new Vector3(...floatsOf(packet).subarray(at, at + 3));
     return {
       range_m: own.length(),
       position: own.clone().applyMatrix4(this.object.matrix),
@@ -148,11 +138,12 @@ export class ScanCloud {
   }
 
   private makeBuffer(points: number): InterleavedBuffer {
-    const room = Math.max(1024, Math.ceil(points * 1.2));
-    const buffer = new InterleavedBuffer(new Uint32Array(room * kScanPointWords), kScanPointWords);
+    const capacity = Math.max(1024, Math.ceil(points * 1.2));
+    const words = new Uint32Array(capacity * kScanPointWords);
+    const buffer = new InterleavedBuffer(words, kScanPointWords);
     buffer.setUsage(DynamicDrawUsage);
     this.geometry.dispose();
-    this.geometry.setAttribute('place', new InterleavedBufferAttribute(buffer, 3, 0));
+    this.geometry.setAttribute('point', new InterleavedBufferAttribute(buffer, 3, 0));
     this.geometry.setAttribute('echo', new InterleavedBufferAttribute(buffer, 3, 3));
     this.geometry.setDrawRange(0, 0);
     return buffer;

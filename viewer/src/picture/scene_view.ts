@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What is seen: layers at the detail that the screen and the machine allow, and what lies over
-// them.
+// The 3D view: draws the layers at the level of detail that screen and machine allow, and overlays.
 
 import { Frustum, Matrix4, Object3D, Vector2, Vector3 } from 'three';
 import { Budget } from './budget';
@@ -18,14 +17,14 @@ import type { LayerInfo, SceneInfo } from '../server/protocol';
 import { kColorModes, type ColorMode } from './shaders';
 import { Stage, type Area } from './stage';
 
-/** Which layers are drawn where: all over each other, or two beside each other. */
+/** Arrangement of the layers: all overlaid, or two side by side. */
 export type Arrangement = { split: false } | { split: true; left: number; right: number };
 
 export interface ViewStatistics {
   elements: number;
   nodes: number;
   loadedNodes: number;
-  /** Of the nodes that are loaded: as large on the GPU. */
+  /** Bytes of the loaded nodes; the same on the GPU. */
   loadedBytes: number;
   loading: boolean;
   limited: boolean;
@@ -36,9 +35,9 @@ export interface ViewStatistics {
 }
 
 const kRestMs = 220;
-/** So long nothing is drawn until something of the model can be. */
+/** Maximum wait for the model before the first frame is drawn. */
 const kPatienceMs = 3000;
-/** So long the coarsest nodes wait for those that the first picture is to have. */
+/** Maximum wait of the coarsest nodes for the finer nodes of the first picture. */
 const kFirstCutMs = 400;
 const kMegabyte = 1 << 20;
 
@@ -51,34 +50,34 @@ export class SceneView {
   readonly shared: SharedUniforms;
   readonly set: LayerSet;
   arrangement: Arrangement = { split: false };
-  /** What moves in the scene, and can be measured. */
+  /** Movable objects of the scene, which can be measured, too. */
   movable: Object3D[] = [];
-  /** Called before each frame with the seconds since the last. */
+  /** Called before each frame with the seconds since the last one. */
   beforeFrame: (dt: number) => void = () => {};
-  /** Called when layers were shown or hidden by other means than the user's. */
+  /** Called when the page, not the user, has shown or hidden layers. */
   layersChanged: () => void = () => {};
-  /** Called once, when something of the model is on the screen. */
+  /** Called once, when the first part of the model is on the screen. */
   firstShown: () => void = () => {};
   private readonly budget: Budget;
   private cuts: Cut[] = [];
   private modelDirty = true;
   private screenDirty = true;
-  /** Nodes have come that no picture shows yet. */
+  /** Whether nodes have arrived that no picture shows yet. */
   private arrived = false;
   private movedMs = 0;
   private lastFrameMs = 0;
   private lastModelMs = 0;
-  /** That the last picture of the model took; known where it is waited for. */
+  /** Duration of the last picture of the model; measured only without a GPU. */
   private modelMs = 0;
   private modelInLastFrame = false;
   private wasStill = false;
   private readonly frameTimes: number[] = [];
   private firstPictureMs: number | null = null;
   private startedMs = 0;
-  private hurries = false;
-  /** What the first picture is drawn with, until it was drawn once. */
+  private isScheduled = false;
+  /** A dummy element that compiles the shaders before the first picture. */
   private sample: Object3D | null = null;
-  /** Since when something of the model could be drawn. */
+  /** Time since when part of the model could be drawn. */
   private drawableMs: number | null = null;
 
   constructor(
@@ -100,12 +99,12 @@ export class SceneView {
     };
     const memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
     this.set = new LayerSet(this.shared, memoryLimit, failed);
-    this.set.arrived = () => this.hurry();
+    this.set.arrived = () => this.scheduleFirstPicture();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.resize();
   }
 
-  /** Makes ready what a layer is drawn with, while its nodes come. */
+  /** Starts to compile the shaders of a layer while its nodes are loading. */
   prepare(info: LayerInfo) {
     this.sample = new Layer(info, new NodeTable(0), this.shared).sample();
     this.stage.compile(this.sample);
@@ -134,7 +133,7 @@ export class SceneView {
     return kColorModes[this.shared.color_mode.value];
   }
 
-  /** The eye or the model moves: quick pictures first. */
+  /** The camera or the model moves: use the interactive budget. */
   moved() {
     this.movedMs = performance.now();
     this.invalidateModel();
@@ -152,7 +151,7 @@ export class SceneView {
     this.set.retry();
   }
 
-  /** Replaces the server's layers. Errors: ProtocolError; whatever fetch throws. */
+  /** Replaces the server's layers. Errors: ProtocolError and those of fetch. */
   async load(scene: SceneInfo) {
     if (!(await this.set.load(scene))) return;
     if (this.colorMode === 'error') this.set.showErrors(true);
@@ -161,14 +160,14 @@ export class SceneView {
     const [low, high] = scene.middle_box;
     this.shared.height_range_m.value.set(low[2], Math.max(high[2], low[2] + 0.1));
     this.moved();
-    this.hurry();
+    this.scheduleFirstPicture();
   }
 
   get layers(): Layer[] {
     return this.set.layers;
   }
 
-  /** Classes of the nodes that have come so far, ascending. */
+  /** Classes of the nodes loaded so far, ascending. */
   get seenClasses(): number[] {
     return this.set.classes;
   }
@@ -203,8 +202,8 @@ export class SceneView {
     ];
   }
 
-  /** A place of the page on the camera's screen, -1..1. */
-  screenPlace(clientX: number, clientY: number): Vector2 {
+  /** Converts a position on the page to the camera's screen, -1..1. */
+  screenPosition(clientX: number, clientY: number): Vector2 {
     const box = this.canvas.getBoundingClientRect();
     const parts = this.arrangement.split ? 2 : 1;
     const x = ((clientX - box.left) / box.width) * parts;
@@ -214,11 +213,11 @@ export class SceneView {
     );
   }
 
-  /** What the picture of the model shows at a pixel of the canvas; null: nothing. */
+  /** The surface drawn at a pixel of the canvas; null: background. */
   surfaceAt(screen: Vector2, pixel: Vector2): Vector3 | null {
     if (this.modelDirty) this.drawNow();
     if (this.movable.length > 0) {
-      // They are drawn over the picture; for its depth they are put into it, and it is made anew.
+      // Movable objects are overlays: draw them into the model's picture for depth, then redraw it.
       for (const area of this.areas) this.stage.drawModel(this.movable, area, this.rig.camera);
       this.invalidateModel();
     }
@@ -231,7 +230,7 @@ export class SceneView {
     return this.canvas.clientHeight;
   }
 
-  /** Draws what is due now, in the caller's task; for pictures of it. */
+  /** Draws at once, in the caller's task, so that pixels can be read. */
   drawNow() {
     const now = performance.now();
     if (this.modelDirty) this.drawModel(now - this.movedMs > kRestMs, now);
@@ -251,7 +250,7 @@ export class SceneView {
     this.beforeFrame(dt);
     this.rig.controls.update(dt);
     const still = now - this.movedMs > kRestMs;
-    if (this.firstPictureMs === null && !this.canBegin(now)) return;
+    if (this.firstPictureMs === null && !this.canStart(now)) return;
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
     this.takeArrivals(still, now);
     if (this.modelInLastFrame && !still)
@@ -267,42 +266,42 @@ export class SceneView {
   }
 
   /**
-   * The first picture, and what is asked for until then, do not wait for the browser's frames: these
-   * are rare while programs are made.
+   * Draws the first picture, and requests its nodes, without waiting for the browser's frames, which
+   * are rare while shaders compile.
    */
-  private hurry() {
-    if (this.firstPictureMs !== null || this.hurries) return;
-    this.hurries = true;
+  private scheduleFirstPicture() {
+    if (this.firstPictureMs !== null || this.isScheduled) return;
+    this.isScheduled = true;
     window.setTimeout(() => {
-      this.hurries = false;
+      this.isScheduled = false;
       const now = performance.now();
       if (this.firstPictureMs !== null || this.startedMs === 0) return;
-      if (!this.canBegin(now)) return this.warm();
+      if (!this.canStart(now)) return this.warmUp();
       this.drawModel(false, now);
       this.drawScreen();
     });
   }
 
-  /** While what was asked for is under way. */
-  private warm() {
+  /** Draws the dummy element while requests are pending. */
+  private warmUp() {
     if (this.sample) this.stage.warm(this.sample);
     this.sample = null;
   }
 
-  /** Pictures of nothing would only keep the first one of something from being drawn. */
-  private canBegin(now: number): boolean {
+  /** Whether to draw the first frame. Empty frames would delay the first picture of the model. */
+  private canStart(now: number): boolean {
     if (now - this.startedMs > kPatienceMs) return true;
     if (this.layers.length === 0) return false;
     this.rig.controls.update(0);
-    this.chooseCuts(this.look(), false, now);
+    this.chooseCuts(this.updateView(), false, now);
     if (this.cuts.every((c) => c.complete)) return true;
     if (this.cuts.every((c) => c.elements === 0)) return false;
     this.drawableMs ??= now;
     return now - this.drawableMs > kFirstCutMs;
   }
 
-  /** As the camera stands now. */
-  private look(): View {
+  /** Updates the camera and returns its view. */
+  private updateView(): View {
     const { areas, rig } = this;
     rig.camera.aspect = areas[0].width / areas[0].height;
     rig.camera.updateProjectionMatrix();
@@ -316,13 +315,13 @@ export class SceneView {
     this.modelDirty = this.set.arrivals = this.arrived = false;
     this.lastModelMs = now;
     const { areas, rig } = this;
-    const view = this.look();
+    const view = this.updateView();
     this.shared.focal_px.value = view.focal_px;
     this.chooseCuts(view, still, now);
     this.stage.beginModel();
     areas.forEach((area, i) => this.stage.drawModel(objectsOf(this.cuts[i]), area, rig.camera));
     if (!this.stage.software) return;
-    // Without a GPU pictures would queue up behind each other, and the page stand still for them.
+    // Without a GPU, pictures would queue up and block the page.
     const began = performance.now();
     this.stage.finish();
     this.modelMs = performance.now() - began;
@@ -346,8 +345,8 @@ export class SceneView {
   }
 
   /**
-   * Nodes that came are shown soon. Without a GPU a picture is dear: there what they lead to is
-   * asked for at once, but drawn seldom, until all has come.
+   * Draws newly arrived nodes soon. Without a GPU a picture is expensive: there, further nodes are
+   * requested at once but drawn rarely until all have arrived.
    */
   private takeArrivals(still: boolean, now: number) {
     if (this.set.arrivals) {
@@ -368,9 +367,9 @@ export class SceneView {
     this.stage.finish();
     this.firstPictureMs = performance.now();
     this.firstShown();
-    // What lies over it comes next; what was not worth waiting for, when it is there.
+    // Overlays come in the next frame, finer nodes as they arrive.
     this.invalidate();
-    this.chooseCuts(this.look(), true, this.firstPictureMs);
+    this.chooseCuts(this.updateView(), true, this.firstPictureMs);
     this.arrived = this.wasStill = true;
   }
 
@@ -387,7 +386,7 @@ export class SceneView {
     };
   }
 
-  /** Of all areas. */
+  /** Layers shown in any area. */
   get shownLayers(): Layer[] {
     return this.areas.flatMap((_, i) => this.layersOf(i));
   }

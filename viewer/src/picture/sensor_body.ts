@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The LiDAR as it stands in the scene: a small drum with its axes, never too small to be taken.
+// Draws the LiDAR: a small drum with its axes, enlarged far away so that it can be grabbed.
 
 import {
   AmbientLight,
@@ -23,8 +23,8 @@ import type { Pose } from '../server/protocol';
 
 const kRadiusM = 0.12;
 const kHeightM = 0.16;
-/** On the screen, whatever the distance. */
-const kLeastPixels = 9;
+/** Minimum size on the screen at any distance. */
+const kMinPixels = 9;
 
 export class SensorBody {
   readonly object = new Group();
@@ -62,15 +62,15 @@ export class SensorBody {
     this.shell.color.set(on ? 0x7fd0ff : 0xdfe6ee);
   }
 
-  /** Keeps it to be seen from where the eye is. */
+  /** Scales the body to its minimum size on the screen. */
   fit(camera: PerspectiveCamera, height_px: number) {
     const away = camera.position.distanceTo(this.object.position);
     const pixels = (kRadiusM / away) * (height_px / 2 / Math.tan((camera.fov * Math.PI) / 360));
-    this.object.scale.setScalar(Math.max(1, kLeastPixels / pixels));
+    this.object.scale.setScalar(Math.max(1, kMinPixels / pixels));
   }
 
-  /** Whether a place on the screen (-1..1) is on it. */
-  isAt(camera: PerspectiveCamera, place: Vector2, height_px: number): boolean {
+  /** Whether a screen position (-1..1) is on the body. */
+  isAt(camera: PerspectiveCamera, screen: Vector2, height_px: number): boolean {
     if (!this.object.visible) return false;
     const seen = this.object.position.clone().project(camera);
     if (seen.z > 1) return false;
@@ -81,8 +81,8 @@ export class SensorBody {
           .applyQuaternion(camera.quaternion)
           .multiplyScalar(kRadiusM * this.object.scale.x),
       );
-    const reach = Math.max(edge.project(camera).y - seen.y, (2 * kLeastPixels) / height_px) * 1.3;
-    return Math.hypot((seen.x - place.x) * camera.aspect, seen.y - place.y) < reach;
+    const reach = Math.max(edge.project(camera).y - seen.y, (2 * kMinPixels) / height_px) * 1.3;
+    return Math.hypot((seen.x - screen.x) * camera.aspect, seen.y - screen.y) < reach;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// GLSL of what is drawn: disks, points, scans, and the picture they make.
+// Shaders of disks, triangles, points and scans, and of the final picture.
 
 /** Values of the uniform color_mode. */
 export const kColorModes = ['class', 'intensity', 'normal', 'shading', 'height', 'error'] as const;
@@ -18,7 +18,7 @@ precision highp int;
 
 /** The clipping box (clip.ts). */
 const kClip = /* glsl */ `
-uniform int clip_mode;      // 1: what is inside is kept, 2: what is outside
+uniform int clip_mode;      // 1: keep inside, 2: keep outside
 uniform mat4 clip_from_world;
 bool is_clipped(vec3 world) {
   if (clip_mode == 0) return false;
@@ -27,20 +27,20 @@ bool is_clipped(vec3 world) {
 }
 `;
 
-/** 16 bytes of nodes/N.bin, and how an element looks. Colours are those of the screen. */
+/** Decodes and colours an element (16 bytes of nodes/N.bin). Colours are in screen space. */
 const kElement = /* glsl */ `
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 cameraPosition;
 uniform sampler2D classes, maps;
 uniform int color_mode;
-uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed ones, 16: holes
+uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed errors, 16: holes
 uniform vec2 height_range_m;
-uniform int one_class;      // of a whole object; -1: each its own
+uniform int one_class;      // class of all elements of an object; -1: class per element
 uniform vec3 low, size;
 in uvec4 element;
 flat out vec3 color;
 
-// Of an object: where it stands; of the place: as it is.
+// World position: modelMatrix places objects, and is the identity for layers of the scene.
 vec3 element_position() {
   uvec3 q = uvec3(element.x & 0xffffu, element.x >> 16, element.y & 0xffffu);
   return (modelMatrix * vec4(low + size * vec3(q) / 65535.0, 1.0)).xyz;
@@ -61,7 +61,7 @@ vec4 class_texel() {
   return texelFetch(classes, ivec2(id & 255, id >> 8), 0);
 }
 
-// Row r of the maps, as kRoles of color_maps.ts names them.
+// Row r of the colour maps: an index of kRoles in color_maps.ts.
 vec3 map_color(int r, float t) {
   float x = (0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0;
   return texture(maps, vec2(x, (float(r) + 0.5) / 4.0)).rgb;
@@ -89,7 +89,7 @@ vec3 base_color(vec3 position, vec3 normal) {
 
 bool hidden() { return (has & 1) != 0 && class_texel().a < 0.5; }
 
-// A headlight and a sky: shape is seen in every mode, colours stay what they are.
+// A headlight and sky light: they show the shape in every mode without changing hues.
 float light(vec3 normal, vec3 to_eye) {
   float head = abs(dot(normal, to_eye));
   float sky = 0.5 + 0.5 * (dot(normal, to_eye) < 0.0 ? -normal.z : normal.z);
@@ -100,8 +100,8 @@ const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
 `;
 
 /**
- * A disk is a square pyramid whose tip, in depth only, stands a little towards the eye: where disks
- * of one surface overlap, each is seen around its own center, and nothing flickers.
+ * A disk is drawn as a square pyramid. In depth only, its tip is shifted towards the camera: where
+ * disks of a surface overlap, each is visible around its own center, and nothing flickers.
  */
 export const kDiskVertex =
   kPrelude +
@@ -134,7 +134,7 @@ void main() {
 }
 `;
 
-/** A triangle of a mesh, with the class and intensity of its own; seen from both sides. */
+/** A triangle of a mesh with its own class and intensity, visible from both sides. */
 export const kTriangleVertex =
   kPrelude +
   kElement.replace('in uvec4 element;', 'in uvec3 a, b, c;\nin uint attributes;\nuvec4 element;') +
@@ -204,7 +204,7 @@ void main() {
 }
 `;
 
-/** 24 bytes of a scan packet, drawn a little before the surface that they lie on. */
+/** A point of a scan packet (24 bytes), drawn slightly in front of its surface. */
 export const kScanVertex =
   kPrelude +
   kClip +
@@ -213,7 +213,7 @@ uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform sampler2D classes, maps;
 uniform int scan_mode, is_plain, has;
 uniform float point_px, rings, max_range_m;
-in uvec3 place;
+in uvec3 point;
 in uvec3 echo;              // ring and class, column, intensity and return
 flat out vec3 color;
 
@@ -223,7 +223,7 @@ vec3 map_color(int r, float t) {
 }
 
 void main() {
-  vec3 position = uintBitsToFloat(place);
+  vec3 position = uintBitsToFloat(point);
   vec4 world = modelMatrix * vec4(position, 1.0);
   if (is_clipped(world.xyz)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
   vec4 seen = viewMatrix * world;
@@ -236,7 +236,7 @@ void main() {
     color = texelFetch(classes, ivec2(id & 255, id >> 8), 0).rgb;
   else if (scan_mode == 2) color = map_color(2, 0.15 + 0.85 * float(echo.z & 0xffffu) / 65535.0);
   else if (scan_mode == 3) color = map_color(1, float(echo.x & 0xffffu) / max(rings - 1.0, 1.0));
-  // The root: most of what a LiDAR sees is near.
+  // Square root: most returns are close.
   else color = map_color(0, 0.15 + 0.85 * sqrt(length(position) / max_range_m));
 }
 `;
@@ -259,10 +259,7 @@ void main() {
 }
 `;
 
-/**
- * The model's picture, with its depth and with its edges darkened where something lies in front
- * (eye-dome lighting, Boucheny 2009).
- */
+/** The model's picture with its depth and darkened edges (eye-dome lighting, Boucheny 2009). */
 export const kScreenFragment =
   kPrelude +
   /* glsl */ `

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The canvas. The model is drawn into a picture that is kept while nothing of it changes; scans,
-// paths and the sensor are drawn over it, against its depth.
+// The canvas. The model is drawn into a picture that is kept while it does not change. Scans, paths
+// and the sensor are drawn over it with a depth test.
 
 import {
-  BufferAttribute,
   BufferGeometry,
   Camera,
   DepthTexture,
-  GLSL3,
   Mesh,
   NearestFilter,
   Object3D,
@@ -22,8 +20,8 @@ import {
   WebGLRenderTarget,
   WebGLRenderer,
 } from 'three';
-import { DepthProbe } from './depth_probe';
-import { kScreenFragment, kScreenVertex } from './shaders';
+import { DepthProbe, makeScreen } from './depth_probe';
+import { kScreenFragment } from './shaders';
 
 /** A part of the canvas, in its pixels from the lower left corner. */
 export interface Area {
@@ -33,14 +31,14 @@ export interface Area {
   height: number;
 }
 
-const kLargestPixelRatio = 2;
+const kMaxPixelRatio = 2;
 
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly overlay = new Scene();
-  /** What tools draw: over all else, as it is drawn last. */
+  /** Marks of tools; drawn last, over everything. */
   readonly marks = new Scene();
-  /** Drawn by a renderer without a GPU: everything costs a hundred times as much. */
+  /** Whether rendering runs on the CPU, about a hundred times slower than on a GPU. */
   readonly software: boolean;
   outline = 0.6;
   private readonly model = new Scene();
@@ -57,14 +55,25 @@ export class Stage {
     this.renderer.autoClear = false;
     this.renderer.sortObjects = false;
     this.target = makeTarget(1, 1);
-    this.screen = makeScreen();
+    this.screen = makeScreen({
+      fragmentShader: kScreenFragment,
+      depthFunc: 1,
+      uniforms: {
+        picture: { value: null },
+        depths: { value: null },
+        near_far: { value: new Vector2() },
+        pixels: { value: new Vector2() },
+        outline: { value: 0 },
+        pixel_ratio: { value: 1 },
+      },
+    });
     this.probe = new DepthProbe(this.renderer);
     this.model.matrixWorldAutoUpdate = false;
   }
 
-  /** Fits the canvas to its element; whether it changed. */
+  /** Resizes the canvas to its element. Returns whether its size changed. */
   resize(width: number, height: number): boolean {
-    const ratio = this.software ? 1 : Math.min(window.devicePixelRatio, kLargestPixelRatio);
+    const ratio = this.software ? 1 : Math.min(window.devicePixelRatio, kMaxPixelRatio);
     const pixels = new Vector2(
       Math.max(1, Math.floor(width * ratio)),
       Math.max(1, Math.floor(height * ratio)),
@@ -103,7 +112,7 @@ export class Stage {
     this.model.children = [];
   }
 
-  /** Begins to make the programs that an object of the model and the screen are drawn with. */
+  /** Starts to compile the shaders of an object of the model and of the screen. */
   compile(object: Object3D) {
     const { renderer, screenCamera: camera } = this;
     renderer.setRenderTarget(this.target);
@@ -112,7 +121,7 @@ export class Stage {
     renderer.compile(this.screen, camera);
   }
 
-  /** Draws it, for what drivers make only then, and waits for the programs. Of no picture yet. */
+  /** Draws an object once to complete driver setup. Only before the first picture. */
   warm(object: Object3D) {
     const { screenCamera: camera } = this;
     this.beginModel();
@@ -120,7 +129,7 @@ export class Stage {
     this.drawPicture(camera);
   }
 
-  /** The picture of the model, and where `overlay` over it the rest, in each area. */
+  /** Draws the picture of the model and, if `overlay`, the overlays in each area. */
   drawScreen(areas: Area[], camera: PerspectiveCamera, overlay: boolean) {
     this.drawPicture(camera);
     if (overlay) this.drawOverlay(areas, camera);
@@ -157,17 +166,17 @@ export class Stage {
     renderer.setScissorTest(false);
   }
 
-  /** Of the model's picture; 1: nothing is there. */
+  /** Depth of the model's picture; 1: background. */
   depthAt(pixel: Vector2): number {
     return this.probe.read(this.target.depthTexture, pixel.x, pixel.y);
   }
 
-  /** Waits until all of it is drawn. */
+  /** Waits until drawing has finished. */
   finish() {
     this.read(0, 0, 1, 1);
   }
 
-  /** Colours of pixels of what was drawn in this task, from the upper left corner, 4 bytes each. */
+  /** RGBA bytes of pixels drawn in this task; x and y from the upper left corner. */
   read(x: number, y: number, width: number, height: number): Uint8Array {
     const gl = this.renderer.getContext();
     const bytes = new Uint8Array(4 * width * height);
@@ -177,10 +186,10 @@ export class Stage {
   }
 }
 
-/** Asked of a canvas of its own: the answer decides how the real one is made. */
+/** Checks on a separate canvas, because the result decides how the real one is created. */
 function isSoftware(): boolean {
   const gl = document.createElement('canvas').getContext('webgl2');
-  if (!gl) throw new Error('there is none');
+  if (!gl) throw new Error('not available');
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
   gl.getExtension('WEBGL_lose_context')?.loseContext();
@@ -195,29 +204,4 @@ function makeTarget(width: number, height: number): WebGLRenderTarget {
     stencilBuffer: false,
     generateMipmaps: false,
   });
-}
-
-function makeScreen(): Mesh<BufferGeometry, RawShaderMaterial> {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute(
-    'position',
-    new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3),
-  );
-  const material = new RawShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: kScreenVertex,
-    fragmentShader: kScreenFragment,
-    depthFunc: 1,
-    uniforms: {
-      picture: { value: null },
-      depths: { value: null },
-      near_far: { value: new Vector2() },
-      pixels: { value: new Vector2() },
-      outline: { value: 0 },
-      pixel_ratio: { value: 1 },
-    },
-  });
-  const mesh = new Mesh(geometry, material);
-  mesh.frustumCulled = false;
-  return mesh;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a world file put into the place: drawn where it is at a time, or where it was dragged to.
+// The objects of a world file: drawn at their poses at a time, or where they were dragged to.
 
 import {
   Group,
@@ -20,12 +20,12 @@ import { openLayer, type Layer } from './layer';
 import type { ObjectInfo, Pose, SceneInfo } from '../server/protocol';
 import type { SceneView } from './scene_view';
 
-/** Elements of an object's geometry that are drawn. */
-const kMostElements = 400_000;
-const kFarthestDragM = 500;
+/** Maximum elements drawn of an object's geometry. */
+const kMaxElements = 400_000;
+const kMaxDragM = 500;
 
 export interface ObjectsEvents {
-  /** Null: on its own way again. */
+  /** Called when an object was dragged; null: returned to its own motion. */
   placed(index: number, pose: Pose | null): void;
   failed(error: unknown): void;
 }
@@ -56,8 +56,8 @@ class PlacedObject {
     this.group.matrixWorldNeedsUpdate = true;
   }
 
-  /** How far along a ray its box begins; null: beside it. */
-  met(ray: Ray): number | null {
+  /** Distance along a ray to its box; null: no hit. */
+  rayDistance(ray: Ray): number | null {
     if (!this.group.visible || this.layer.table.size === 0) return null;
     const own = ray.clone().applyMatrix4(this.group.matrix.clone().invert());
     const hit = own.intersectBox(this.layer.table.box(0), new Vector3());
@@ -98,14 +98,14 @@ export class WorldObjects implements Grabbable {
     this.step(this.world_s);
   }
 
-  /** To a time of the world. */
+  /** Moves all objects to a world time. */
   step(world_s: number) {
     this.world_s = world_s;
     for (const placed of this.objects) placed.place(world_s);
     if (this.objects.length > 0) this.view.invalidate();
   }
 
-  /** All go their own way again. */
+  /** Returns all objects to their own motion. */
   release() {
     this.objects.forEach((placed, index) => {
       if (!placed.dragged) return;
@@ -119,14 +119,14 @@ export class WorldObjects implements Grabbable {
     return this.objects[index].poseAt(this.world_s);
   }
 
-  isAt(camera: PerspectiveCamera, place: Vector2): boolean {
-    return this.at(camera, place) !== null;
+  isAt(camera: PerspectiveCamera, screen: Vector2): boolean {
+    return this.at(camera, screen) !== null;
   }
 
   highlight() {}
 
-  grab(camera: PerspectiveCamera, place: Vector2) {
-    const found = this.at(camera, place);
+  grab(camera: PerspectiveCamera, screen: Vector2) {
+    const found = this.at(camera, screen);
     if (!found) return;
     const { placed, ray, distance_m } = found;
     const hit = ray.at(distance_m, new Vector3());
@@ -143,7 +143,7 @@ export class WorldObjects implements Grabbable {
     if (!this.held?.object.dragged) return;
     const { object, index, plane, from } = this.held;
     const hit = ray.intersectPlane(plane, new Vector3());
-    if (!hit || hit.distanceTo(ray.origin) > kFarthestDragM) return;
+    if (!hit || hit.distanceTo(ray.origin) > kMaxDragM) return;
     const pose: Pose = [...this.held.object.dragged];
     pose[0] += hit.x - from.x;
     pose[1] += hit.y - from.y;
@@ -154,13 +154,13 @@ export class WorldObjects implements Grabbable {
     this.view.invalidate();
   }
 
-  private at(camera: PerspectiveCamera, place: Vector2) {
+  private at(camera: PerspectiveCamera, screen: Vector2) {
     const caster = new Raycaster();
-    caster.setFromCamera(place, camera);
+    caster.setFromCamera(screen, camera);
     const { ray } = caster;
     let nearest: { placed: PlacedObject; ray: Ray; distance_m: number } | null = null;
     for (const placed of this.objects) {
-      const distance_m = placed.met(ray);
+      const distance_m = placed.rayDistance(ray);
       if (distance_m === null || (nearest && nearest.distance_m <= distance_m)) continue;
       nearest = { placed, ray, distance_m };
     }
@@ -176,7 +176,7 @@ export class WorldObjects implements Grabbable {
   }
 }
 
-/** The finest level of the tree that is not too much; leaves above it, too. */
+/** Nodes of the finest level within kMaxElements, and the leaves above it. */
 async function detailOf(layer: Layer, signal: AbortSignal): Promise<number[]> {
   const { table } = layer;
   let nodes = [0];
@@ -188,7 +188,7 @@ async function detailOf(layer: Layer, signal: AbortSignal): Promise<number[]> {
     }
     const isFinest = next.every((n, i) => n === nodes[i]);
     const elements = next.reduce((sum, n) => sum + table.node(n).count, 0);
-    if (isFinest || elements > kMostElements) return nodes;
+    if (isFinest || elements > kMaxElements) return nodes;
     nodes = next;
   }
 }

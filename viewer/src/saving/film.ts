@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A short film of the picture: what the canvas shows while it is recorded.
+// Records the canvas as a video.
 
 const kFramesPerSecond = 30;
 const kBitsPerSecond = 12e6;
-/** Longer ones fill the page's memory. */
-const kLongestMs = 120_000;
+/** Maximum length; longer films would fill the page's memory. */
+const kMaxFilmMs = 120_000;
 const kTypes = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
 
-export interface FilmEvents {
+interface FilmEvents {
   done(film: Blob): void;
   failed(error: unknown): void;
 }
@@ -27,10 +27,10 @@ export class Film {
     return this.recorder !== null;
   }
 
-  /** Throws where the browser cannot. */
+  /** Throws if the browser cannot record video. */
   start() {
     const type = kTypes.find((t) => MediaRecorder.isTypeSupported(t));
-    if (!type) throw new Error('this browser records no films');
+    if (!type) throw new Error('This browser cannot record video');
     const stream = this.canvas.captureStream(kFramesPerSecond);
     const recorder = new MediaRecorder(stream, {
       mimeType: type,
@@ -42,10 +42,10 @@ export class Film {
       for (const track of stream.getTracks()) track.stop();
       this.events.done(new Blob(parts, { type: type.split(';')[0] }));
     };
-    recorder.onerror = () => this.events.failed(new Error('the film could not be recorded'));
+    recorder.onerror = () => this.events.failed(new Error('Recording the film failed'));
     recorder.start(1000);
     this.recorder = recorder;
-    this.timer = window.setTimeout(() => this.stop(), kLongestMs);
+    this.timer = window.setTimeout(() => this.stop(), kMaxFilmMs);
   }
 
   stop() {

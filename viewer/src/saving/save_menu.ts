@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the user takes away: the picture, the scan, a film, the command.
+// Buttons that save the picture, the scan or a film, and copy the command line.
 
 import { button, byId, download, make } from '../panels/dom';
 import { showToast } from '../panels/notices';
@@ -10,7 +10,6 @@ import type { SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
 import { Film } from './film';
 import { scanPly } from './scan_ply';
-import { saveScreenshot } from './screenshot';
 
 function fileName(text: string): string {
   return text.replace(/[^\w.-]+/g, '_');
@@ -31,21 +30,21 @@ export class SaveMenu {
       done: (blob) => this.filmed(blob),
       failed: (error) => showToast((error as Error).message),
     });
-    this.filmButton = button('Film', 'Records a film along the path, or of what you do', () =>
+    this.filmButton = button('Film', 'Record a film of the playback, or of what you do', () =>
       this.toggleFilm(),
     );
     this.filmButton.id = 'film';
     const hasScans = scene.can_simulate || scene.scans.length > 0;
     const all = [
-      button('Screenshot', 'Saves the picture as PNG', () => saveScreenshot(view, scene.name)),
+      button('Screenshot', 'Save the picture as PNG', () => this.savePicture()),
       hasScans
-        ? button('Save scan', 'Saves the scan that is shown as PLY, in world coordinates', () =>
+        ? button('Save scan', 'Save the visible scan as PLY in world coordinates', () =>
             this.saveScan(),
           )
         : null,
       this.filmButton,
       command
-        ? button('Copy command line', 'What simulates this path with this LiDAR', command)
+        ? button('Copy command line', 'Copy the command that simulates this path', command)
         : null,
     ];
     this.elements = [
@@ -53,19 +52,27 @@ export class SaveMenu {
     ];
   }
 
-  /** A film along the path ends with it. */
+  /** Called in each frame; stops a film of the playback at its end. */
   step() {
     const { timeline } = this.playback;
     if (!this.film.recording) return;
-    // The recorder takes frames that are drawn.
+    // Only drawn frames are recorded.
     this.view.invalidate();
-    if (this.played && !timeline?.playing) this.stopFilm();
+    if (this.filmsPlayback && !timeline?.playing) this.stopFilm();
   }
-  private played = false;
+  private filmsPlayback = false;
+
+  private savePicture() {
+    this.view.drawNow();
+    byId<HTMLCanvasElement>('view').toBlob((blob) => {
+      if (!blob) return showToast('Saving the picture failed');
+      download(`${fileName(this.scene.name)}.png`, blob);
+    }, 'image/png');
+  }
 
   private saveScan() {
     const { packet } = this.playback;
-    if (!packet) return showToast('There is no scan yet');
+    if (!packet) return showToast('No scan to save yet');
     const name = `scan_${String(packet.number).padStart(6, '0')}.ply`;
     download(name, scanPly(packet, this.scene.origin_m));
   }
@@ -78,7 +85,7 @@ export class SaveMenu {
       return showToast((error as Error).message);
     }
     const { timeline } = this.playback;
-    this.played = timeline !== null;
+    this.filmsPlayback = timeline !== null;
     timeline?.play();
     this.filmButton.textContent = 'Stop film';
     this.filmButton.ariaPressed = 'true';

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A scan as a PLY in world coordinates, as `adasplats` and other programs read it.
+// Writes a scan as PLY in world coordinates.
 
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket } from '../server/binary';
+import { floatsOf, kScanPointWords, type ScanPacket } from '../server/binary';
 import type { Vec3 } from '../server/protocol';
 import { Vector3 } from 'three';
 
@@ -19,7 +19,7 @@ const kColumns = [
   ['ushort', 'return_index', 2],
 ] as const;
 
-/** Coordinates are doubles: UTM's are too large for floats. */
+/** Coordinates are doubles because UTM coordinates are too large for floats. */
 export function scanPly(packet: ScanPacket, origin_m: Vec3): Blob {
   const { points, words, has_classes, has_intensities } = packet;
   const columns = kColumns.filter(
@@ -36,14 +36,14 @@ export function scanPly(packet: ScanPacket, origin_m: Vec3): Blob {
   ].join('\n');
   const stride = columns.reduce((sum, [, , size]) => sum + size, 0);
   const view = new DataView(new ArrayBuffer(points * stride));
-  const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+  const floats = floatsOf(packet);
   const matrix = matrixOf(packet.pose);
-  const place = new Vector3();
+  const position = new Vector3();
   let to = 0;
   for (let i = 0; i < points; ++i) {
     const at = i * kScanPointWords;
-    place.set(floats[at], floats[at + 1], floats[at + 2]).applyMatrix4(matrix);
-    place.toArray().forEach((v, axis) => view.setFloat64(to + 8 * axis, v + origin_m[axis], true));
+    position.set(floats[at], floats[at + 1], floats[at + 2]).applyMatrix4(matrix);
+    position.toArray().forEach((v, axis) => view.setFloat64(to + 8 * axis, v + origin_m[axis], true));
     to += 24;
     if (has_intensities) {
       view.setFloat32(to, (words[at + 5] & 0xffff) / 65535, true);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the server sends as bytes, read with distrust: trees, their nodes, scans.
+// Parses and validates binary data of the server: tables, nodes and scans.
 
 import { parsePose, ProtocolError, type LayerKind, type Pose, type Vec3 } from './protocol';
 
@@ -17,17 +17,17 @@ export interface TreeNode {
 }
 
 const kNodeBytes = 48;
-/** Nodes of a tree's table that come at a time. */
+/** Nodes per block of a tree's table. */
 export const kBlockNodes = 1024;
 export const kElementBytes = 16;
 export const kTriangleBytes = 40;
 
-/** Of one element of a node. */
+/** Size of an element of a node. */
 export function elementBytes(kind: LayerKind): number {
   return kind === 'mesh' ? kTriangleBytes : kElementBytes;
 }
 
-/** The row at `row` of the bytes, which is that of node `index` of `nodes`. */
+/** Parses row `row` of a block: node `index` of a tree of `nodes` nodes. */
 function treeNode(view: DataView, row: number, index: number, nodes: number): TreeNode {
   const at = kNodeBytes * row;
   const float = (i: number) => view.getFloat32(at + 4 * i, true);
@@ -42,16 +42,16 @@ function treeNode(view: DataView, row: number, index: number, nodes: number): Tr
     count: word(10),
     level: word(11),
   };
-  // Children come later than their parent: so a tree that lies cannot make the page loop.
+  // Children must follow their parent, so that an invalid tree cannot cause an endless loop.
   const end = node.first_child + node.child_count;
   if (node.child_count > 8 || (node.child_count > 0 && (node.first_child <= index || end > nodes)))
-    throw new ProtocolError(`node ${index} has children that cannot be`);
+    throw new ProtocolError(`node ${index} has invalid children`);
   if (![...node.low, ...node.high, node.spacing_m, node.largest_radius_m].every(Number.isFinite))
-    throw new ProtocolError(`node ${index} has a box that is not finite`);
+    throw new ProtocolError(`node ${index}: its box is not finite`);
   return node;
 }
 
-/** table/B.bin, of a tree of so many nodes. */
+/** Parses table/B.bin of a tree of `nodes` nodes. */
 export function parseNodes(bytes: ArrayBuffer, block: number, nodes: number): TreeNode[] {
   const first = block * kBlockNodes;
   const count = Math.min(kBlockNodes, nodes - first);
@@ -61,10 +61,10 @@ export function parseNodes(bytes: ArrayBuffer, block: number, nodes: number): Tr
   return Array.from({ length: count }, (_, i) => treeNode(view, i, first + i, nodes));
 }
 
-/** nodes/N.bin: four words an element, ten a triangle. */
+/** Parses nodes/N.bin: 4 words per element, 10 per triangle. */
 export function parseElements(bytes: ArrayBuffer, count: number, kind: LayerKind): Uint32Array {
   if (bytes.byteLength !== count * elementBytes(kind))
-    throw new ProtocolError(`a node: ${bytes.byteLength} bytes for ${count} elements`);
+    throw new ProtocolError(`node: ${bytes.byteLength} bytes for ${count} elements`);
   return new Uint32Array(bytes);
 }
 
@@ -79,24 +79,29 @@ export interface ScanPacket {
   pose: Pose;
   seconds: number;
   max_range_m: number;
-  /** Six words a point. */
+  /** Six words per point. */
   words: Uint32Array;
+}
+
+/** The words of a scan packet as floats. */
+export function floatsOf({ words }: ScanPacket): Float32Array {
+  return new Float32Array(words.buffer, words.byteOffset, words.length);
 }
 
 const kScanMagic = 0x4e435341;
 const kScanHeaderBytes = 80;
 export const kScanPointWords = 6;
 
-/** A scan packet, recorded or live. */
+/** Parses a scan packet, recorded or live. */
 export function parseScan(bytes: ArrayBuffer): ScanPacket {
-  if (bytes.byteLength < kScanHeaderBytes) throw new ProtocolError('a scan: too short');
+  if (bytes.byteLength < kScanHeaderBytes) throw new ProtocolError('scan packet: too short');
   const head = new Uint32Array(bytes, 0, 20);
   const floats = new Float32Array(bytes, 0, 20);
   if (head[0] !== kScanMagic || head[1] !== 1)
-    throw new ProtocolError('a scan: no packet of version 1');
+    throw new ProtocolError('scan packet: not version 1');
   const points = head[3];
   if (bytes.byteLength !== kScanHeaderBytes + points * kScanPointWords * 4)
-    throw new ProtocolError(`a scan: ${bytes.byteLength} bytes for ${points} points`);
+    throw new ProtocolError(`scan packet: ${bytes.byteLength} bytes for ${points} points`);
   return {
     number: head[2],
     points,
@@ -105,7 +110,7 @@ export function parseScan(bytes: ArrayBuffer): ScanPacket {
     columns: head[6],
     has_classes: (head[7] & 1) !== 0,
     has_intensities: (head[7] & 2) !== 0,
-    pose: parsePose(Array.from(floats.subarray(8, 15)), 'the pose of a scan'),
+    pose: parsePose(Array.from(floats.subarray(8, 15)), 'scan packet: pose'),
     seconds: floats[15],
     max_range_m: floats[16],
     words: new Uint32Array(bytes, kScanHeaderBytes),

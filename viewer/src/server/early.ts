@@ -1,31 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What every first picture needs is asked for at once: while the page's scripts begin, and not one
-// reply after another.
+// Early requests: fetches what every first picture needs at once, while the scripts start.
 
-/** Of the layer that every view has, its first nodes and its root. */
-const kFirst = ['scene.json', 'layers/0/table/0.bin', 'layers/0/nodes/0.bin'];
+/** The scene, and of the first layer the first block and the root. */
+const kEarlyPaths = ['scene.json', 'layers/0/table/0.bin', 'layers/0/nodes/0.bin'];
 
-const early = new Map(kFirst.map((path) => [path, fetch(path)]));
-// Whoever asks for it sees the failure.
+const early = new Map(kEarlyPaths.map((path) => [path, fetch(path)]));
+// The caller of fetchOnce() sees the failure.
 for (const reply of early.values()) reply.catch(() => {});
 
-/** As fetch; the first time with the reply to what was asked for early. */
-export function askOnce(path: string, signal?: AbortSignal): Promise<Response> {
+/** Like fetch, but uses an early reply once if there is one. */
+export function fetchOnce(path: string, signal?: AbortSignal): Promise<Response> {
   const reply = early.get(path);
   early.delete(path);
   return reply ?? fetch(path, { signal });
 }
 
-/** What was asked for early may be of another scene by now. */
-export function forgetEarly() {
+/** Discards early replies, which may belong to another scene by now. */
+export function dropEarly() {
   early.clear();
 }
 
-/** The bytes. Rejects as fetch does, and where the server has no such thing. */
-export async function ask(path: string, signal: AbortSignal): Promise<ArrayBuffer> {
-  const reply = await askOnce(path, signal);
+/** Fetches bytes. Rejects like fetch, and if the server's status is not 200-299. */
+export async function fetchBytes(path: string, signal: AbortSignal): Promise<ArrayBuffer> {
+  const reply = await fetchOnce(path, signal);
   if (!reply.ok) throw new Error(`${path}: ${reply.status}`);
   return reply.arrayBuffer();
 }

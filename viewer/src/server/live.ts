@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The live channel: keeps itself connected, and tells a new server what the last one knew.
+// The live channel: reconnects, and sends its state to a restarted server.
 
 import { parseScan, type ScanPacket } from './binary';
 import {
@@ -13,9 +13,9 @@ import {
 } from './protocol';
 
 export interface LiveEvents {
-  /** Connected, when the sensor is to be told, or no longer. */
+  /** Connected (the sensor must then be sent) or disconnected. */
   connection(connected: boolean): void;
-  /** Before each connection but the first: reads the scene again. Rejects while nobody answers. */
+  /** Before each reconnect: reads the scene again. Rejects while the server does not answer. */
   beforeReconnect(): Promise<void>;
   scan(scan: ScanPacket): void;
   sensor(message: SensorMessage): void;
@@ -23,8 +23,8 @@ export interface LiveEvents {
 }
 
 const kFirstPauseMs = 150;
-const kLongestPauseMs = 1000;
-/** A scan that takes longer than this: the server is told again that the page is ready. */
+const kMaxPauseMs = 1000;
+/** If no scan arrives for this long, 'ready' is sent again. */
 const kPatienceMs = 5000;
 const kPickPatienceMs = 5000;
 
@@ -32,7 +32,7 @@ export interface Motion {
   pose: Pose;
   velocity_m_s: [number, number, number];
   yaw_rate_rad_s: number;
-  /** Of the world. */
+  /** World time. */
   time_s: number;
 }
 
@@ -51,7 +51,7 @@ export class Live {
     private readonly url: string,
     private readonly events: LiveEvents,
   ) {
-    window.setInterval(() => this.nudge(), 1000);
+    window.setInterval(() => this.resendReady(), 1000);
   }
 
   connect() {
@@ -72,7 +72,7 @@ export class Live {
     this.send({ type: 'pose', ...motion });
   }
 
-  /** Where an object of the world is; null: on its own way. */
+  /** Sets the pose of an object of the world; null: its own motion. */
   placeObject(id: number, pose: Pose | null) {
     this.placed.set(id, pose);
     this.send({ type: 'object', id, pose });
@@ -84,12 +84,12 @@ export class Live {
     this.send({ type: 'run', on });
   }
 
-  /** A scan was drawn. */
+  /** Requests the next scan. */
   ready() {
     this.send({ type: 'ready' });
   }
 
-  /** What a ray meets; null where the server does not answer. */
+  /** The splat that a ray hits; null if the server does not answer. */
   pick(origin: number[], direction: number[]): Promise<PickedMessage | null> {
     if (!this.connected) return Promise.resolve(null);
     const id = this.nextPick++;
@@ -123,17 +123,17 @@ export class Live {
     this.connected = false;
     for (const id of [...this.picks.keys()]) this.answerPick(id, null);
     if (was) this.events.connection(false);
-    this.later();
+    this.scheduleReconnect();
   }
 
-  private later() {
+  private scheduleReconnect() {
     window.setTimeout(() => {
       this.events.beforeReconnect().then(
         () => this.connect(),
-        () => this.later(),
+        () => this.scheduleReconnect(),
       );
     }, this.pauseMs);
-    this.pauseMs = Math.min(this.pauseMs * 2, kLongestPauseMs);
+    this.pauseMs = Math.min(this.pauseMs * 2, kMaxPauseMs);
   }
 
   private received(data: string | ArrayBuffer) {
@@ -144,7 +144,7 @@ export class Live {
         this.events.scan(parseScan(data));
       }
     } catch (error) {
-      this.events.error(`The server sent something odd: ${(error as Error).message}`);
+      this.events.error(`Invalid data from the server: ${(error as Error).message}`);
     }
   }
 
@@ -155,7 +155,7 @@ export class Live {
     else if (message?.type === 'error') this.events.error(message.message);
   }
 
-  private nudge() {
+  private resendReady() {
     if (!this.running || document.hidden) return;
     if (performance.now() - this.lastScanMs < kPatienceMs) return;
     this.lastScanMs = performance.now();

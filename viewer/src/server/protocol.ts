@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the server says, as types, and read with distrust: docs/viewer_protocol.md.
+// Messages of the server: types and validation. See docs/viewer_protocol.md.
 
 const kVersion = 2;
 
@@ -10,7 +10,7 @@ export type Vec3 = [number, number, number];
 export type Pose = [number, number, number, number, number, number, number];
 export type Box = [Vec3, Vec3];
 
-export const kLayerKinds = ['splats', 'points', 'mesh'] as const;
+const kLayerKinds = ['splats', 'points', 'mesh'] as const;
 export type LayerKind = (typeof kLayerKinds)[number];
 
 export interface LayerInfo {
@@ -24,7 +24,7 @@ export interface LayerInfo {
   has_errors: boolean;
   intensity_range: [number, number];
   error_range_m: [number, number];
-  /** Of the beams with errors: 'early', 'late', 'ghosts', 'holes'; empty: all, or none have any. */
+  /** Part of the beams with errors: 'early', 'late', 'ghosts', 'holes'; '': all, or no errors. */
   part: string;
   box: Box;
 }
@@ -45,36 +45,36 @@ export interface SensorInfo {
   max_range_m: number;
 }
 
-export interface RecordedScan {
+interface RecordedScan {
   name: string;
   trajectory: number;
   pose: Pose;
-  /** Since the first of its trajectory. */
+  /** Time since the first scan of its trajectory. */
   time_s: number;
-  /** Null: not told. */
+  /** Null: unknown. */
   points: number | null;
 }
 
-export interface TrajectoryInfo {
+interface TrajectoryInfo {
   name: string;
   poses: Pose[];
-  /** Of the poses, since the first; ascending. */
+  /** Times of the poses since the first, ascending. */
   times_s: number[];
-  /** Time of the world at the first. */
+  /** World time of the first pose. */
   begin_s: number;
 }
 
-/** Something that a world file put into the place. */
+/** An object of a world file. */
 export interface ObjectInfo {
   name: string;
-  /** In a frame of its own. */
+  /** In the object's frame. */
   geometry: LayerInfo;
-  /** Instead of the geometry's own; null: those. */
+  /** Class of all elements; null: the classes of the geometry. */
   class_id: number | null;
   scale: number;
-  /** There between its first and last pose alone. */
+  /** Whether it exists only between its first and last pose. */
   only_during: boolean;
-  /** world_from_object, at times of the world. */
+  /** world_from_object at the world times times_s. */
   poses: Pose[];
   times_s: number[];
 }
@@ -96,7 +96,7 @@ export interface SceneInfo {
   command: string[];
 }
 
-/** Of a LiDAR; null: none, or the sensor's own. */
+/** Settings of a LiDAR; null: none, or the sensor's default. */
 export type Settings = Record<string, number | boolean | null>;
 
 export interface SensorMessage {
@@ -123,38 +123,38 @@ export interface PickedMessage {
   intensity?: number;
 }
 
-export interface ErrorMessage {
+interface ErrorMessage {
   type: 'error';
   message: string;
 }
 
-export type ServerMessage = SensorMessage | PickedMessage | ErrorMessage;
+type ServerMessage = SensorMessage | PickedMessage | ErrorMessage;
 
-/** Data that do not follow the protocol. */
+/** Data that violate the protocol. */
 export class ProtocolError extends Error {}
 
 type Fields = Record<string, unknown>;
 
 function fields(value: unknown, what: string): Fields {
   if (typeof value !== 'object' || value === null || Array.isArray(value))
-    throw new ProtocolError(`${what} is no object`);
+    throw new ProtocolError(`${what} is not an object`);
   return value as Fields;
 }
 
 function number(value: unknown, what: string): number {
   if (typeof value !== 'number' || !Number.isFinite(value))
-    throw new ProtocolError(`${what} is no number`);
+    throw new ProtocolError(`${what} is not a number`);
   return value;
 }
 
 function text(value: unknown, what: string): string {
-  if (typeof value !== 'string') throw new ProtocolError(`${what} is no text`);
+  if (typeof value !== 'string') throw new ProtocolError(`${what} is not a string`);
   return value;
 }
 
 function list<T>(value: unknown, what: string, item: (v: unknown, what: string) => T): T[] {
   if (value === undefined || value === null) return [];
-  if (!Array.isArray(value)) throw new ProtocolError(`${what} is no list`);
+  if (!Array.isArray(value)) throw new ProtocolError(`${what} is not a list`);
   return value.map((v, i) => item(v, `${what}[${i}]`));
 }
 
@@ -168,13 +168,14 @@ function numbers<T extends number[]>(value: unknown, what: string, size: number)
 export function parsePose(value: unknown, what: string): Pose {
   const found = numbers<Pose>(value, what, 7);
   const norm = Math.hypot(found[3], found[4], found[5], found[6]);
-  if (!(Math.abs(norm - 1) < 0.01)) throw new ProtocolError(`${what} is no rotation`);
+  if (!(Math.abs(norm - 1) < 0.01)) throw new ProtocolError(`${what} is not a rotation`);
   return found;
 }
 
 function box(value: unknown, what: string): Box {
   const corners = list(value, what, (v, w) => numbers<Vec3>(v, w, 3));
-  if (corners.length !== 2) throw new ProtocolError(`${what} has no two corners`);
+  if (corners.length !== 2)
+    throw new ProtocolError(`${what} has ${corners.length} corners, expected 2`);
   return corners as Box;
 }
 
@@ -185,10 +186,10 @@ function range(value: unknown, what: string): [number, number] {
 
 function layer(value: unknown, what: string): LayerInfo {
   const v = fields(value, what);
-  const told = text(v.kind, `${what}.kind`);
-  const kind = kLayerKinds.find((k) => k === told);
+  const name = text(v.kind, `${what}.kind`);
+  const kind = kLayerKinds.find((k) => k === name);
   if (!kind)
-    throw new ProtocolError(`${what}.kind is '${told}', expected ${kLayerKinds.join(' or ')}`);
+    throw new ProtocolError(`${what}.kind is '${name}', expected ${kLayerKinds.join(' or ')}`);
   return {
     id: number(v.id, `${what}.id`),
     kind,
@@ -231,10 +232,11 @@ function sensorInfo(value: unknown, what: string): SensorInfo {
 function trajectory(value: unknown, what: string): TrajectoryInfo {
   const v = fields(value, what);
   const poses = list(v.poses, `${what}.poses`, parsePose);
-  const told = list(v.times_s, `${what}.times_s`, number);
-  const ascend = told.length === poses.length && told.every((t, i) => i === 0 || t > told[i - 1]);
-  // Without times: one every tenth of a second, as most LiDARs turn.
-  const times_s = ascend ? told : poses.map((_, i) => 0.1 * i);
+  const times = list(v.times_s, `${what}.times_s`, number);
+  const isValid =
+    times.length === poses.length && times.every((t, i) => i === 0 || t > times[i - 1]);
+  // Without valid times, assume 10 Hz, the usual rotation rate.
+  const times_s = isValid ? times : poses.map((_, i) => 0.1 * i);
   const begin_s = typeof v.begin_s === 'number' ? v.begin_s : 0;
   return { name: text(v.name, `${what}.name`), poses, times_s, begin_s };
 }
@@ -267,11 +269,11 @@ function objectInfo(value: unknown, what: string): ObjectInfo {
   };
 }
 
-/** scene.json. */
+/** Parses scene.json. Errors: ProtocolError. */
 export function parseScene(value: unknown): SceneInfo {
   const v = fields(value, 'scene.json');
   if (v.version !== kVersion)
-    throw new ProtocolError(`scene.json: version ${String(v.version)}, this page knows ${kVersion}`);
+    throw new ProtocolError(`scene.json has version ${String(v.version)}, expected ${kVersion}`);
   const canSimulate = v.can_simulate === true;
   return {
     name: text(v.name, 'name'),
@@ -301,9 +303,9 @@ function settings(value: unknown): Settings {
   return found;
 }
 
-/** A text message of the live channel; null: of a type that this page does not know. */
+/** Parses a text message of the live channel; null: an unknown type. */
 export function parseMessage(line: string): ServerMessage | null {
-  const v = fields(JSON.parse(line), 'a message');
+  const v = fields(JSON.parse(line), 'message');
   switch (v.type) {
     case 'sensor':
       return {

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Recorded scans, read when they are asked for and kept for a while.
+// A cache of recorded scans, loaded on demand.
 
 import { parseScan, type ScanPacket } from './binary';
 
 const kKept = 24;
 
 export class RecordedScans {
-  /** Last used last. */
+  /** In order of last use. */
   private readonly kept = new Map<number, Promise<ScanPacket>>();
 
-  /** Rejects as fetch does, or with a ProtocolError; then it can be asked for again. */
+  /** Rejects like fetch or with a ProtocolError; a failed scan can be requested again. */
   get(index: number): Promise<ScanPacket> {
     const found = this.kept.get(index) ?? this.load(index);
     this.kept.delete(index);

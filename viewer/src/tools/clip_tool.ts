@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The clipping box: drawn with a handle on each face to pull it by, and told in numbers.
+// Edits the clipping box: with a handle on each face, or by numbers.
 
 import { Ray, Vector3, type PerspectiveCamera, type Vector2 } from 'three';
 import type { Grabbable } from '../driving/pointer';
@@ -10,17 +10,17 @@ import { kClipModes, type ClipMode } from '../picture/clip';
 import { Marks } from '../picture/marks';
 import type { SceneView } from '../picture/scene_view';
 import type { Vec3 } from '../server/protocol';
-import type { Tool } from './tool';
+import type { Tool } from './tool_box';
 
 const kColor = 0x4de1ff;
 const kHandlePixels = 12;
-const kLeastHalfM = 0.05;
+const kMinHalfM = 0.05;
 const kNames: Record<ClipMode, string> = {
   off: 'Off',
   inside: 'Keep inside',
   outside: 'Cut out',
 };
-/** Around the sensor, when it is first taken up. */
+/** Half side lengths of the first box, around the sensor, m. */
 const kFirstHalf = [12, 8, 4];
 
 interface Handle {
@@ -32,8 +32,8 @@ const kHandles: Handle[] = [0, 1, 2].flatMap((axis) => [
   { axis, sign: -1 as const },
 ]);
 
-/** Along the line through `at` in direction `axis`, where it is nearest to the ray. */
-export function nearestOnAxis(ray: Ray, at: Vector3, axis: Vector3): number {
+/** Signed distance from `at` along `axis` of the point nearest to the ray. */
+function nearestOnAxis(ray: Ray, at: Vector3, axis: Vector3): number {
   const between = at.clone().sub(ray.origin);
   const b = axis.dot(ray.direction);
   const slant = 1 - b * b;
@@ -44,10 +44,10 @@ export function nearestOnAxis(ray: Ray, at: Vector3, axis: Vector3): number {
 export class ClipTool implements Tool, Grabbable {
   readonly name = 'Clip';
   readonly key = 'b';
-  readonly help = 'A box outside of which nothing is drawn (B)';
+  readonly help = 'Draw only the inside or the outside of a box (B)';
   readonly card = make('div');
   private readonly marks = new Marks(kColor, 11);
-  private isTaken = false;
+  private isActive = false;
   private isPlaced = false;
   private held: Handle | null = null;
   private readonly inputs: { input: HTMLInputElement; value: () => number }[] = [];
@@ -73,30 +73,30 @@ export class ClipTool implements Tool, Grabbable {
     this.fillCard();
   }
 
-  taken() {
+  activate() {
     const { clip } = this.view;
-    this.isTaken = true;
+    this.isActive = true;
     if (!this.isPlaced) this.placeAtSensor();
     if (clip.mode === 'off') clip.mode = 'inside';
     this.changed();
   }
 
-  /** The box stays; its handles go. */
-  put() {
-    this.isTaken = false;
+  /** Hides the handles; the box keeps clipping. */
+  deactivate() {
+    this.isActive = false;
     this.changed();
   }
 
   clicked() {}
 
-  isAt(camera: PerspectiveCamera, place: Vector2, height_px: number): boolean {
-    return this.isTaken && this.handleAt(camera, place, height_px) !== null;
+  isAt(camera: PerspectiveCamera, screen: Vector2, height_px: number): boolean {
+    return this.isActive && this.handleAt(camera, screen, height_px) !== null;
   }
 
   highlight() {}
 
-  grab(camera: PerspectiveCamera, place: Vector2, height_px: number) {
-    this.held = this.handleAt(camera, place, height_px);
+  grab(camera: PerspectiveCamera, screen: Vector2, height_px: number) {
+    this.held = this.handleAt(camera, screen, height_px);
   }
 
   drag(ray: Ray) {
@@ -105,8 +105,8 @@ export class ClipTool implements Tool, Grabbable {
     const { axis, sign } = this.held;
     const direction = clip.axis(axis).multiplyScalar(sign);
     const half = clip.half.getComponent(axis);
-    const pulled = nearestOnAxis(ray, this.placeOf(this.held), direction);
-    const next = Math.max(half + pulled / 2, kLeastHalfM);
+    const pulled = nearestOnAxis(ray, this.positionOf(this.held), direction);
+    const next = Math.max(half + pulled / 2, kMinHalfM);
     clip.center.addScaledVector(direction, next - half);
     clip.half.setComponent(axis, next);
     this.changed();
@@ -121,19 +121,19 @@ export class ClipTool implements Tool, Grabbable {
     this.isPlaced = true;
   }
 
-  private placeOf({ axis, sign }: Handle): Vector3 {
+  private positionOf({ axis, sign }: Handle): Vector3 {
     const { clip } = this.view;
     return clip.center
       .clone()
       .addScaledVector(clip.axis(axis), sign * clip.half.getComponent(axis));
   }
 
-  private handleAt(camera: PerspectiveCamera, place: Vector2, height_px: number): Handle | null {
+  private handleAt(camera: PerspectiveCamera, screen: Vector2, height_px: number): Handle | null {
     const reach = (2 * kHandlePixels) / height_px;
     for (const handle of kHandles) {
-      const seen = this.placeOf(handle).project(camera);
+      const seen = this.positionOf(handle).project(camera);
       if (seen.z > 1) continue;
-      if (Math.hypot((seen.x - place.x) * camera.aspect, seen.y - place.y) < reach) return handle;
+      if (Math.hypot((seen.x - screen.x) * camera.aspect, seen.y - screen.y) < reach) return handle;
     }
     return null;
   }
@@ -142,7 +142,7 @@ export class ClipTool implements Tool, Grabbable {
     const { clip } = this.view;
     clip.apply();
     this.modes.choose(clip.mode);
-    this.marks.object.visible = this.isTaken;
+    this.marks.object.visible = this.isActive;
     const corner = (x: number, y: number, z: number) =>
       new Vector3(x, y, z).applyMatrix4(clip.worldFromBox());
     const ends: Vector3[] = [];
@@ -153,7 +153,7 @@ export class ClipTool implements Tool, Grabbable {
           ...[corner(a, -1, b), corner(a, 1, b)],
           ...[corner(a, b, -1), corner(a, b, 1)],
         );
-    this.marks.set(ends, kHandles.map((h) => this.placeOf(h)));
+    this.marks.set(ends, kHandles.map((h) => this.positionOf(h)));
     for (const { input, value } of this.inputs)
       if (document.activeElement !== input) input.value = value().toFixed(2);
     this.view.invalidateModel();
@@ -166,29 +166,29 @@ export class ClipTool implements Tool, Grabbable {
         'div',
         { className: 'row' },
         make('span', { className: 'name' }, name),
-        this.number(`Middle ${name}`, () => clip.center.getComponent(i) + this.origin_m[i], (v) =>
+        this.number(`Center ${name}`, () => clip.center.getComponent(i) + this.origin_m[i], (v) =>
           clip.center.setComponent(i, v - this.origin_m[i]),
         ),
         this.number(`Size ${name}`, () => 2 * clip.half.getComponent(i), (v) =>
-          clip.half.setComponent(i, Math.max(v / 2, kLeastHalfM)),
+          clip.half.setComponent(i, Math.max(v / 2, kMinHalfM)),
         ),
       ),
     );
-    const turned = this.number(
-      'Turned, degrees',
+    const heading = this.number(
+      'Heading, degrees',
       () => (clip.yaw_rad * 180) / Math.PI,
       (v) => (clip.yaw_rad = (v * Math.PI) / 180),
     );
     fill(
       this.card,
       this.modes,
-      make('p', { className: 'facts' }, 'Middle (world) and size, m. Pull the faces by their dots.'),
+      make('p', { className: 'facts' }, 'Center (world) and size, m. Drag a dot to move its face.'),
       ...rows,
-      make('div', { className: 'row' }, make('span', { className: 'name' }, 'turned °'), turned),
+      make('div', { className: 'row' }, make('span', { className: 'name' }, 'heading °'), heading),
       make(
         'div',
         { className: 'buttons small' },
-        button('To the sensor', 'Puts the box around the sensor', () => {
+        button('To the sensor', 'Center the box on the sensor', () => {
           this.placeAtSensor();
           this.changed();
         }),
@@ -196,10 +196,10 @@ export class ClipTool implements Tool, Grabbable {
     );
   }
 
-  private number(label: string, value: () => number, take: (v: number) => void) {
+  private number(label: string, value: () => number, set: (v: number) => void) {
     const input = make('input', { type: 'number', ariaLabel: label, step: '0.1' });
     input.onchange = () => {
-      if (Number.isFinite(input.valueAsNumber)) take(input.valueAsNumber);
+      if (Number.isFinite(input.valueAsNumber)) set(input.valueAsNumber);
       this.changed();
     };
     this.inputs.push({ input, value });

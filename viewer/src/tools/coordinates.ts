@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Places and lengths as text: millimetres, and coordinates of the world, which may be millions.
+// Positions and lengths as text with millimetres.
 
 import type { Vector3 } from 'three';
 import type { Vec3 } from '../server/protocol';
 
-/** "650003.215, 6860011.040, 41.730": doubles, so that UTM coordinates keep their millimetres. */
+/** World position, "650003.215, 6860011.040, 41.730"; doubles keep millimetres of UTM. */
 export function worldText(position: Vector3, origin_m: Vec3): string {
   return position
     .toArray()

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Distances: two clicks, as often as wanted.
+// Measures distances between pairs of clicks.
 
 import { Vector3 } from 'three';
-import type { Place } from '../driving/pointer';
-import { button, fill, make } from '../panels/dom';
+import type { Click } from '../driving/pointer';
+import { button, definitions, fill, make } from '../panels/dom';
 import type { Label, Labels } from '../picture/labels';
 import { Marks } from '../picture/marks';
 import { showToast } from '../panels/notices';
@@ -13,7 +13,7 @@ import type { SceneView } from '../picture/scene_view';
 import type { Vec3 } from '../server/protocol';
 import { differenceText, lengthText, worldText } from './coordinates';
 import type { SurfaceFinder } from './surface';
-import type { Tool } from './tool';
+import type { Tool } from './tool_box';
 
 const kColor = 0xffe14d;
 
@@ -25,7 +25,7 @@ export interface Measurement {
   height_m: number;
 }
 
-export function measurementOf(from: Vector3, to: Vector3): Measurement {
+function measurementOf(from: Vector3, to: Vector3): Measurement {
   return {
     from,
     to,
@@ -38,7 +38,7 @@ export function measurementOf(from: Vector3, to: Vector3): Measurement {
 export class MeasureTool implements Tool {
   readonly name = 'Measure';
   readonly key = 'm';
-  readonly help = 'Distance between two clicks (M)';
+  readonly help = 'Measure the distance between two clicks (M)';
   readonly card = make('div');
   readonly all: Measurement[] = [];
   private from: Vector3 | null = null;
@@ -55,22 +55,22 @@ export class MeasureTool implements Tool {
     this.draw();
   }
 
-  taken() {
+  activate() {
     this.draw();
   }
 
-  put() {
+  deactivate() {
     this.from = null;
     this.draw();
   }
 
-  clicked(place: Place) {
-    void this.add(place);
+  clicked(click: Click) {
+    void this.add(click);
   }
 
-  private async add(place: Place) {
-    const at = await this.surface.at(place);
-    if (!at) return showToast('Nothing is there: click on the scene');
+  private async add(click: Click) {
+    const at = await this.surface.at(click);
+    if (!at) return showToast('No surface there: click on the scene');
     if (this.from) {
       this.all.push(measurementOf(this.from, at));
       this.from = null;
@@ -101,21 +101,18 @@ export class MeasureTool implements Tool {
     const { from, all } = this;
     const last = all[all.length - 1];
     const hint = from ? 'Click the second point.' : 'Click a point, then another.';
-    const line = (name: string, text: string) => [make('dt', {}, name), make('dd', {}, text)];
     const table = from
-      ? make('dl', {}, ...line('From', worldText(from, this.origin_m)))
+      ? definitions([['From', worldText(from, this.origin_m)]])
       : last
-        ? make(
-            'dl',
-            {},
-            ...line('Distance', lengthText(last.distance_m)),
-            ...line('Horizontal', lengthText(last.horizontal_m)),
-            ...line('Height', differenceText(last.height_m)),
-            ...line('From', worldText(last.from, this.origin_m)),
-            ...line('To', worldText(last.to, this.origin_m)),
-          )
+        ? definitions([
+            ['Distance', lengthText(last.distance_m)],
+            ['Horizontal', lengthText(last.horizontal_m)],
+            ['Height', differenceText(last.height_m)],
+            ['From', worldText(last.from, this.origin_m)],
+            ['To', worldText(last.to, this.origin_m)],
+          ])
         : null;
-    const clear = button('Clear', 'Forgets all distances', () => this.clear());
+    const clear = button('Clear', 'Delete all measurements', () => this.clear());
     clear.disabled = all.length === 0 && !from;
     fill(
       this.card,

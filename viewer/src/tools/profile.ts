@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The profile: a vertical slice between two clicks, drawn and to be kept as picture or table.
+// The profile: plots a vertical slice between two clicks and saves it as PNG or CSV.
 
 import { Vector3 } from 'three';
-import type { Place } from '../driving/pointer';
+import type { Click } from '../driving/pointer';
 import { button, download, fill, grouped, make, row } from '../panels/dom';
 import { cssColor } from '../picture/color_maps';
 import { Marks } from '../picture/marks';
@@ -14,14 +14,14 @@ import type { Vec3 } from '../server/protocol';
 import { drawProfile } from './profile_plot';
 import { slicePoints, type SlicePoint } from './slice';
 import type { SurfaceFinder } from './surface';
-import type { Tool } from './tool';
+import type { Tool } from './tool_box';
 
 const kColor = 0xff8ad8;
 const kWidthM = 0.5;
 const kPlain = '#cfd6de';
 
-/** One line a point, in world coordinates. */
-export function profileCsv(points: SlicePoint[], origin_m: Vec3): string {
+/** One line per point, in world coordinates. */
+function profileCsv(points: SlicePoint[], origin_m: Vec3): string {
   const lines = points.map(({ along_m, offset_m, position, class: id, intensity, layer }) => {
     const world = position.toArray().map((v, i) => (v + origin_m[i]).toFixed(3));
     const name = `"${layer.replace(/"/g, '""')}"`;
@@ -34,13 +34,13 @@ export function profileCsv(points: SlicePoint[], origin_m: Vec3): string {
 export class ProfileTool implements Tool {
   readonly name = 'Profile';
   readonly key = 'v';
-  readonly help = 'A vertical slice between two clicks (V)';
+  readonly help = 'Plot a vertical slice between two clicks (V)';
   readonly card = make('div');
   points: SlicePoint[] = [];
   private from: Vector3 | null = null;
   private to: Vector3 | null = null;
   private width_m = kWidthM;
-  private state = 'Click where the slice begins.';
+  private state = 'Click the start of the slice.';
   private length_m = 0;
   private loading: AbortController | null = null;
   private readonly marks = new Marks(kColor);
@@ -53,33 +53,33 @@ export class ProfileTool implements Tool {
     private readonly failed: (error: unknown) => void,
   ) {
     this.plot.role = 'img';
-    this.plot.ariaLabel = 'Profile: height over the way along the slice';
+    this.plot.ariaLabel = 'Profile: height over distance along the slice';
     view.stage.marks.add(this.marks.object);
     this.draw();
   }
 
-  taken() {
+  activate() {
     this.marks.object.visible = true;
     this.draw();
   }
 
-  put() {
+  deactivate() {
     this.marks.object.visible = false;
     this.view.invalidate();
   }
 
-  clicked(place: Place) {
-    void this.add(place);
+  clicked(click: Click) {
+    void this.add(click);
   }
 
-  private async add(place: Place) {
-    const at = await this.surface.at(place);
-    if (!at) return showToast('Nothing is there: click on the scene');
+  private async add(click: Click) {
+    const at = await this.surface.at(click);
+    if (!at) return showToast('No surface there: click on the scene');
     if (!this.from || this.to) {
       this.from = at;
       this.to = null;
       this.points = [];
-      this.state = 'Click where it ends.';
+      this.state = 'Click the end of the slice.';
       this.draw();
       return;
     }
@@ -93,7 +93,7 @@ export class ProfileTool implements Tool {
     this.loading?.abort();
     this.loading = new AbortController();
     const { signal } = this.loading;
-    this.state = 'Cutting …';
+    this.state = 'Loading …';
     this.draw();
     try {
       const layers = this.view.shownLayers;
@@ -101,12 +101,12 @@ export class ProfileTool implements Tool {
       if (signal.aborted) return;
       this.points = found.points.filter((p) => this.isSeen(p));
       this.length_m = found.length_m;
-      const merged = found.coarse ? ', merged ones: the slice is large' : '';
+      const merged = found.coarse ? ', merged because the slice is large' : '';
       const length = `${found.length_m.toFixed(2)} m`;
-      this.state = `${grouped(this.points.length)} elements on ${length}${merged}`;
+      this.state = `${grouped(this.points.length)} elements over ${length}${merged}`;
     } catch (error) {
       if (signal.aborted) return;
-      this.state = 'The slice could not be loaded.';
+      this.state = 'Loading the slice failed.';
       this.failed(error);
     }
     this.draw();
@@ -119,8 +119,8 @@ export class ProfileTool implements Tool {
 
   private draw() {
     const { from, to } = this;
-    const places = [from, to].filter((p): p is Vector3 => p !== null);
-    this.marks.set(from && to ? this.outline(from, to) : [], places);
+    const ends = [from, to].filter((p): p is Vector3 => p !== null);
+    this.marks.set(from && to ? this.outline(from, to) : [], ends);
     const { palette } = this.view;
     drawProfile(this.plot, {
       points: this.points,
@@ -132,7 +132,7 @@ export class ProfileTool implements Tool {
     this.fillCard();
   }
 
-  /** Of the slice on the ground. */
+  /** Line ends of the outline of the slice. */
   private outline(from: Vector3, to: Vector3): Vector3[] {
     const along = to.clone().sub(from).setZ(0).normalize();
     const side = new Vector3(-along.y, along.x, 0).multiplyScalar(this.width_m / 2);
@@ -153,13 +153,13 @@ export class ProfileTool implements Tool {
       if (width.valueAsNumber > 0) this.width_m = width.valueAsNumber;
       void this.cut();
     };
-    const csv = button('CSV', 'Saves the points of the slice', () =>
+    const csv = button('CSV', 'Save the points of the slice', () =>
       download(
         'profile.csv',
         new Blob([profileCsv(this.points, this.origin_m)], { type: 'text/csv' }),
       ),
     );
-    const picture = button('Picture', 'Saves the profile as PNG', () =>
+    const picture = button('Picture', 'Save the profile as PNG', () =>
       this.plot.toBlob((blob) => blob && download('profile.png', blob), 'image/png'),
     );
     csv.disabled = picture.disabled = this.points.length === 0;
@@ -168,7 +168,7 @@ export class ProfileTool implements Tool {
       this.card,
       make('p', { className: 'facts', role: 'status' }, this.state),
       this.plot,
-      row('Thick, m', width, csv, picture),
+      row('Thickness, m', width, csv, picture),
     );
   }
 }

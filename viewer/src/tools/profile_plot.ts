@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A profile as a picture: height over the way along the slice, with ticks. Of flat ones heights are
-// drawn larger, by a whole number that the picture tells.
+// Plots a profile: height over distance along the slice. Heights of flat profiles are exaggerated by
+// an integer factor, which the plot states.
 
 import type { Vec3 } from '../server/protocol';
 import type { SlicePoint } from './slice';
@@ -11,10 +11,10 @@ const kMargin = { left: 52, right: 12, top: 10, bottom: 30 };
 const kGround = '#0d1014';
 const kInk = '#8c99a8';
 const kLine = '#2b343e';
-const kMostTimes = 10;
+const kMaxFactor = 10;
 
-/** 1, 2 or 5 times a power of ten, for about `count` steps. */
-export function tickStep(span: number, count: number): number {
+/** Tick distance for about `count` steps: 1, 2 or 5 times a power of ten. */
+function tickStep(span: number, count: number): number {
   const rough = span / count;
   const power = 10 ** Math.floor(Math.log10(Math.max(rough, 1e-9)));
   return [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough) ?? 10 * power;
@@ -23,7 +23,7 @@ export function tickStep(span: number, count: number): number {
 export interface Plot {
   points: SlicePoint[];
   length_m: number;
-  /** Of the points' heights, to those of the world. */
+  /** Added to heights to get world heights. */
   origin_m: Vec3;
   color(point: SlicePoint): string;
 }
@@ -41,19 +41,19 @@ export function drawProfile(canvas: HTMLCanvasElement, plot: Plot) {
     low = Math.min(low, position.z);
     high = Math.max(high, position.z);
   }
-  const room = {
+  const area = {
     x: width - kMargin.left - kMargin.right,
     y: height - kMargin.top - kMargin.bottom,
   };
-  const scale = Math.min(room.x / length_m, room.y / Math.max(high - low, 0.05));
-  const larger = Math.floor(room.y / (Math.max(high - low, 0.05) * scale));
-  const times = Math.min(Math.max(larger, 1), kMostTimes);
+  const scale = Math.min(area.x / length_m, area.y / Math.max(high - low, 0.05));
+  const fitting = Math.floor(area.y / (Math.max(high - low, 0.05) * scale));
+  const factor = Math.min(Math.max(fitting, 1), kMaxFactor);
   const x = (along: number) => kMargin.left + along * scale;
-  const y = (z: number) => kMargin.top + room.y - (z - low) * scale * times;
+  const y = (z: number) => kMargin.top + area.y - (z - low) * scale * factor;
   drawTicks(context, { x, y, low, high, length_m, up_m: origin_m[2], width, height });
-  if (times > 1) {
+  if (factor > 1) {
     context.textAlign = 'right';
-    context.fillText(`heights ${times} ×`, width - kMargin.right, kMargin.top + 10);
+    context.fillText(`heights ${factor} ×`, width - kMargin.right, kMargin.top + 10);
   }
   for (const point of points) {
     context.fillStyle = plot.color(point);

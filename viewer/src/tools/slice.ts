@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What lies in a vertical slice of the scene: the elements of the layers that are shown.
+// Finds the elements of visible layers in a vertical slice of the scene.
 
 import { Vector3 } from 'three';
 import type { Layer } from '../picture/layer';
 import { kElementBytes, type TreeNode } from '../server/binary';
 
-/** A wall of air between two places, so thick. */
+/** A vertical slab between two points. */
 export interface Slice {
   from: Vector3;
   to: Vector3;
@@ -15,9 +15,9 @@ export interface Slice {
 }
 
 export interface SlicePoint {
-  /** From the first place, along the slice. */
+  /** Distance from the first point along the slice. */
   along_m: number;
-  /** To the left of it. */
+  /** Distance to the left of the slice. */
   offset_m: number;
   position: Vector3;
   class: number | null;
@@ -26,12 +26,12 @@ export interface SlicePoint {
   layer: string;
 }
 
-/** More elements than these are not fetched: the slice is taken from coarser nodes. */
-const kMostFetched = 3_000_000;
-const kAtOnce = 6;
+/** Maximum elements to fetch; a larger slice uses coarser nodes. */
+const kMaxFetched = 3_000_000;
+const kMaxParallel = 6;
 
-/** Coordinates along and across a slice. */
-export class SliceFrame {
+/** Horizontal coordinates along and across a slice. */
+class SliceFrame {
   readonly length_m: number;
   private readonly ux: number;
   private readonly uy: number;
@@ -57,7 +57,7 @@ export class SliceFrame {
     return along >= 0 && along <= this.length_m && Math.abs(this.offset(x, y)) <= reach;
   }
 
-  /** Whether a node may have something in it: by the circle around its box. */
+  /** Whether the slice may contain elements of a node: a test with the circle around its box. */
   touches({ low, high }: TreeNode): boolean {
     const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     const reach = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
@@ -67,7 +67,7 @@ export class SliceFrame {
   }
 }
 
-/** Leaves that touch the slice, or coarser nodes where those hold too much. */
+/** Leaves that touch the slice, or coarser nodes if those exceed kMaxFetched. */
 async function nodesOf(
   layer: Layer,
   frame: SliceFrame,
@@ -85,7 +85,7 @@ async function nodesOf(
     if (next.length === nodes.length && next.every((n, i) => n === nodes[i]))
       return { nodes, coarse: false };
     const count = next.reduce((sum, n) => sum + table.node(n).count, 0);
-    if (count > kMostFetched) return { nodes, coarse: true };
+    if (count > kMaxFetched) return { nodes, coarse: true };
     nodes = next;
   }
 }
@@ -114,7 +114,7 @@ function pointsOf(layer: Layer, node: number, bytes: ArrayBuffer, frame: SliceFr
   return points;
 }
 
-/** Rejects as loading does. `coarse`: merged elements stand for the layer's own. */
+/** Points of a slice in order; `coarse`: some are merged elements. Rejects like Layer.load(). */
 export async function slicePoints(layers: Layer[], slice: Slice, signal: AbortSignal) {
   const frame = new SliceFrame(slice);
   const points: SlicePoint[] = [];
@@ -127,7 +127,7 @@ export async function slicePoints(layers: Layer[], slice: Slice, signal: AbortSi
       for (let n = waiting.pop(); n !== undefined; n = waiting.pop())
         points.push(...pointsOf(layer, n, await layer.load(n, signal), frame));
     };
-    await Promise.all(Array.from({ length: kAtOnce }, worker));
+    await Promise.all(Array.from({ length: kMaxParallel }, worker));
   }
   points.sort((a, b) => a.along_m - b.along_m || a.position.z - b.position.z);
   return { points, coarse, length_m: frame.length_m };

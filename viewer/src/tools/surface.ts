@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The place in the scene that a click means: an echo, else what the picture shows there, to the
-// precision of the server's own ray where that meets the same surface.
+// The 3D position of a click: an echo, or the drawn surface. The server's ray refines the position if
+// it hits the same surface.
 
 import { Raycaster, type Vector3 } from 'three';
-import type { Place } from '../driving/pointer';
+import type { Click } from '../driving/pointer';
 import type { Live } from '../server/live';
 import type { ScanCloud } from '../picture/scan_cloud';
 import type { SceneView } from '../picture/scene_view';
 
 const kEchoPixels = 5;
-/** An echo lies on the surface that it is of. */
+/** An echo counts if it is at most this far behind the drawn surface. */
 const kEchoBeforeM = 0.3;
-/** Splats drawn merged, and their tips, are off by so much: of the distance, and at least. */
+/** Tolerance for merged splats and their tips: a fraction of the distance, and a minimum. */
 const kSameSurface = 0.01;
 const kSameSurfaceM = 0.15;
 
@@ -26,15 +26,15 @@ export class SurfaceFinder {
     private readonly clouds: ScanCloud[],
   ) {}
 
-  /** Null: nothing is there. Answers come in the order of the clicks. */
-  at(place: Place): Promise<Vector3 | null> {
+  /** Null: no surface. Resolves in the order of the clicks. */
+  at(click: Click): Promise<Vector3 | null> {
     const { before } = this;
-    const found = this.find(place);
+    const found = this.find(click);
     this.before = found.catch(() => {});
     return before.then(() => found);
   }
 
-  private async find({ screen, pixel }: Place): Promise<Vector3 | null> {
+  private async find({ screen, pixel }: Click): Promise<Vector3 | null> {
     const { camera } = this.view.rig;
     const eye = camera.position.clone();
     const seen = this.view.surfaceAt(screen, pixel);

@@ -1,14 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The tools, as buttons and keys; the one that is taken up gets the clicks.
+// Tools of the page, with buttons and keys. At most one is active and receives the clicks.
 
-import type { Place } from '../driving/pointer';
+import type { Click } from '../driving/pointer';
 import { button, byId, fill, make } from '../panels/dom';
-import type { Tool } from './tool';
+
+export interface Tool {
+  readonly name: string;
+  readonly key: string;
+  readonly help: string;
+  /** Content of the tool card while the tool is active. */
+  readonly card: HTMLElement;
+  activate(): void;
+  deactivate(): void;
+  clicked(click: Click): void;
+}
 
 export class ToolBox {
-  private taken: Tool | null = null;
+  private active: Tool | null = null;
   private readonly buttons = new Map<Tool, HTMLButtonElement>();
 
   constructor(private readonly tools: Tool[]) {
@@ -23,24 +33,24 @@ export class ToolBox {
     return [...this.buttons.values()];
   }
 
-  get isTaken(): boolean {
-    return this.taken !== null;
+  get isActive(): boolean {
+    return this.active !== null;
   }
 
   toggle(tool: Tool) {
-    const next = tool === this.taken ? null : tool;
-    this.putAll();
+    const next = tool === this.active ? null : tool;
+    this.close();
     if (!next) return;
-    this.taken = next;
+    this.active = next;
     this.buttons.get(next)!.ariaPressed = 'true';
-    next.taken();
+    next.activate();
     fill(
       byId('tool'),
       make(
         'header',
         {},
         make('strong', {}, next.name),
-        button('×', 'Put the tool away (Esc)', () => this.putAll()),
+        button('×', 'Close (Esc)', () => this.close()),
       ),
       next.card,
     );
@@ -48,23 +58,23 @@ export class ToolBox {
     byId('view').classList.add('aiming');
   }
 
-  putAll() {
-    const { taken } = this;
-    if (!taken) return;
-    this.taken = null;
-    this.buttons.get(taken)!.ariaPressed = 'false';
-    taken.put();
+  close() {
+    const { active } = this;
+    if (!active) return;
+    this.active = null;
+    this.buttons.get(active)!.ariaPressed = 'false';
+    active.deactivate();
     byId('tool').hidden = true;
     byId('view').classList.remove('aiming');
   }
 
-  /** Whether it was for a tool. */
-  clicked(place: Place): boolean {
-    this.taken?.clicked(place);
-    return this.taken !== null;
+  /** Passes a click to the active tool. Returns whether there is one. */
+  clicked(click: Click): boolean {
+    this.active?.clicked(click);
+    return this.active !== null;
   }
 
-  /** Whether it is the key of one. */
+  /** Toggles the tool with this key. Returns whether there is one. */
   key(key: string): boolean {
     const found = this.tools.find((t) => t.key === key);
     if (found) this.toggle(found);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// All tools there are.
+// Creates the tools.
 
 import { yawOf } from '../driving/pose';
 import type { DrivenSensor } from '../driving/driven_sensor';
@@ -14,7 +14,7 @@ import { ClipTool } from './clip_tool';
 import { MeasureTool } from './measure';
 import { ProfileTool } from './profile';
 import { SurfaceFinder } from './surface';
-import type { Tool } from './tool';
+import type { Tool } from './tool_box';
 
 export class Tools {
   readonly measure: MeasureTool;

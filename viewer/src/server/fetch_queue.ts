@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Fetches nodes, a few at a time and the most wanted first, and tries again what failed.
+// A queue of fetches: runs a few at a time, in order of priority, and retries failed ones.
 
 export interface Fetch {
-  /** Names it: what is under way is not asked for again. */
+  /** Identifies the fetch; a running one is not started again. */
   key: string;
   load(signal: AbortSignal): Promise<ArrayBuffer>;
   arrived(bytes: ArrayBuffer): void;
 }
 
-const kAtOnce = 6;
+const kMaxParallel = 6;
 const kFirstPauseMs = 500;
-const kLongestPauseMs = 8000;
+const kMaxPauseMs = 8000;
 
-/** A queue of fetches that is replaced as a whole: what is no longer wanted is forgotten. */
+/** want() replaces the queue; fetches that are no longer wanted are dropped. */
 export class FetchQueue {
   private wanted: Fetch[] = [];
   private readonly underWay = new Map<string, AbortController>();
@@ -28,13 +28,13 @@ export class FetchQueue {
   }
 
   want(fetches: Fetch[]) {
-    // Each once; what is under way comes, or is wanted again when it failed.
+    // Each key once, without running fetches.
     const keys = new Set(this.underWay.keys());
     this.wanted = fetches.filter((f) => !keys.has(f.key) && keys.add(f.key));
     this.start();
   }
 
-  /** Forgets everything; answers that still come are dropped. */
+  /** Cancels all fetches and ignores late replies. */
   clear() {
     this.wanted = [];
     for (const controller of this.underWay.values()) controller.abort();
@@ -42,7 +42,7 @@ export class FetchQueue {
     this.pauses.clear();
   }
 
-  /** The server is back: what failed is asked for at once. */
+  /** Retries failed fetches at once, after a reconnect. */
   retry() {
     this.pauses.clear();
     this.start();
@@ -52,7 +52,7 @@ export class FetchQueue {
     const now = performance.now();
     let waits = Infinity;
     for (const one of this.wanted) {
-      if (this.underWay.size >= kAtOnce) return;
+      if (this.underWay.size >= kMaxParallel) return;
       const pause = this.pauses.get(one.key);
       if (pause && pause.until > now) waits = Math.min(waits, pause.until - now);
       else void this.run(one);
@@ -74,7 +74,7 @@ export class FetchQueue {
       if (controller.signal.aborted) return;
       const length = Math.min(
         (this.pauses.get(one.key)?.length ?? kFirstPauseMs / 2) * 2,
-        kLongestPauseMs,
+        kMaxPauseMs,
       );
       this.pauses.set(one.key, { until: performance.now() + length, length });
       this.wanted.push(one);
