@@ -5,7 +5,7 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/synth/street_parts.h"
 
-// Inside synth/: walls with openings, shared by apartment buildings and houses.
+// Private to synth/: walls with openings, shared by apartment buildings and houses.
 
 namespace adasplats {
 
@@ -14,15 +14,15 @@ struct WallRect {
   double a0, a1, z0, z1;
 };
 
-/// What fills the hole in a wall.
+/// Fills an opening in a wall.
 enum class OpeningKind : std::uint8_t { window, shutters, shop, door, french_window };
 
-/// The rectangle `panel` of a wall with the hole `hole` in it: the wall around, the reveal, and at
-/// its end the pane with its frame, or the door.
+/// The rectangle `panel` of a wall with the opening `hole`: wall, reveal, and at its back the pane
+/// with its frame, or the door.
 void add_wall_with_opening(MeshBuilder& builder, const WallFrame& wall, const WallRect& panel,
                            const WallRect& hole, OpeningKind kind, float wall_reflectance);
 
-/// A balcony at floor height z over [a0, a1]: slab, brackets and railing of single bars.
+/// A balcony at floor height z over [a0, a1]: slab, brackets and a railing of single bars.
 void add_balcony(MeshBuilder& builder, const WallFrame& wall, double a0, double a1, double z,
                  double depth);
 

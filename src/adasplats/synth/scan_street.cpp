@@ -13,13 +13,13 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kFewestPoints = 1000;
-/// Of the noise of driving scans; mapping scans take the numbers from zero.
+/// Random stream of the driving scans' noise; mapping scans are numbered from zero.
 constexpr std::uint64_t kDrivingScans = std::uint64_t{1} << 32;
 
-/// How the wish for so many points becomes revolutions.
+/// Revolutions and columns for the requested number of points.
 struct MappingPlan {
   std::size_t revolutions = 1;  ///< of one pass
-  LidarModel sensor;            ///< with fewer columns than the paper's where points are few
+  LidarModel sensor;  ///< fewer columns than the paper's sensor if few points are requested
 };
 
 void check(bool good, const std::string& message) {
@@ -44,7 +44,7 @@ void check_options(const StreetScanOptions& options) {
         "speed is " + std::to_string(options.speed_m_per_s) + "; expected more than 0");
 }
 
-/// Mean share of rays that return, from a few thin revolutions along every pass's way.
+/// Mean share of rays with a return, estimated from a few sparse revolutions along each pass.
 double return_share(const StreetCaster& caster, const Street& street,
                     const StreetScanOptions& options) {
   constexpr std::size_t kPlaces = 24;
@@ -59,10 +59,10 @@ double return_share(const StreetCaster& caster, const Street& street,
   return sum / (static_cast<double>(kPlaces) * std::min(options.passes, 2));
 }
 
-/// Columns a metre are what the points ask for. The full sensor at 10 Hz and 8 m/s gives 1800
-/// columns every 0.8 m; from there down both get coarser: columns with the 0.7th power, so that
-/// 300,000 points on 60 m are a revolution every 1.9 m with steps of 1.6 degrees, about the 1.33
-/// degrees between beams.
+/// Derives columns per metre from the number of points. The full sensor at 10 Hz and 8 m/s gives
+/// 1800 columns every 0.8 m. Below that, both the revolutions and the columns get coarser: columns
+/// with the 0.7th power. So 300,000 points on 60 m give a revolution every 1.9 m with steps of 1.6
+/// degrees, close to the 1.33 degrees between beams.
 MappingPlan plan_mapping(const StreetScanOptions& options, double way_m, double share) {
   MappingPlan plan;
   plan.sensor = hdl_32_paper();

@@ -33,8 +33,8 @@ StreetRecording scan(const Street& street, const StreetScanOptions& options, int
       street, options, [](std::size_t, const Scan&) {}, executor, progress);
 }
 
-/// Distance from a point to a triangle in double: the plane's foot where it is inside, else the
-/// nearest of the three edges.
+/// Distance from a point to a triangle in double: to the plane if its foot is inside, else to the
+/// nearest edge.
 double distance(Vec3d p, const Triangle& triangle) {
   const Vec3d corners[3] = {vec_cast<double>(triangle.a), vec_cast<double>(triangle.b),
                             vec_cast<double>(triangle.c)};
@@ -63,14 +63,14 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-// Oracle: brute-force distance to the triangles of the point's own class, movers where they were.
+// Oracle: brute-force distance to the triangles of the point's class, with movers at their poses.
 TEST(ScanStreet, ExactPointsLieOnTheSurfaceOfTheirClass) {
   const Street street = make_street(kShortStreet);
   const StreetRecording recording = scan(street, exact_scan(20'000));
   const PointCloud& cloud = recording.mapping;
   ASSERT_EQ(recording.mapping_trajectory.size(), recording.true_mapping_trajectory.size());
   std::size_t checked_moving = 0;
-  // Every 101st point and, as they are few, every 5th of the movers.
+  // Every 101st point, and every 5th point of the few movers.
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const bool moving = cloud.classes[i] > 250;
     if (i % (moving ? 5 : 101) != 0) continue;
@@ -136,8 +136,8 @@ TEST(ScanStreet, SameBytesForEveryNumberOfThreads) {
   }
 }
 
-// Oracle: each mover's own trajectory. Its points, brought into its frame, lie in its bounding box,
-// while in the world they do not stay in one place.
+// Oracle: each mover's trajectory. Its points, in its own frame, are inside its bounding box, and
+// they move in the world.
 TEST(ScanStreet, MovingObjectsAreWhereTheirTrajectoryIs) {
   const Street street = make_street({1, 60});
   const StreetRecording recording = scan(street, exact_scan(60'000));
@@ -167,7 +167,7 @@ TEST(ScanStreet, MovingObjectsAreWhereTheirTrajectoryIs) {
   EXPECT_GE(moved, 5U);
 }
 
-// Oracle: the same rays without noise; the difference has the wished mean and deviation.
+// Oracle: the same rays without noise; the differences have the requested mean and deviation.
 TEST(ScanStreet, RangeNoiseIsWhite) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(20'000);
@@ -188,7 +188,7 @@ TEST(ScanStreet, RangeNoiseIsWhite) {
   EXPECT_NEAR(std::sqrt(square / n), 0.03, 4 * 0.03 / std::sqrt(2 * n));
 }
 
-// Oracle: recorded points are the exact ones moved by one rigid transform a pass.
+// Oracle: recorded points are the exact ones moved by one rigid transform per pass.
 TEST(ScanStreet, PoseErrorMovesEachPassAsAWhole) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(20'000);
@@ -233,7 +233,7 @@ TEST(ScanStreet, MappingSensorIsPitchedAndDrivingSensorLevel) {
     EXPECT_NEAR(t.rotation.rows[2].x, std::sin(0.7854), 0.01);  // its x axis points up in front
     EXPECT_NEAR(t.translation.z - road_height(t.translation.x, t.translation.y), 2.0, 0.03);
   }
-  ASSERT_EQ(scans.size(), 9U);  // 46 m driven, every 5
+  ASSERT_EQ(scans.size(), 9U);  // 46 m driven, one every 5 m
   ASSERT_EQ(recording.driving_trajectory.size(), scans.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
     const RigidTransform& t = scans[s].world_from_sensor;
@@ -283,7 +283,7 @@ TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
     EXPECT_NEAR(b.translation.z - road_height(b.translation.x, b.translation.y), 1.73, 0.01);
   }
   EXPECT_NEAR(longest_m, 1, 0.05);
-  EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // of a radius of 6 m
+  EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // a turning radius of 6 m
 }
 
 TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {

@@ -11,10 +11,10 @@
 namespace adasplats {
 namespace {
 
-constexpr double kBumper_m = 5;  // ahead of and behind a mover
-constexpr double kDoor_m = 0.6;  // beside it
+constexpr double kBumper_m = 5;  // clearance ahead of and behind a mover
+constexpr double kDoor_m = 0.6;  // clearance at its sides
 
-/// A mesh with what its triangles carry, wherever it is kept.
+/// A view of a mesh with reflectances and instances.
 struct Surfaces {
   const TriangleMesh& mesh;
   std::span<const std::uint16_t> instances;
@@ -32,7 +32,7 @@ bool in_the_way(const MovingObject& object, const RigidTransform& world_from_obj
   return meets_vehicle(low, high, world_from_object.inverse() * vehicle);
 }
 
-/// -1..1, constant in cells of 20 cm: stones, plaster, dirt.
+/// Texture, -1..1, constant in cells of 20 cm: stones, plaster, dirt.
 double texture_at(Vec3f p) {
   const auto cell = [](float v) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * 5.0F)));

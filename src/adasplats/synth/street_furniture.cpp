@@ -13,19 +13,19 @@ namespace {
 
 constexpr Material kGalvanised = {label::kPole, 0.45F};
 constexpr Material kDarkPaint = {label::kPole, 0.2F};
-constexpr Material kSignFace = {label::kTrafficSign, 0.92F};  // retroreflecting sheet
+constexpr Material kSignFace = {label::kTrafficSign, 0.92F};  // retroreflective sheeting
 constexpr Material kWood = {label::kOtherObject, 0.35F};
 constexpr Material kSteel = {label::kOtherObject, 0.28F};
-constexpr double kSunk = 0.1;  // feet stand in the ground
+constexpr double kSunk = 0.1;  // feet are below the ground
 
 Vec3d foot_of(const Item& item, double line) {
   const double y = item.side * line;
   return {item.x, y, sidewalk_height(item.x, y)};
 }
 
-/// The direction that drivers on this side look at a sign from: its plate faces them.
+/// The normal of a sign that faces the drivers on this side.
 Vec3d facing_traffic(int side, double yaw) {
-  // On the right (y < 0) cars come from -x.
+  // On the right (y < 0) cars drive towards +x.
   const double x = side > 0 ? 1.0 : -1.0;
   return {x * std::cos(yaw), std::sin(yaw), 0};
 }
@@ -99,7 +99,7 @@ void add_lamp(MeshBuilder& builder, const Item& item) {
   const double height = 7.2;
   builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 1.2}, 0.11, 0.1, 12, kDarkPaint);
   builder.tube(foot + Vec3d{0, 0, 1.2}, foot + Vec3d{0, 0, height}, 0.075, 0.05, 12, kDarkPaint);
-  // The arm: a quarter arc, then straight.
+  // The arm: a quarter arc, then a straight part.
   Vec3d from = foot + Vec3d{0, 0, height};
   for (int k = 1; k <= 4; ++k) {
     const double angle = 0.5 * std::numbers::pi * k / 4;
@@ -159,7 +159,7 @@ void add_advertising_column(MeshBuilder& builder, const Item& item) {
   builder.ellipsoid(foot + Vec3d{0, 0, 3.1}, {0.65, 0.65, 0.6}, 8, 24, kSteel);
 }
 
-/// Roof on four posts, glass at the back and one end, a bench inside.
+/// Roof on four posts, glass at the back and at one end, a bench inside.
 void add_bus_shelter(MeshBuilder& builder, const Item& item) {
   constexpr Material kShelter = {label::kOtherStructure, 0.4F};
   constexpr Material kPane = {label::kOtherStructure, 0.12F};

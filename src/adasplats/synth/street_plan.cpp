@@ -17,7 +17,7 @@ constexpr std::uint64_t kPlotStream = 1;
 constexpr std::uint64_t kItemStream = 2;
 constexpr std::uint64_t kParkingStream = 3;
 constexpr double kSideStreetEvery = 130;
-constexpr double kModule = 17.5;  // of the furniture of a sidewalk
+constexpr double kModule = 17.5;  // of sidewalk furniture
 
 /// The first plots are fixed so that the shortest street has one of each kind.
 PlotKind kind_of_plot(int side, std::size_t place, double since_side_street, Random& random) {
@@ -78,7 +78,7 @@ bool is_free(const StreetPlan& plan, int side, double x0, double x1) {
   });
 }
 
-/// Half of what an item takes of the furniture line, besides its length.
+/// Half of the space that an item needs on the furniture line, besides its length.
 double half_room(ItemKind kind) {
   switch (kind) {
     case ItemKind::bench: return 0.95;
@@ -89,7 +89,7 @@ double half_room(ItemKind kind) {
   }
 }
 
-/// Puts an item where nothing is in its way, else leaves it out.
+/// Adds an item unless the space is occupied.
 void put_item(StreetPlan& plan, ItemKind kind, int side, double x, double length) {
   const double x0 = x - half_room(kind);
   const double x1 = x + length + half_room(kind);
@@ -101,8 +101,8 @@ void put_item(StreetPlan& plan, ItemKind kind, int side, double x, double length
   if (!taken) plan.items.push_back({kind, side, x, length, plan.items.size()});
 }
 
-/// One module of furniture of a sidewalk: 17.5 m with two trees, one pole and, every other
-/// time, a lamp, a barrier, or bollards.
+/// One furniture module of a sidewalk: 17.5 m with two trees, one pole and, in every second one, a
+/// lamp, a barrier or bollards.
 void add_module(StreetPlan& plan, int side, double x, int module) {
   Random random =
       plan.random(kItemStream, static_cast<std::uint64_t>(module) * 2 + (side > 0 ? 1 : 0));
@@ -140,7 +140,7 @@ void add_crossing_items(StreetPlan& plan) {
 }
 
 void add_parked_cars(StreetPlan& plan, int side) {
-  constexpr double kRoom = 5.4;  // of one car and the gap to the next
+  constexpr double kRoom = 5.4;  // length of one car with a gap
   Random random = plan.random(kParkingStream, side > 0 ? 1 : 0);
   for (double x = 7; x < plan.length - 7;) {
     const bool near_crossing = std::fabs(x - plan.crossing) < 5.5;
@@ -160,7 +160,7 @@ void add_parked_cars(StreetPlan& plan, int side) {
 }
 
 double place_of_crossing(const StreetPlan& plan) {
-  // In the middle, but not before the mouth of a side street.
+  // Near the middle, but clear of side streets.
   for (double x = 0.55 * plan.length; x < plan.length - 8; x += 1) {
     const bool blocked = std::ranges::any_of(plan.plots, [&](const Plot& plot) {
       return plot.kind == PlotKind::side_street && x > plot.x0 - 5 && x < plot.x1 + 5;

@@ -12,8 +12,8 @@
 namespace adasplats {
 namespace {
 
-constexpr double kCarEvery_s = 13;    // in each lane
-constexpr double kPersonEvery_m = 9;  // of each sidewalk
+constexpr double kCarEvery_s = 13;    // per lane
+constexpr double kPersonEvery_m = 9;  // per sidewalk
 constexpr double kWaypointEvery_m = 4;
 
 }  // namespace
@@ -67,7 +67,7 @@ Trajectory drive_through(const StreetPlan& plan, int direction, double start_s, 
   return trajectory;
 }
 
-/// Up and down a stretch of sidewalk for the whole period.
+/// Up and down a stretch of sidewalk for the entire period.
 Trajectory walk(const StreetPlan& plan, int side, double x0, double x1, double speed,
                 double first_share) {
   Trajectory trajectory;
@@ -129,7 +129,7 @@ std::vector<MovingObject> make_traffic(const StreetPlan& plan, std::uint16_t fir
 
   for (const int direction : {1, -1}) {
     Random random = random_of(plan, Purpose::traffic, direction > 0 ? 1 : 0);
-    // One speed a lane: nobody drives into the car in front.
+    // One speed per lane, so that cars do not collide.
     const double speed = random.uniform(8.5, 10.5);
     const double crossing_s = (plan.length + 6) / speed;
     for (double start = -crossing_s; start < kTrafficPeriod_s; start += kCarEvery_s) {

@@ -11,12 +11,12 @@
 namespace adasplats {
 namespace {
 
-/// A section across a body: where it is along the car, its height and its width.
+/// A cross-section of a body: position along the car, heights and half width.
 struct Station {
   double x, bottom, top, half_width;
 };
 
-/// Side view of a car: stations of the body up to the windows, then the cabin's roof line.
+/// Side view of a car: stations of the body up to the windows, then the outline of the cabin.
 struct CarShape {
   std::vector<Station> body;
   double cabin_rear_low, cabin_rear_high, cabin_front_high, cabin_front_low;  // x
@@ -139,7 +139,7 @@ void add_body(MeshBuilder& builder, const CarShape& car, const Material& paint,
   builder.loft(rings, paint);
 }
 
-/// Glass from the belt to the roof, and the roof, in three levels so that the sides curve in.
+/// Glass from the belt to the roof, and the roof, in three levels so that the sides curve inwards.
 void add_cabin(MeshBuilder& builder, const CarShape& car, const Material& paint,
                const RigidTransform& place) {
   Material glass = paint;

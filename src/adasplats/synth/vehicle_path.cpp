@@ -11,9 +11,9 @@
 namespace adasplats {
 namespace {
 
-constexpr double kMargin_m = 2;      // not driven at both ends
+constexpr double kMargin_m = 2;      // left out at both ends
 constexpr double kTurnRound_s = 15;  // between passes
-constexpr double kWander_m = 0.12;   // nobody drives dead straight
+constexpr double kWander_m = 0.12;   // lateral drift of the vehicle
 constexpr double kWanderLength_m = 9;
 constexpr std::uint64_t kPoseErrorStream = 0x706f7365;
 
@@ -21,8 +21,9 @@ double vehicle_y(int direction, int pass, double x) {
   return -direction * kLaneCenter + kWander_m * std::sin(x / kWanderLength_m + pass);
 }
 
-/// Of a pass that turns, forth: up the street across the beginning, round the corner, along the
-/// street, round the corner and up the street across the end; arcs of a quarter between straights.
+/// Forward path of a pass with turns: up the cross street at the begin, around the corner, along
+/// the street, around the corner and up the cross street at the end; quarter arcs between straight
+/// lines.
 constexpr double kApproach_m = 10, kTurnRadius_m = 6;
 constexpr double kArc_m = 0.5 * std::numbers::pi * kTurnRadius_m;
 
@@ -30,7 +31,7 @@ double straight_between_turns(const Street& street) {
   return street.length_m + kCrossRoad - 2 * kTurnRadius_m;
 }
 
-/// The place after `travelled` metres of it; z is 0.
+/// Position after `travelled` metres; z is 0.
 Vec3d place_on_turning_way(const Street& street, double travelled) {
   const double r = kTurnRadius_m;
   const Vec3d right = {-0.5 * kCrossRoad + r, -kLaneCenter - r, 0};  // centers of the turns
@@ -48,7 +49,7 @@ Vec3d place_on_turning_way(const Street& street, double travelled) {
   return left + Vec3d{r, travelled - kArc_m, 0};
 }
 
-/// The vehicle at a place of the road, along the slope to one ahead, level across.
+/// Pose of the vehicle on the road, pitched towards a position ahead, without roll.
 RigidTransform vehicle_between(Vec3d here, Vec3d further) {
   const Vec3d ahead = further - here;
   const double yaw = std::atan2(ahead.y, ahead.x);
@@ -56,7 +57,7 @@ RigidTransform vehicle_between(Vec3d here, Vec3d further) {
   return {rotation_from_yaw_pitch_roll(yaw, -climb, 0), here};
 }
 
-/// The vehicle on the road after `travelled` metres of a pass.
+/// Pose of the vehicle after `travelled` metres of a pass.
 RigidTransform world_from_vehicle(const Street& street, bool turns, int pass, double travelled) {
   const int direction = pass % 2 == 0 ? 1 : -1;
   const auto on_road = [](double x, double y) { return Vec3d{x, y, road_height(x, y)}; };
@@ -90,7 +91,7 @@ RigidTransform pass_error(const Street& street, const StreetScanOptions& options
 }  // namespace
 
 RigidTransform vehicle_from_mapping_sensor() {
-  // A negative pitch turns +x up: the plane of the scan rises in front and meets the road behind.
+  // A negative pitch turns +x up: the scan plane rises at the front and meets the road at the rear.
   return {rotation_from_yaw_pitch_roll(0, -0.25 * std::numbers::pi, 0), {-0.4, 0, 2.0}};
 }
 

@@ -8,26 +8,26 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/synth/street.h"
 
-// Inside synth/: how the scanning vehicle drives, and what its positioning makes of it.
+// Private to synth/: the path of the scanning vehicle and its pose errors.
 
 namespace adasplats {
 
-/// A sensor's pose as it is and as the recording says.
+/// A sensor's true and recorded pose.
 struct RecordedPose {
   TimedPose truth;
   TimedPose recorded;
 };
 
-/// Where a sensor sits on the vehicle; vehicle frame: x forward, z up, origin on the road.
+/// Sensor mounts; vehicle frame: x forward, z up, origin on the road.
 RigidTransform vehicle_from_mapping_sensor();
 RigidTransform vehicle_from_driving_sensor();
 
-/// The way of one pass: the street less a little at both ends, or with the turns into it and out of
-/// it, m.
+/// Length of one pass, m: the street without a margin at both ends, or including the turns at both
+/// ends.
 double drive_length(const Street& street, const StreetScanOptions& options);
 
-/// Poses of a sensor at `count` places of one pass, evenly apart. Passes alternate in direction,
-/// each in its right lane. The recorded pose is off by the pass's error: one rotation about the
+/// Poses of a sensor at `count` evenly spaced positions of one pass. Passes alternate in direction,
+/// each in its right lane. The recorded pose contains the pass's error: one rotation about the
 /// middle of the street and one offset.
 std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOptions& options,
                                         int pass, std::size_t count,

@@ -58,7 +58,7 @@ StreetReport write_street(const std::filesystem::path& folder, StreetOptions str
   const Street street = make_street(street_options);
   make_folder(folder);
 
-  // First, as it refuses a folder that holds another street.
+  // First, because it rejects a folder with another street.
   std::optional<SemanticKittiWriter> sequence;
   if (scan.driving_spacing_m > 0 && scan.max_driving_scans > 0)
     sequence.emplace(folder / "sequences" / "00");

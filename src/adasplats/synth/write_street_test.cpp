@@ -15,7 +15,7 @@
 namespace adasplats {
 namespace {
 
-/// A folder of this process that goes with the test.
+/// A temporary folder of this process.
 class WriteStreet : public testing::Test {
  protected:
   void SetUp() override {

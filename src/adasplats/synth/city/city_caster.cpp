@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kSectors = 360;
 constexpr double kFullCircle = 2 * std::numbers::pi;
-constexpr double kFiringOrigin_m = 0.3;  // beams leave this near to the sensor's origin
+constexpr double kFiringOrigin_m = 0.3;  // maximum distance of a beam's origin from the sensor's
 
 int sector_of(double azimuth) {
   const double share = azimuth / kFullCircle + 0.5;
   return std::clamp(static_cast<int>(share * kSectors), 0, kSectors - 1);
 }
 
-/// Whether a ray is in a box somewhere between its t_min and t_max; `inverse` is inverse_of() its
+/// Whether a ray is inside a box anywhere between t_min and t_max; `inverse` is inverse_of() its
 /// direction.
 bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   float from = ray.t_min;
@@ -37,12 +37,12 @@ bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   return from <= to;
 }
 
-/// The nearest hits so far, and of what.
+/// The nearest hits so far and their owners.
 struct Nearest {
   std::vector<Ray> rays;        ///< t_max is the nearest hit
   std::vector<Vec3f> inverses;  ///< inverse_of() their directions
   std::vector<Hit> hits;
-  std::vector<std::uint16_t> owner;  ///< of the hit: a piece, or pieces + a mover
+  std::vector<std::uint16_t> owner;  ///< section index, or the number of sections + mover index
 };
 
 /// Rays that are cast together, compacted.
@@ -68,13 +68,13 @@ struct Batch {
   }
 };
 
-/// Of every component; finite, so that no product with a distance is NaN.
+/// Inverse of every component; finite, so that a product with a distance is never NaN.
 Vec3f inverse_of(Vec3f direction) {
   const auto inverse = [](float c) { return std::fabs(c) < 1e-30F ? 1e30F : 1.0F / c; };
   return {inverse(direction.x), inverse(direction.y), inverse(direction.z)};
 }
 
-/// Pieces from near to far: what a near one hides need not be cast against a far one.
+/// Casts from near to far: rays that hit a near section are not cast against farther ones.
 void cast_pieces(const CityScene& scene, Vec3f sensor, Nearest& nearest, Batch& batch,
                  const Executor& executor) {
   std::vector<std::pair<float, std::size_t>> order;
@@ -84,7 +84,7 @@ void cast_pieces(const CityScene& scene, Vec3f sensor, Nearest& nearest, Batch& 
     order.emplace_back(length(inside - sensor), p);
   }
   std::ranges::sort(order);
-  std::vector<std::uint32_t> reaching(nearest.rays.size());  // as far as the next piece
+  std::vector<std::uint32_t> reaching(nearest.rays.size());  // rays that reach the next section
   std::iota(reaching.begin(), reaching.end(), 0U);
   for (const auto& [distance, p] : order) {
     const CityPiece& piece = *scene.pieces[p];

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kSample_m = 0.25;
 constexpr double kRightRadius_m = 4, kLeftRadius_m = 8;
-constexpr double kChange_m = 12;        // before and after a crossing, from lane to lane
-constexpr double kBlocksOfDrive = 0.3;  // blocks of the square for each that is driven along
-constexpr double kBlock_m = 160;        // on average
-constexpr double kStraightOn = 3;       // as likely as a turn
+constexpr double kChange_m = 12;        // length of a lane change, before and after a crossing
+constexpr double kBlocksOfDrive = 0.3;  // side of the square of blocks per driven block
+constexpr double kBlock_m = 160;        // mean length
+constexpr double kStraightOn = 3;       // weight of going straight on, relative to a turn
 
 /// East, north, west, south.
 constexpr std::array<std::pair<int, int>, 4> kHeadings = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
@@ -26,7 +26,7 @@ struct Node {
   int i = 0, j = 0;
 };
 
-/// One block of a drive: from a node in a direction.
+/// One block of a drive: from a node in one direction.
 struct Leg {
   Node from;
   int heading = 0;
@@ -43,7 +43,7 @@ struct Leg {
   }
 };
 
-/// Nodes 0 to `side` of both axes, at least `legs` legs.
+/// A random walk over nodes 0 to `side` of both axes with at least `legs` legs.
 std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
   const int side = std::max(
       2, static_cast<int>(std::ceil(std::sqrt(kBlocksOfDrive * static_cast<double>(legs)))));
@@ -76,13 +76,13 @@ std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
   return way;
 }
 
-/// The line that a leg is driven on: u or v of the middle of its right outermost lane.
+/// The driven line of a leg: u or v of the center of its rightmost lane.
 class LegLine {
  public:
   LegLine(const CityGrid& grid, const Leg& leg) : leg_(leg) {
     const WorldStyle style = grid.style(leg.street());
     const double off = style.median + (style.lanes - 0.5) * style.lane_width;
-    // Right of east is south, right of north is east.
+    // Right of east is south; right of north is east.
     const double sign = leg.along_east() == leg.forth() ? -1 : 1;
     const double axis = leg.along_east() ? grid.node(CityAxis::north, leg.from.j)
                                          : grid.node(CityAxis::east, leg.from.i);
@@ -109,10 +109,10 @@ class LegLine {
   double across_ = 0, begin_ = 0, end_ = 0;
 };
 
-/// How one leg goes over into the next.
+/// The transition from one leg to the next.
 struct Joint {
   bool turns = false;
-  double end = 0, begin = 0;  ///< along this leg, where it ends; along the next, where it begins
+  double end = 0, begin = 0;  ///< end position along this leg, begin position along the next
   Vec3d center;               ///< of the turn
   double radius = 0, from_rad = 0, sweep_rad = 0;
 };
@@ -121,7 +121,7 @@ Joint joint_of(const LegLine& one, const LegLine& next, int turn) {
   if (turn == 0) return {.end = one.end(), .begin = next.begin()};
   const double radius = turn == 1 ? kLeftRadius_m : kRightRadius_m;
   Joint joint = {.turns = true, .radius = radius};
-  // The lines meet at the one's along = the next's across.
+  // The lines meet where `along` of one equals `across` of the other.
   joint.end = next.across() - one.direction() * radius;
   joint.begin = one.across() + next.direction() * radius;
   const Vec3d meet = one.at(next.across(), one.across());
@@ -140,7 +140,7 @@ CityDrive::CityDrive(const CityGrid& grid, double length_m)
   const std::vector<Leg> legs = draw_legs(grid, blocks);
   LegLine line(grid, legs[0]);
   double begin = line.begin() + line.direction() * 30;
-  double before = line.across();  // of the lane on the leg before
+  double before = line.across();  // of the lane on the previous leg
   for (std::size_t k = 0; k + 1 < legs.size(); ++k) {
     const LegLine next(grid, legs[k + 1]);
     const Joint joint = joint_of(line, next, (legs[k + 1].heading - legs[k].heading + 4) % 4);

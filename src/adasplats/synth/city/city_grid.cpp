@@ -11,16 +11,17 @@ namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kCityStream = 0x63697479;
-constexpr double kPitchEast_m = 150, kPitchNorth_m = 170;  // between streets, on average
-constexpr double kPitchVariety = 0.12;                     // of a node either way, of the pitch
-constexpr int kRun = 3;           // blocks that a street keeps its style for
-constexpr double kGoOver_m = 12;  // before and after a crossing, from one style to the next
+constexpr double kPitchEast_m = 150, kPitchNorth_m = 170;  // mean distance between streets
+constexpr double kPitchVariety = 0.12;  // maximum shift of a node, as a share of the distance
+constexpr int kRun = 3;                 // blocks over which a street keeps its style
+constexpr double kGoOver_m =
+    12;  // length of the transition between styles, before and after a crossing
 constexpr double kParkShare = 0.11, kSquareShare = 0.05;
 
 int floor_div(int a, int b) { return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0); }
 
-/// What a style of a road in the open has and a street of a city cannot have: land that rises
-/// beside it, side streets that lead nowhere, ditches across which streets would join.
+/// Removes features that only suit roads in open country: rising land at the sides, dead-end side
+/// streets, and ditches, which would block joining streets.
 void tame(WorldStyle& style, const CityPieceId& id, int lanes, double median) {
   style.lanes = lanes;
   style.lane_width = std::clamp(style.lane_width, 3.0, 3.5);
@@ -42,7 +43,7 @@ void tame(WorldStyle& style, const CityPieceId& id, int lanes, double median) {
     side.sidewalk = std::clamp(side.sidewalk, 1.8, 4.5);
     side.verge = std::min(side.verge, 1.5);
     side.bushes = 0;
-    if (side.parking_width <= 0) side.motorcycles = 0;  // they stand on the road
+    if (side.parking_width <= 0) side.motorcycles = 0;  // they are parked on the road
     side.grass = std::min(side.grass, 40.0);
     if (side.frontage != Frontage::facades) side.frontage = Frontage::houses;
   }
@@ -210,7 +211,7 @@ WorldPlan CityGrid::plan(const CityPieceId& id, bool bare) const {
   const bool crossed = id.axis == CityAxis::east;
   const WorldPlan profile = plan(id, true);
   for (const int side : {1, -1}) {
-    CityCrossing ends[2];  // none where a street begins and ends at a strip
+    CityCrossing ends[2];  // zero where a street begins and ends at a strip
     if (crossed) {
       for (const bool at_end : {false, true})
         ends[at_end ? 1 : 0] = add_crossing(*this, id, profile, side, at_end, layout.patches);

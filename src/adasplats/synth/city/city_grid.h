@@ -10,17 +10,17 @@
 #include "adasplats/synth/city/city_land.h"
 #include "adasplats/synth/world/world_plan.h"
 
-// Inside synth/city/: which streets a city has and what stands along them. Streets run east (u
-// grows) and north (v grows) and cross at nodes; the grid has no end. All of it depends on the seed
-// alone and is drawn where it is asked for.
+// Private to synth/city/: the streets of a city and the land along them. Streets run east (u
+// increases) and north (v increases) and cross at nodes; the grid is unbounded. Everything depends
+// only on the seed and is drawn on demand.
 
 namespace adasplats {
 
 enum class CityAxis : std::uint8_t { east, north };
 
-/// The part of a street between two crossings: `line` counts the streets of its axis, `block` the
-/// parts along it. Streets to the east keep a strip of kCityRow_m on both sides for themselves;
-/// those to the north have what is between two such strips, to the middle of the blocks.
+/// The section of a street between two crossings: `line` counts the streets of an axis, `block` the
+/// sections along a street. East streets own a strip of kCityRow_m on both sides; north streets own
+/// the area between two such strips, up to the middle of the blocks.
 struct CityPieceId {
   CityAxis axis = CityAxis::east;
   int line = 0;
@@ -28,13 +28,13 @@ struct CityPieceId {
   auto operator<=>(const CityPieceId&) const = default;
 };
 
-/// "x3_y-1_north": where it begins on the grid, and its axis.
+/// For example "x3_y-1_north": grid position of its begin, and its axis.
 std::string name_of(const CityPieceId& id);
 
-/// A rectangle of the grid's plane, m.
+/// A rectangle in the grid's plane, m.
 struct CityRect {
   double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-  /// From a place to the nearest point of it.
+  /// Distance from a position to the rectangle.
   double distance(double u, double v) const;
 };
 
@@ -49,25 +49,25 @@ class CityGrid {
   std::uint64_t seed() const { return seed_; }
   const CityLand& land() const { return land_; }
 
-  /// Where node `i` of a street along `axis` is, along it: u of the i-th street to the north, v of
-  /// the i-th to the east.
+  /// Position of node `i` along a street of `axis`: u of the i-th north street, or v of the i-th
+  /// east street.
   double node(CityAxis axis, int i) const;
-  /// The block of a street that a place along it is in.
+  /// Block of a street that contains the position `along`.
   int block_at(CityAxis axis, double along) const;
   CityRect rect(const CityPieceId& id) const;
-  /// The block east of north street i and north of east street j.
+  /// Use of the block east of north street i and north of east street j.
   BlockUse use(int i, int j) const;
 
   WorldKind kind(const CityPieceId& id) const;
   WorldStyle style(const CityPieceId& id) const;
-  /// Lanes each way, of the whole street.
+  /// Lanes per direction; constant along a street.
   int lanes(CityAxis axis, int line) const;
-  /// From the axis of a street to the middle of a lane; goes over from one style to the next about
-  /// the crossing between them.
+  /// Distance from a street's axis to the center of a lane. Near a crossing it changes smoothly
+  /// from one style to the next.
   double lane_center(CityAxis axis, int line, int lane, double along) const;
 
-  /// The plan of a piece: s runs along it from its beginning. `bare`: the profile of the street
-  /// alone, without plots and what crosses.
+  /// The plan of a section; s is the distance from its begin. `bare`: only the street's profile,
+  /// without plots and crossing streets.
   WorldPlan plan(const CityPieceId& id, bool bare = false) const;
 
   Random random(std::uint64_t purpose, std::int64_t a, std::int64_t b) const;
@@ -77,7 +77,7 @@ class CityGrid {
   CityLand land_;
 };
 
-/// First words of CityGrid::random, one for each thing that draws.
+/// First keys of CityGrid::random, one per use.
 enum class CityPurpose : std::uint64_t {
   node = 1,
   block,
@@ -95,7 +95,7 @@ enum class CityPurpose : std::uint64_t {
   walkers,
 };
 
-/// A number that stands for a street of an axis.
+/// A number that identifies a street of an axis.
 inline std::int64_t street_key(CityAxis axis, int line) {
   return 2 * static_cast<std::int64_t>(line) + (axis == CityAxis::north ? 1 : 0);
 }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::uint64_t kLandStream = 0x6c616e64;
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kMaxSlopeOfBend = 0.045;  // of one wave: streets cross within 10 degrees of square
+constexpr double kMaxSlopeOfBend =
+    0.045;  // of one wave: crossings stay within 10 degrees of a right angle
 constexpr double kMaxSlopeOfHill = 0.014;
 
 }  // namespace

@@ -7,18 +7,18 @@
 
 #include "adasplats/core/maths/vec3.h"
 
-// Inside synth/city/: the plane of a city's grid, bent and with hills. A place of it is (u, v): u
-// along the streets to the east, v along those to the north, in metres.
+// Private to synth/city/: the curved, hilly land of a city. Positions on the grid's plane are (u,
+// v) in m: u along east streets, v along north streets.
 
 namespace adasplats {
 
-/// Bends the straight lines of the grid gently and gives them heights: smooth and without end, so
-/// that streets, blocks and pieces meet without seams.
+/// Bends the straight lines of the grid gently and gives them heights. Smooth and unbounded, so
+/// that streets, blocks and sections join without seams.
 class CityLand {
  public:
   explicit CityLand(std::uint64_t seed);
 
-  /// World coordinates of the land, z its height.
+  /// World coordinates of a grid position; z is the height of the land.
   Vec3d at(double u, double v) const;
 
  private:
@@ -28,14 +28,15 @@ class CityLand {
   };
   struct Hill {
     Wave wave;
-    double east = 1, north = 0;  ///< the direction in which it rises and falls
+    double east = 1, north = 0;  ///< direction of the slope
   };
 
-  std::array<Wave, 2> shift_east_, shift_north_;  ///< of u by v, of v by u
+  std::array<Wave, 2> shift_east_,
+      shift_north_;  ///< offset of u as a function of v, and of v as a function of u
   std::array<Hill, 3> hills_;
 };
 
-/// The grid's lines are bent by no more than this, m.
+/// Maximum shift of the grid's lines, m.
 inline constexpr double kMaxBend_m = 16;
 
 }  // namespace adasplats

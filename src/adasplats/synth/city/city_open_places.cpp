@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPathHalf_m = 1.4;
 constexpr double kParkTree_m2 = 110, kParkBush_m2 = 260;
-constexpr double kSquareTrees_m = 9;  // from one to the next
+constexpr double kSquareTrees_m = 9;  // spacing
 constexpr double kSquareRim_m = 2.5;
 
 Random open_random(const CityGrid& grid, const CityPieceId& id, int side, int what) {
@@ -20,7 +20,7 @@ Random open_random(const CityGrid& grid, const CityPieceId& id, int side, int wh
                    8 * static_cast<std::int64_t>(id.block) + what);
 }
 
-/// What stands in one park or square of a piece.
+/// Furnishes one park or square of a section.
 class OpenPlace {
  public:
   OpenPlace(const WorldPlan& plan, const WorldPlot& plot, std::uint16_t instance, Random random,
@@ -62,7 +62,7 @@ class OpenPlace {
                 {label::kPerson, static_cast<float>(random_.uniform(0.1, 0.7)), instance_++},
                 random_);
   }
-  /// A market stall: posts, a counter and a roof.
+  /// A market stall: posts, counter and roof.
   void stall(double s, double d) {
     const Material cloth = {label::kOtherStructure, static_cast<float>(random_.uniform(0.3, 0.8))};
     builder_.stand_at(
@@ -73,7 +73,7 @@ class OpenPlace {
     builder_.box({-1.4, -1, 0.8}, {1.4, -0.3, 0.9}, cloth);
     builder_.quad({-1.6, -1.3, 2.1}, {1.6, -1.3, 2.1}, {1.6, 1.2, 2.5}, {-1.6, 1.2, 2.5}, cloth);
   }
-  /// A basin with a column in its middle.
+  /// A basin with a column in the center.
   void fountain(double s, double d) {
     const Material stone = {label::kOtherStructure, 0.6F};
     builder_.stand_at(plan_.stand(s, plot_.side, d));
@@ -149,7 +149,7 @@ void add_open_ground(const CityPieceId& id, const WorldPlan& profile,
     if (plot.use != Frontage::park) continue;
     const double path = line + 5;
     add(plot.s0 + 2, plot.s1 - 2, path - kPathHalf_m, path + kPathHalf_m, Ground::other);
-    // Two ways through the middle of the block, each drawn by all pieces that it passes.
+    // Two paths through the middle of the block; every section that they cross draws the same ones.
     if (id.axis == CityAxis::east)
       add(plot.center() - kPathHalf_m, plot.center() + kPathHalf_m, line, reach, Ground::other);
     else

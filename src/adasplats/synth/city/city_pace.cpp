@@ -12,8 +12,9 @@ namespace adasplats {
 namespace {
 
 constexpr double kDefaultSpacing_m = 1;
-constexpr double kReturningShare = 0.85;  // of rays, before any is cast
-constexpr double kMaxScans = 1e6;         // that six digits name
+constexpr double kReturningShare =
+    0.85;                          // expected share of rays with a return before the first scan
+constexpr double kMaxScans = 1e6;  // file names have six digits
 constexpr double kMinSpacing_m = 0.001;
 
 }  // namespace
@@ -26,7 +27,7 @@ CityPace::CityPace(const SynthCityOptions& options, std::size_t rays)
   if (options.points && options.spacing_m)
     throw Error(ErrorKind::usage,
                 "`points` and `spacing` are two ways to say the same: give one of them");
-  // Where a scan has fewer points than expected there are more scans.
+  // Scans may have fewer points than expected, which adds scans.
   const double scans = options.points ? 2 * points_ / mean_points_ : length_m_ / spacing_m_ + 1;
   if (scans > kMaxScans)
     throw Error(ErrorKind::usage,
@@ -44,7 +45,7 @@ std::vector<double> CityPace::next(std::size_t most, double way_m, std::size_t p
       mean_points_ = std::max(1.0, static_cast<double>(points) / static_cast<double>(scans_));
     const double left = std::round((points_ - static_cast<double>(points)) / mean_points_);
     if (left < 1 && scans_ > 0) return {};
-    // Half of those that are left at most, so that the last ones are right to a scan.
+    // At most half of the remaining scans, so that the total is right to within one scan.
     const double scans = std::max(1.0, left);
     most = std::min(most, static_cast<std::size_t>(std::ceil(0.5 * scans)));
     if (scans_ == 0) {

@@ -23,7 +23,7 @@ BuiltMesh build_piece(const CityGrid& grid, const CityPieceId& id, const WorldPl
   add_crossing_furniture(grid, id, plan, builder);
   add_open_places(grid, id, plan, add_world_standing(plan, builder), builder);
   BuiltMesh built = builder.take();
-  // Those of one piece are counted from 1; a piece with very many uses some twice.
+  // Ids within a section start at 1; a section with very many objects reuses some.
   const auto first = static_cast<std::uint16_t>(1 + piece_group(id) * kIdsOfPiece);
   for (std::uint16_t& instance : built.instances)
     if (instance > 0) instance = static_cast<std::uint16_t>(first + (instance - 1) % kIdsOfPiece);
@@ -42,7 +42,7 @@ CityPiece::CityPiece(const CityGrid& grid, const CityPieceId& of, const MoverMod
 }
 
 std::set<CityPieceId> pieces_around(const CityGrid& grid, Vec3d grid_place, double range_m) {
-  constexpr double kOverhang_m = 8;  // of crowns and roofs beyond a piece
+  constexpr double kOverhang_m = 8;  // of crowns and roofs beyond a section's rectangle
   const double reach = range_m + kMaxBend_m + kOverhang_m;
   const int west = grid.block_at(CityAxis::east, grid_place.x - reach) - 1;
   const int east = grid.block_at(CityAxis::east, grid_place.x + reach) + 1;

@@ -14,11 +14,11 @@
 #include "adasplats/synth/mesh_builder.h"
 #include "adasplats/trace/tracer.h"
 
-// Inside synth/city/: the pieces that are in memory.
+// Private to synth/city/: the sections in memory.
 
 namespace adasplats {
 
-/// A piece as it stands: depends on the seed and its id alone.
+/// The static content of a section; depends only on the seed and its id.
 struct CityPiece {
   CityPiece(const CityGrid& grid, const CityPieceId& id, const MoverModels& models);
 
@@ -28,18 +28,18 @@ struct CityPiece {
   BuiltMesh built;
   std::vector<Walker> walkers;
   Vec3f low, high;                 ///< city_bounds()
-  std::unique_ptr<Tracer> tracer;  ///< views `built`; none until CityPieces has it
+  std::unique_ptr<Tracer> tracer;  ///< views `built`; set by CityPieces::add()
 };
 
-/// Ids of the pieces that a ray of `range_m` from a place of the grid may meet, in their order.
+/// Ids of the sections that a ray of `range_m` from a grid position may hit, ascending.
 std::set<CityPieceId> pieces_around(const CityGrid& grid, Vec3d grid_place, double range_m);
 
-/// The pieces around the sensor, made and dropped as it goes.
+/// The sections around the sensor, built and dropped as it moves.
 class CityPieces {
  public:
-  /// Drops pieces that are not in `wanted`.
+  /// Drops sections that are not in `wanted`.
   void keep(const std::set<CityPieceId>& wanted);
-  /// Takes a piece and builds its tree: not within a loop of the executor.
+  /// Adds a section and builds its tree. Must not run within a loop of the executor.
   void add(std::unique_ptr<CityPiece> piece, const Executor& executor);
   bool holds(const CityPieceId& id) const { return pieces_.count(id) > 0; }
   const CityPiece& piece(const CityPieceId& id) const { return *pieces_.at(id); }

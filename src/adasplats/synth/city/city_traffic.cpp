@@ -14,11 +14,11 @@
 namespace adasplats {
 namespace {
 
-constexpr double kBlockTime_s = 16;  // of a vehicle from one crossing to the next: about 35 km/h
-// When vehicles of a lane pass a crossing, in shares of that time; two follow one another after
-// about 2 s. Those of streets to the north come half of it later.
+constexpr double kBlockTime_s = 16;  // between two crossings: about 35 km/h
+// When the vehicles of a lane pass a crossing, as shares of that time; the shortest gap is about 2
+// s. On north streets they pass half a period later.
 constexpr std::array<double, 3> kPasses = {0.02, 0.14, 0.26};
-constexpr double kLater = 0.02;  // at most, of one of them
+constexpr double kLater = 0.02;  // maximum delay of a vehicle
 constexpr double kNorthLater = 0.5;
 constexpr int kSlotsOfBlock = static_cast<int>(kPasses.size());
 
@@ -45,7 +45,7 @@ VehicleKind draw_kind(Random& random) {
                        : VehicleKind::motorcyclist;
 }
 
-/// One lane of a whole street and what is on it at a time.
+/// One lane of an entire street and its vehicles at a given time.
 class Rail {
  public:
   Rail(const CityGrid& grid, const MoverModels& models, CityAxis axis, int line, bool forth,
@@ -65,7 +65,7 @@ class Rail {
             static_cast<std::uint16_t>(4 * wrap(slot, 32) + pass), 0, placed);
     });
   }
-  /// Cyclists at the edge of the road; they take twice the time.
+  /// Cyclists at the edge of the road, at half the speed.
   void cyclists(double from, double to, double time_s, double density,
                 std::vector<PlacedMover>& placed) const {
     each_slot(from, to, 0.5 * time_s / kBlockTime_s, 0.5, [&](int slot, double blocks, int pass) {
@@ -78,12 +78,12 @@ class Rail {
   }
 
  private:
-  static constexpr double kCyclistsLine_m = 1.2;  // right of the middle of the lane
+  static constexpr double kCyclistsLine_m = 1.2;  // offset to the right of the center of the lane
 
   std::int64_t key() const { return (4 * street_key(axis_, line_) + (forth_ ? 1 : 0)) * 4 + lane_; }
 
-  /// Calls with every slot and where it is after `blocks` blocks' time, in blocks, for who goes so
-  /// many in the time of the timetable (`pace`).
+  /// Calls `call` with every slot and its position in blocks, for movers with `pace` blocks per
+  /// period.
   template <class Call>
   void each_slot(double from, double to, double blocks, double pace, Call call) const {
     const int first = grid_.block_at(axis_, from);
@@ -120,7 +120,7 @@ class Rail {
     const Vec3d here = place_on(along, more_right);
     const Vec3d ahead = place_on(along + half, more_right) - place_on(along - half, more_right);
     const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
-    // 8 streets of 2 axes, 2 ways, 2 lanes, 128 in each.
+    // 8 streets of 2 axes, 2 directions and 2 lanes; 128 vehicles each.
     const int street =
         ((wrap(line_, 8) * 2 + (axis_ == CityAxis::north ? 1 : 0)) * 2 + (forth_ ? 1 : 0)) * 2 +
         std::min(lane_, 1);
@@ -139,7 +139,7 @@ class Rail {
 };
 
 constexpr std::uint16_t kFirstWalker = kFirstMover + 64 * 128;
-constexpr int kMaxWalkers = 16;  // of one side of a piece
+constexpr int kMaxWalkers = 16;  // per side of a section
 static_assert(kFirstWalker + 2 * kMaxWalkers * kPieceGroups <= 65535);
 
 }  // namespace
@@ -151,7 +151,7 @@ std::pair<Vec3f, Vec3f> city_bounds(const TriangleMesh& mesh) {
     low = min(low, vertex);
     high = max(high, vertex);
   }
-  constexpr Vec3f kMargin = {0.01F, 0.01F, 0.01F};  // of a hit that is rounded
+  constexpr Vec3f kMargin = {0.01F, 0.01F, 0.01F};  // covers the rounding of hits
   return {low - kMargin, high + kMargin};
 }
 
@@ -191,7 +191,7 @@ std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, co
   for (const int side : {1, -1}) {
     double s0 = 2;
     double s1 = plan.options.length_m - 2;
-    for (const Patch& patch : plan.patches) {  // nobody walks out onto the road
+    for (const Patch& patch : plan.patches) {  // keeps walkers off the road
       if (patch.side != side || !patch.is_crossing) continue;
       if (patch.s1 < 0.5 * plan.options.length_m)
         s0 = std::max(s0, patch.s1 + 1);

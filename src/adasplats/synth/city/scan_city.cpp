@@ -18,9 +18,10 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kBatch = 64;    // scans that are cast while the pieces for the next are made
-constexpr double kBatchWay_m = 48;    // that they are made over
-constexpr double kKeptBeyond_m = 50;  // of the sensor's range, where the drive may turn back
+constexpr std::size_t kBatch =
+    64;  // scans that are cast while the sections for the next batch are built
+constexpr double kBatchWay_m = 48;    // maximum driven length of a batch
+constexpr double kKeptBeyond_m = 50;  // beyond the sensor's range, in case the drive turns back
 
 class CityScanner {
  public:
@@ -73,7 +74,8 @@ class CityScanner {
     return ids;
   }
 
-  /// Makes pieces and casts scans on all threads; pieces, which take longest, are begun first.
+  /// Builds sections and casts scans on all threads; sections start first because they take
+  /// longest.
   void work(const std::vector<CityPieceId>& to_make, const std::vector<double>& places,
             std::size_t first_scan) {
     std::vector<std::unique_ptr<CityPiece>> made(to_make.size());
@@ -107,7 +109,7 @@ class CityScanner {
     return piece;
   }
 
-  /// Casts one scan and hands it on; returns how many points it has.
+  /// Casts one scan and passes it to the sink; returns its number of points.
   std::size_t cast(double place, std::size_t index) const {
     const Vec3d grid_place = drive_.grid_place(place);
     TimedPose pose = drive_.at(place);
@@ -152,7 +154,7 @@ class CityScanner {
   CityDrive drive_;
   RigidTransform vehicle_from_sensor_;
   CityPieces pieces_;
-  std::set<CityPieceId> known_;  ///< that were made before
+  std::set<CityPieceId> known_;  ///< all sections built so far
   SynthCityReport report_;
 };
 

@@ -22,7 +22,7 @@
 namespace adasplats {
 namespace {
 
-/// A sensor of short sight, so that few pieces are made: a file of this process.
+/// A short-range sensor, which needs few sections.
 class SensorFile {
  public:
   SensorFile()
@@ -49,7 +49,7 @@ SynthCityOptions thin_city(double length_m, double spacing_m) {
 
 struct Recorded {
   std::map<std::size_t, Scan> scans;
-  std::map<std::string, std::size_t> pieces;  ///< their triangles
+  std::map<std::string, std::size_t> pieces;  ///< triangles by name
   SynthCityReport report;
 };
 
@@ -74,7 +74,7 @@ Recorded record(const SynthCityOptions& options, int threads) {
   return recorded;
 }
 
-// Oracle: the same with another number of threads.
+// Oracle: the same drive with another number of threads.
 TEST(ScanSynthCity, DoesNotDependOnThreads) {
   const Recorded one = record(thin_city(60, 15), 1);
   const Recorded three = record(thin_city(60, 15), 3);
@@ -91,7 +91,7 @@ TEST(ScanSynthCity, DoesNotDependOnThreads) {
   }
 }
 
-// Oracle: an area of streets is as full whether the drive is short or long.
+// Oracle: the density of streets does not depend on the length of the drive.
 TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
   const SynthCityReport few = record(thin_city(300, 100), 2).report;
   const SynthCityReport many = record(thin_city(1500, 100), 2).report;
@@ -118,7 +118,7 @@ TEST(ScanSynthCity, SeesWhatMovesAndWhatStands) {
     EXPECT_TRUE(classes.count(static_cast<std::uint16_t>(known)) > 0) << known;
 }
 
-// Oracle: brute force over all triangles of the pieces and of the movers in their places.
+// Oracle: brute force over all triangles of the sections and the movers at their poses.
 TEST(CastCity, FindsTheNearestOfAll) {
   const Executor executor(2);
   const CityGrid grid(9);
@@ -175,7 +175,7 @@ TEST(CastCity, FindsTheNearestOfAll) {
   EXPECT_GT(on_movers, 0U);
 }
 
-/// A folder of this process that goes with the test.
+/// A temporary folder of this process.
 class WriteSynthCity : public testing::Test {
  protected:
   void SetUp() override {

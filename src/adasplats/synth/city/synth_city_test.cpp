@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::array<std::uint64_t, 3> kSeeds = {1, 2, 77};
 
-/// Where a ray along `direction` first meets a piece, m.
+/// Distance along `direction` to the first hit, m.
 float nearest_m(const CityPiece& piece, Vec3d from, Vec3d direction, const Executor& executor) {
   const std::array<Ray, 1> ray = {Ray{vec_cast<float>(from), 0, vec_cast<float>(direction), 200}};
   std::array<Hit, 1> hit;
@@ -34,7 +34,7 @@ float nearest_m(const CityPiece& piece, Vec3d from, Vec3d direction, const Execu
   return hit[0].t;
 }
 
-// Oracle: what a rectangle is, on a grid of places: every place is in one piece and no other.
+// Oracle: rectangle containment; each position of a grid is in exactly one section.
 TEST(CityGrid, PiecesTileThePlane) {
   for (const std::uint64_t seed : kSeeds) {
     const CityGrid grid(seed);
@@ -51,7 +51,7 @@ TEST(CityGrid, PiecesTileThePlane) {
   }
 }
 
-// Oracle: the definition, over all pieces of a large region.
+// Oracle: the definition, over all sections of a large region.
 TEST(CityGrid, PiecesAroundAreThoseThatAreNear) {
   const CityGrid grid(3);
   const Vec3d place = {33, -12, 0};
@@ -66,7 +66,7 @@ TEST(CityGrid, PiecesAroundAreThoseThatAreNear) {
   EXPECT_LT(found.size(), 40U);
 }
 
-// Oracle: the land itself, where two pieces have the same place.
+// Oracle: the land at positions that two sections share.
 TEST(CityGrid, StreetsMeetInPlaceAndHeight) {
   const CityGrid grid(5);
   const WorldPlan west = grid.plan({CityAxis::east, 2, 1});
@@ -76,18 +76,17 @@ TEST(CityGrid, StreetsMeetInPlaceAndHeight) {
     EXPECT_LT(length(west.route.at(end, d) - east.route.at(0, d)), 1e-9);
     EXPECT_NEAR(west.height(end, d), east.height(0, d), 1e-9);
   }
-  // The street to the north begins where the strip of the one to the east ends.
+  // North sections begin at the edge of the strip of the east street.
   const WorldPlan north = grid.plan({CityAxis::north, 2, 2});
   const Vec3d rim = east.route.at(0, kCityRow_m);
   EXPECT_LT(length(north.route.at(0, 0) - rim), 1e-9);
   EXPECT_NEAR(north.height(0, 0), east.height(0, kCityRow_m), 1e-9);
-  // Across the rim the ground is of one kind: lanes go on, and so do sidewalks.
+  // Lanes and sidewalks continue across the edge.
   for (double d = 0.3; d < north.property_line(-1); d += 0.5)
     EXPECT_EQ(north.cell_at(1, -d).ground, east.cell_at(d, kCityRow_m - 1).ground) << d;
 }
 
-// Oracle: steps of a few centimetres between places that are near each other, and the ground of the
-// plan under the vehicle.
+// Oracle: consecutive poses are centimetres apart, and the plan has road under the vehicle.
 TEST(CityDrive, IsContinuousAndOnRoads) {
   for (const std::uint64_t seed : kSeeds) {
     const CityGrid grid(seed);
@@ -122,11 +121,11 @@ TEST(CityDrive, IsContinuousAndOnRoads) {
       }
       ASSERT_EQ(on_road, 1) << s << " of seed " << seed;
     }
-    EXPECT_GT(turned, 2 * std::numbers::pi);  // it did turn at crossings
+    EXPECT_GT(turned, 2 * std::numbers::pi);  // it turned at crossings
   }
 }
 
-// Oracle: the streets one after another, as rectangles tell them.
+// Oracle: the sequence of streets, from the sections' rectangles.
 TEST(CityDrive, ComesThroughStreetsAgainAndSeesMany) {
   const CityGrid grid(4);
   const CityDrive drive(grid, 8000);
@@ -144,8 +143,8 @@ TEST(CityDrive, ComesThroughStreetsAgainAndSeesMany) {
   EXPECT_GT(std::ranges::count_if(passes, [](const auto& entry) { return entry.second > 1; }), 5);
 }
 
-// Oracle: rays at the heights of a car from the middle of the lane: nothing that stands is nearer
-// than half a metre beside the vehicle, nor 2 m before it.
+// Oracle: rays at car height from the center of the lane: static objects are at least 0.5 m to the
+// side of the vehicle and 2 m ahead of it.
 TEST(CityPieces, NothingStandsWhereTheVehicleDrives) {
   const Executor executor(2);
   const CityGrid grid(6);
@@ -171,7 +170,7 @@ TEST(CityPieces, NothingStandsWhereTheVehicleDrives) {
   EXPECT_GT(pieces.size(), 5U);
 }
 
-// Oracle: the same thing made twice, the second time after others.
+// Oracle: the same section built twice, the second time after others.
 TEST(CityPieces, AreTheSameWhenMadeAgain) {
   const Executor executor(1);
   const CityGrid grid(8);
@@ -202,7 +201,7 @@ TEST(CityPieces, DropsWhatIsNotWanted) {
   EXPECT_TRUE(pieces.holds(other));
 }
 
-// Oracle: distances between all pairs, over the time of a timetable's period and more.
+// Oracle: distances between all pairs, over more than a period of the timetable.
 TEST(CityTraffic, VehiclesNeverMeet) {
   const Executor executor(1);
   for (const std::uint64_t seed : kSeeds) {
@@ -227,7 +226,7 @@ TEST(CityTraffic, VehiclesNeverMeet) {
   }
 }
 
-// Oracle: the speed that a block's length and time give, from positions a moment apart.
+// Oracle: the speed from a block's length and time, from positions a moment apart.
 TEST(CityTraffic, VehiclesDriveTheWayTheyLook) {
   const Executor executor(1);
   const CityGrid grid(2);
@@ -240,7 +239,7 @@ TEST(CityTraffic, VehiclesDriveTheWayTheyLook) {
     const auto found = before.find(mover.instance);
     if (found == before.end()) continue;
     const Vec3d way = found->second.world_from_mover.inverse() * mover.world_from_mover.translation;
-    if (length(way) > 5) continue;  // gone, and another one with its id
+    if (length(way) > 5) continue;  // left; its id belongs to another vehicle
     ++compared;
     EXPECT_GT(way.x, 0.3);
     EXPECT_LT(way.x, 1.6);
@@ -261,7 +260,7 @@ TEST(CityPace, SpacingGivesEveryPlaceOnce) {
     EXPECT_NEAR(all[k], 3.0 * static_cast<double>(k), 1e-9);
 }
 
-// Oracle: the wish, with scans whose points differ along the way from what is assumed first.
+// Oracle: the requested number, with scans that deviate from the first assumption.
 TEST(CityPace, PointsComeOutToOneScan) {
   constexpr std::size_t kRays = 1000;
   for (const double wish : {700.0, 5'000.0, 300'000.0, 2e6}) {
@@ -274,7 +273,7 @@ TEST(CityPace, PointsComeOutToOneScan) {
         EXPECT_GT(place, last);
         EXPECT_LE(place, 400 + 1e-6);
         last = place;
-        points += 500 + place;  // from 500 to 900 of 1000 rays
+        points += 500 + place;  // 500 to 900 of 1000 rays
       }
     }
     EXPECT_NEAR(points, wish, 900) << wish;

@@ -12,8 +12,8 @@ namespace {
 constexpr double kDriveSpeed_m_per_s = 8;
 constexpr double kDriveStep_m = 0.5;
 
-/// The vehicle in the outermost lane of the right side, or further in where no line divides the
-/// road; level across.
+/// The vehicle drives in the outermost lane of the right side, or nearer to the axis of a road
+/// without a center line. No roll.
 Trajectory drive_along(const WorldPlan& plan) {
   Trajectory drive;
   const double lane = plan.driven_line();

@@ -10,16 +10,17 @@
 namespace adasplats {
 namespace {
 
-constexpr double kFooting = 1.6;  // walls reach down through land that slopes
+constexpr double kFooting = 1.6;  // walls extend below sloping land
 constexpr double kStorey = 2.75;
-// A row along a street that joins begins so far behind the sidewalk, and is at least so long.
+// Distance behind the sidewalk at which a row along a joining street begins, and its minimum
+// length.
 constexpr double kRowBehindFacades_m = 11.5, kRowBehindHouses_m = 22;
 constexpr double kShortestRow_m = 5;
 
 struct WorldHouse {
   double width = 9, depth = 8;
   int storeys = 2;
-  double roof = 3;  ///< rise of the ridge over the eaves; 0: flat
+  double roof = 3;  ///< height of the ridge above the eaves; 0: flat
   bool ridge_along = true;
   float wall = 0.5F, tiles = 0.3F;
   double eaves() const { return storeys * kStorey + 0.3; }
@@ -37,7 +38,7 @@ WorldHouse draw_house(double widest, Random& random) {
   return house;
 }
 
-/// One wall with an opening in most of its bays, of one storey after the other.
+/// One wall with an opening in most bays, storey by storey.
 void add_house_wall(MeshBuilder& builder, const WallFrame& wall, double width,
                     const WorldHouse& house, bool has_door, Random& random) {
   const int bays = std::max(1, static_cast<int>(std::lround(width / random.uniform(2.4, 3.6))));
@@ -67,7 +68,7 @@ void add_house_wall(MeshBuilder& builder, const WallFrame& wall, double width,
   }
 }
 
-/// Roof with overhanging eaves, its gables and a chimney; x across the front, y away from the road.
+/// Roof with overhanging eaves, gables and a chimney; x along the front, y away from the road.
 void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
   const Material stone = {label::kBuilding, house.wall};
   const Material tiles = {label::kBuilding, house.tiles};
@@ -77,7 +78,7 @@ void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
     builder.box({-half - 0.2, -0.2, top - 0.1}, {half + 0.2, house.depth + 0.2, top + 0.25}, tiles);
     return;
   }
-  // As if the ridge lay along x: u along it, v across.
+  // Computed as if the ridge were along x: u along it, v across.
   const double length_u = house.ridge_along ? house.width : house.depth;
   const double length_v = house.ridge_along ? house.depth : house.width;
   const auto at = [&](double u, double v, double z) {
@@ -96,7 +97,7 @@ void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
   builder.box(chimney - Vec3d{0.35, 0.3, 1.5}, chimney + Vec3d{0.35, 0.3, 0.8}, stone);
 }
 
-/// In the builder's frame: x along the front, its middle at zero, y away from the road.
+/// In the builder's frame: x along the front with 0 at its middle, y away from the road.
 void add_house(MeshBuilder& builder, const WorldHouse& house, Random& random) {
   const double half = 0.5 * house.width;
   add_house_wall(builder, {{-half, 0, 0}, {1, 0, 0}, {0, -1, 0}}, house.width, house, true, random);
@@ -141,7 +142,7 @@ void add_house_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot
     builder.box({-1.6, 0, -kFooting}, {1.6, 5.5, z}, {label::kBuilding, house.wall * 0.9F});
     builder.box({-1.7, -0.2, z}, {1.7, 5.7, z + 0.15}, {label::kBuilding, house.tiles});
   }
-  if (random.uniform() < 0.3) {  // a shed further back
+  if (random.uniform() < 0.3) {  // a shed at the back
     builder.stand_at(plan.stand(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
                                 front + house.depth + random.uniform(3, 9), random.uniform(-1, 1)));
     builder.box({-1.4, -1.1, -1}, {1.4, 1.1, 2.1},
@@ -154,7 +155,7 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
   Random random = random_of(plan, WorldPurpose::house, plot.number);
   const double setback = random.uniform() < 0.3 ? random.uniform(0.3, 3) : 0.05;
   const double front = plan.property_line(plot.side) + setback;
-  // Chords between the ends, so that rows of a curve meet.
+  // Chords between the ends, so that rows along a curve join.
   constexpr double kChord_m = 15;
   const int rows = std::max(1, static_cast<int>(std::lround(plot.width() / kChord_m)));
   for (int k = 0; k < rows; ++k) {
@@ -171,7 +172,7 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
   builder.stand_in_world();
 }
 
-/// A barn, a workshop, a shop: large and with few openings.
+/// A barn, workshop or shop: large, with few openings.
 void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::house, plot.number);
   WorldHouse hall;
@@ -192,7 +193,7 @@ void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot
   builder.stand_in_world();
 }
 
-/// The houses of the next street, seen between those of this one.
+/// The houses of the next street, visible between those of this one.
 void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::behind, plot.number);
   if (random.uniform() < 0.35) return;
@@ -204,8 +205,8 @@ void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
   builder.stand_in_world();
 }
 
-/// Along one side of a street that joins at s: houses, or facades in a row. `towards` is +1 where
-/// the street is on the side of growing s.
+/// Houses or a row of facades along one side of a street that joins at s. `towards`: +1 if the
+/// street is towards larger s.
 void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot, double s,
                       int towards, double from) {
   Random random =
@@ -224,7 +225,7 @@ void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPl
   } else if (plot.use == Frontage::houses) {
     const double inward = random.uniform(2, 5);
     for (double d = back + 6; d < reach - 6; d += random.uniform(13, 20)) {
-      // The front looks up the street: y of its frame goes away from that.
+      // The front faces the street; y of its frame points away from it.
       const double yaw = (plot.side > 0) == (towards > 0) ? 0.5 : -0.5;
       builder.stand_at(plan.stand(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
       add_house(builder, draw_house(11, random), random);

@@ -12,8 +12,8 @@ constexpr std::uint16_t kGroundClasses[kGroundCount] = {label::kRoad,        lab
                                                         label::kParking,     label::kSidewalk,
                                                         label::kOtherGround, label::kTerrain};
 
-/// The wished cuts and, between them, even ones at most step(place) apart. Wishes nearer to one
-/// another than 3 cm are one.
+/// The requested cuts and, between them, even ones at most step(position) apart. Requested cuts
+/// within 3 cm of each other are merged.
 template <class Step>
 std::vector<double> even_cuts(std::vector<double> wishes, double low, double high, Step step) {
   wishes.insert(wishes.end(), {low, high});
@@ -48,7 +48,7 @@ std::vector<double> world_cuts_across(const WorldPlan& plan) {
   });
 }
 
-/// The corners of cells as heights of the land; soil is rough by a draw of the corner.
+/// Heights of the land at cell corners; the roughness of soil is drawn by corner.
 struct GroundGrid {
   const WorldPlan& plan;
   std::vector<double> s, d;
@@ -97,8 +97,8 @@ void add_ground_step(const GroundGrid& grid, MeshBuilder& builder, const WorldPl
                grid.corner(other, i0, j0), face);
 }
 
-/// Faces down from the rim of the land, so that no ray slips between two pieces of a city whose
-/// rims are a little apart.
+/// Vertical faces down from the edge of the land, so that no ray passes through small gaps between
+/// the sections of a city.
 void add_ground_rim(const GroundGrid& grid, MeshBuilder& builder) {
   constexpr Vec3d kDown = {0, 0, -0.6};
   const auto face = [&](const WorldPlan::Cell& cell, std::size_t i0, std::size_t j0, std::size_t i1,

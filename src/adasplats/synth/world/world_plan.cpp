@@ -10,7 +10,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::uint64_t kWorldStream = 0x776f726c64;  // apart from the street's
+constexpr std::uint64_t kWorldStream = 0x776f726c64;  // separate from the street's
 constexpr double kDrivewayHalf = 1.5;
 
 double smooth_step(double t) {

@@ -57,14 +57,14 @@ WorldTree draw_tree(double leafiness, double tallest, Random& random) {
   return tree;
 }
 
-/// More leaves and smaller ones, for what stands near the road.
+/// More and smaller leaves for plants near the road.
 WorldTree with_fine_leaves(WorldTree tree) {
   tree.leaves *= 2;
   tree.leaf /= std::numbers::sqrt2;
   return tree;
 }
 
-/// How wide the crown is at a share of its height, 0..1.
+/// Relative width of the crown at a share of its height, 0..1.
 double crown_width(Crown crown, double share) {
   switch (crown) {
     case Crown::round: return std::sqrt(std::max(0.0, 1 - std::pow(2 * share - 0.85, 2) / 1.33));
@@ -74,7 +74,7 @@ double crown_width(Crown crown, double share) {
   return 0;
 }
 
-/// In the builder's frame, its foot at the origin.
+/// In the builder's frame, with its foot at the origin.
 void add_world_tree(MeshBuilder& builder, const WorldTree& tree, Random& random) {
   const Material bark = {label::kTrunk, static_cast<float>(random.uniform(0.3, 0.55))};
   const Material branch = {label::kVegetation, bark.reflectance};
@@ -87,7 +87,7 @@ void add_world_tree(MeshBuilder& builder, const WorldTree& tree, Random& random)
            0.9 * tree.trunk_radius, 9, bark);
   add_limb(builder, {stem(fork), stem(0.9 * tree.height)}, 0.9 * tree.trunk_radius, 0.03, 6, bark);
   const double crown_height = tree.height - tree.crown_base;
-  // Leaves hang about clumps, so that a crown has holes and bulges.
+  // Leaves surround clumps, so that a crown has holes and bulges.
   const int clumps = 12 + static_cast<int>(random.uniform(0, 24));
   const int each = std::max(1, tree.leaves / clumps);
   for (int k = 0; k < clumps; ++k) {
@@ -129,7 +129,7 @@ void plant_garden(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
   const double line = plan.property_line(plot.side);
   const auto draw_place = [&](double& s, double& d) {
     s = random.uniform(plot.s0 + 1, plot.s1 - 1);
-    // Before the house or behind it; beside the drive.
+    // In front of the house, behind it, or next to the driveway.
     const bool before = plot.setback > 2.5 && random.uniform() < 0.7;
     d = line + (before ? random.uniform(0.9, plot.setback - 0.8)
                        : random.uniform(plot.setback + 12, plot.setback + 24));
@@ -147,7 +147,7 @@ void plant_garden(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
     if (draw_place(s, d)) plant_bush(plan, builder, s, plot.side, d, random);
 }
 
-/// Bushes that grow at the edge of a plot.
+/// Bushes at the edge of a plot.
 void plant_edge(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::edges_plants, plot.number);
   const double line = plan.property_line(plot.side);
@@ -185,7 +185,7 @@ void plant_grass(const WorldPlan& plan, MeshBuilder& builder, int side) {
   }
 }
 
-/// A tree on each island of the parking lane, and low plants about it.
+/// A tree on each island of the parking lane, with low plants around it.
 void plant_islands(const WorldPlan& plan, MeshBuilder& builder) {
   Random random = random_of(plan, WorldPurpose::islands, 0);
   const double low = random.uniform() < 0.6 ? random.uniform(0.25, 0.8) : 0;
@@ -212,7 +212,7 @@ void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& pl
   Random random = random_of(plan, WorldPurpose::garden, plot.number);
   const double line = plan.property_line(plot.side) + random.uniform(0.8, 6);
   const double deep = std::min(plan.reach(plot.side) - 3, line + random.uniform(6, 26));
-  const double room = random.uniform(10, 30);  // m2 a tree
+  const double room = random.uniform(10, 30);  // m2 per tree
   const int trees = static_cast<int>(plot.width() * (deep - line) / room);
   for (int k = 0; k < trees; ++k) {
     WorldTree tree = draw_tree(plan.style.leafiness, random.uniform(6, 16), random);
@@ -226,7 +226,7 @@ void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& pl
                line + 5 * random.uniform() * random.uniform(), random);
 }
 
-/// Trees between road and plots, or just behind; bushes of the open land.
+/// Trees between the road and the plots, or just behind; bushes of the open land.
 void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
   Random random = random_of(plan, WorldPurpose::trees, side > 0 ? 1 : 0);
   const SideStyle& own = plan.side(side);
@@ -236,7 +236,7 @@ void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
   for (const double s : places_along(plan, own.trees, 3, random)) {
     if (plan.is_open(side, s - 1, s + 1)) continue;
     WorldTree tree = draw_tree(plan.style.leafiness, tallest, random);
-    if (at_kerb) {  // those over a road are pruned
+    if (at_kerb) {  // trees over a road are pruned
       tree.crown = Crown::round;
       tree.height = std::max(tree.height, 5.0);
       tree.crown_base = std::max(tree.crown_base, 2.1);

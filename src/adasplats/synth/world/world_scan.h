@@ -10,16 +10,16 @@
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/synth/street_caster.h"
 
-// Inside synth/: what the sensor of a world makes of the echoes of one revolution.
+// Private to synth/: turns the echoes of one revolution into a world's scan.
 
 namespace adasplats {
 
-/// Where the sensor sits on its vehicle: at KITTI's height, as well as sensors are mounted and
-/// vehicles loaded.
+/// Pose of the sensor on its vehicle: at KITTI's height, with realistic errors of mounting and
+/// load.
 RigidTransform draw_world_mount(std::uint64_t seed);
 
-/// The scan of number `number`: without what the vehicle itself hides and what is lost on the way,
-/// with the returns from nowhere. Draws by (seed, number, ray).
+/// Scan number `number`: drops returns that the vehicle blocks and lost ones, and adds random
+/// outliers. Draws by (seed, number, ray).
 Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
                    const TimedPose& pose, std::uint64_t seed, std::uint64_t number);
 

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// Puts things down with one instance id after the other.
+/// Adds objects with consecutive instance ids.
 class Parking {
  public:
   Parking(const WorldPlan& plan, MeshBuilder& builder) : plan_(plan), builder_(builder) {}
@@ -22,7 +22,7 @@ class Parking {
     const RigidTransform place = plan_.stand(s, side, from_axis, yaw);
     add_vehicle(builder_, kind, place, {class_id, draw_paint(random), instance_++}, random);
   }
-  /// Without a rider; it leans a little.
+  /// Without a rider, slightly tilted.
   void put_bike(bool motorcycle, double s, int side, double from_axis, double yaw, Random& random) {
     if (plan_.is_crossing(side, s)) return;
     RigidTransform place = plan_.stand(s, side, from_axis, yaw);
@@ -48,7 +48,7 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::parked, side > 0 ? 1 : 0);
   const double middle = plan.lanes_end() + 0.5 * own.parking_width;
   for (double s = 3; s < plan.options.length_m - 8;) {
-    // Trucks and buses take more than a narrow lane.
+    // Trucks and buses need more than a narrow lane.
     const double draw = random.uniform() * (own.parking_width > 2.2 ? 1 : 0.91);
     const VehicleKind kind = draw < 0.91    ? VehicleKind::car
                              : draw < 0.945 ? VehicleKind::truck
@@ -61,10 +61,10 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
                                      : kind == VehicleKind::truck   ? label::kTruck
                                      : kind == VehicleKind::trailer ? label::kOtherVehicle
                                                                     : label::kBus;
-      // Cars face as their lane drives, against x of either side; some do not.
+      // Most cars face the direction of their lane, against x on either side.
       const bool is_car = kind == VehicleKind::car;
       const double against = is_car && random.uniform() < 0.12 ? 0 : std::numbers::pi;
-      // A truck with its trailer is longer behind its origin than before it.
+      // A truck with a trailer is longer behind its origin than ahead of it.
       const double ahead = kind != VehicleKind::truck ? 0.5 * room : side < 0 ? room - 5.5 : 5.5;
       parking.put(kind, class_id, s + ahead, side, middle + random.uniform(-0.12, 0.12),
                   against + random.uniform(-0.03, 0.03), random);
@@ -89,7 +89,7 @@ void park_in_drives(const WorldPlan& plan, Parking& parking) {
   }
 }
 
-/// Two rows of cars, nose to the way between them or tail.
+/// Two rows of cars, with their nose or tail towards the lane between them.
 void fill_car_parks(const WorldPlan& plan, Parking& parking) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use != Frontage::car_park) continue;
@@ -107,7 +107,7 @@ void fill_car_parks(const WorldPlan& plan, Parking& parking) {
   }
 }
 
-/// What is left before barns and workshops.
+/// Vehicles in front of barns and workshops.
 void park_at_halls(const WorldPlan& plan, Parking& parking) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use != Frontage::hall) continue;
@@ -151,7 +151,7 @@ void stand_on_sidewalk(const WorldPlan& plan, Parking& parking, int side) {
   }
 }
 
-/// Riders that wait at the kerb.
+/// Riders waiting at the kerb.
 void wait_on_road(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::standing, side > 0 ? 3 : 2);
   const double edge = plan.road_end(side) - 0.1;

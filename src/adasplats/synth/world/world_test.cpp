@@ -25,7 +25,7 @@ std::set<std::uint16_t> classes_of(const SynthWorld& world) {
   return classes;
 }
 
-// Oracle: SemanticKITTI's list of classes that are learnt (semantic-kitti.yaml), moving or not.
+// Oracle: SemanticKITTI's list of learned classes (semantic-kitti.yaml), moving or not.
 TEST(SynthWorld, KindsTogetherHaveEveryClass) {
   std::set<std::uint16_t> seen;
   for (const WorldKind kind : kKinds)
@@ -67,7 +67,7 @@ TEST(SynthWorld, EveryTriangleIsFiniteAndHasItsAttributes) {
   }
 }
 
-// Oracle: the plan's own height, on the lane that is driven.
+// Oracle: the plan's own height in the driven lane.
 TEST(SynthWorld, TheDriveIsOnTheRoad) {
   for (const WorldKind kind : kKinds) {
     const WorldOptions options = {.seed = 3, .kind = kind, .length_m = 80};

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kPassing_m = 2.5;  // from the middle of one to that of the other
+constexpr double kPassing_m = 2.5;  // lateral distance between passing movers
 constexpr double kPoseEvery_s = 0.25;
 
 std::uint16_t moving_class(VehicleKind kind) {
@@ -25,12 +25,12 @@ std::uint16_t moving_class(VehicleKind kind) {
   return label::kMovingOther;
 }
 
-/// One lane of things that follow one another at one speed.
+/// One lane of movers that follow each other at one speed.
 struct TrafficLane {
   VehicleKind kind = VehicleKind::car;
   int side = -1;
   double from_axis = 1.5;
-  bool forth = true;  ///< with growing s
+  bool forth = true;  ///< towards larger s
   double speed_m_per_s = 9;
   double in_100_m = 1;
 };
@@ -60,7 +60,7 @@ class TrafficMaker {
     Random random = random_of(plan_, WorldPurpose::traffic, ++lanes_);
     const double mean = 100 / lane.in_100_m;
     const double room = vehicle_length(lane.kind) + 0.4 * lane.speed_m_per_s;
-    // From before the beginning, for what comes in while the drive lasts.
+    // Starts before the road's begin, for movers that enter during the drive.
     const double span = plan_.options.length_m + 200;
     for (double ahead = mean * random.uniform(); ahead < span;
          ahead += std::max(room, mean * random.uniform(0.3, 1.7))) {
@@ -73,7 +73,7 @@ class TrafficMaker {
  private:
   void add(const TrafficLane& lane, double from_s, Random& random) {
     TrafficLane own = lane;
-    if (lane.kind == VehicleKind::walker) {  // nobody walks in a file
+    if (lane.kind == VehicleKind::walker) {  // walkers are not in single file
       own.from_axis += random.uniform(-0.5, 0.5);
       own.forth = random.uniform() < 0.5;
       own.speed_m_per_s = random.uniform(0.8, 1.7);
@@ -101,7 +101,7 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
   const WorldStyle& style = plan.style;
   for (const int side : {1, -1}) {
     for (int lane = 0; lane < style.lanes; ++lane) {
-      // A lane has one sort, so that nobody runs into a slower one.
+      // One kind per lane, so that no mover catches up with a slower one.
       Random random = random_of(plan, WorldPurpose::traffic, 1000 + 10 * lane + (side > 0 ? 1 : 0));
       const double heavy = style.trucks + style.buses;
       const bool outer = lane + 1 == style.lanes;
@@ -111,14 +111,14 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
         kind = random.uniform() < style.trucks / heavy ? VehicleKind::truck : VehicleKind::bus;
       const double speed = style.speed_m_per_s * (outer ? 0.8 : 1.0) * random.uniform(0.85, 1.15);
       const double many = kind == VehicleKind::car ? style.cars : std::max(0.4, heavy);
-      // Where the vehicle drives in the middle of a narrow road, nobody comes towards it.
+      // No oncoming traffic if the vehicle drives in the middle of a narrow road.
       const double beside = plan.lane_center(lane);
       if (side > 0 && beside + plan.driven_line() < kPassing_m) continue;
       maker.fill({kind, side, beside, side < 0, speed, many / style.lanes});
     }
     const double edge = plan.road_end(side);
     const double beside = plan.side(side).parking_width > 0 ? plan.lanes_end() - 0.4 : edge - 0.5;
-    // Nobody squeezes past the vehicle that scans.
+    // Nothing overtakes the scanning vehicle in its lane.
     constexpr double kElbowRoom_m = 1.4;
     const double driven = plan.driven_line();
     const auto fits = [&](double from_axis) {

@@ -12,7 +12,7 @@ WorldReport write_world(const std::filesystem::path& folder, const WorldOptions&
   WorldReport report;
   report.mesh_triangles = world.place.fixed.triangles.size();
   report.moving_objects = world.place.moving.size();
-  // First, as it refuses a folder that holds another place.
+  // First, because it rejects a folder with another sequence.
   SemanticKittiWriter sequence(folder / "sequences" / "00");
   scan_world(
       world, scan_options,

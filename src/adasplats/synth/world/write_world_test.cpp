@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-/// A folder of this process that goes with the test.
+/// A temporary folder of this process.
 class WriteWorld : public testing::Test {
  protected:
   void SetUp() override {
@@ -66,7 +66,7 @@ TEST_F(WriteWorld, RefusesAFolderThatHoldsAWorld) {
   }
 }
 
-// Oracle: the same with another number of threads.
+// Oracle: the same world with another number of threads.
 TEST_F(WriteWorld, ScansDoNotDependOnThreads) {
   const SynthWorld world = make_world(kSmall);
   std::vector<Scan> scans;
