@@ -25,8 +25,7 @@ ENTRY = re.compile(r'\{"[\w-]+",\s*"[^"]*",\s*"([^"]*)"')
 # What others made does not get there.
 NOT_FUZZED = {
     "city/passing_rays.cpp": "rays of tiles that an unfinished run of ours wrote",
-    "city/square_classes.cpp": "classes of points that an unfinished run of ours wrote",
-    "city/tile_points.cpp": "points of tiles that an unfinished run of ours wrote",
+    "city/tile_points.cpp": "points and classes of tiles that an unfinished run of ours wrote",
     "core/child_process.cpp": "/proc, and what our own programs print",
     "evaluate/error_points.cpp": "headers and tables of io/ply",
     "io/base/atomic_file.cpp": "gives whole files to others; opens what it writes",

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kSmallestArea = 1e-8;  // m2
+constexpr double kMinArea_m2 = 1e-8;  // m2
 constexpr double kCircle = 2 * std::numbers::pi;
 
 double area(Vec3f a, Vec3f b, Vec3f c) {
@@ -33,7 +33,7 @@ std::vector<Vec3d> ring_about(Vec3d center, Vec3d u, Vec3d v, int sides) {
 
 }  // namespace
 
-void MeshBuilder::stand_at(const RigidTransform& world_from_shape, Vec3d scale) {
+void MeshBuilder::set_frame(const RigidTransform& world_from_shape, Vec3d scale) {
   stand_ = {world_from_shape, scale};
 }
 
@@ -61,7 +61,7 @@ void MeshBuilder::polygon(std::span<const Vec3d> corners, const Material& materi
   for (std::uint32_t k = 1; k + 1 < corners.size(); ++k) {
     const std::array<std::uint32_t, 3> t = {first, first + k, first + k + 1};
     // Tested after rounding to float: far from zero a sliver may lose its area.
-    if (!(area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > kSmallestArea))
+    if (!(area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > kMinArea_m2))
       continue;
     any = true;
     mesh.triangles.push_back(t);

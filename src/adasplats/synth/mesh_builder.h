@@ -32,9 +32,9 @@ struct BuiltMesh {
 class MeshBuilder {
  public:
   /// Sets the frame of the following shapes; `scale` stretches them along the frame's axes.
-  void stand_at(const RigidTransform& world_from_shape, Vec3d scale = {1, 1, 1});
+  void set_frame(const RigidTransform& world_from_shape, Vec3d scale = {1, 1, 1});
   /// Resets the frame to world coordinates, the initial state.
-  void stand_in_world() { stand_.reset(); }
+  void reset_frame() { stand_.reset(); }
 
   void triangle(Vec3d a, Vec3d b, Vec3d c, const Material& material);
   /// Corners in order around the quad.

@@ -74,7 +74,7 @@ TEST(MeshBuilder, FineEllipsoidIsASphere) {
   EXPECT_GT(area, 4 * std::numbers::pi * 4 * 0.998);
 }
 
-TEST(MeshBuilder, DegenerateTrianglesAreLeftOut) {
+TEST(MeshBuilder, DropsDegenerateTriangles) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   MeshBuilder builder;
   builder.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {});

@@ -6,13 +6,12 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/synth/street.h"
-#include "adasplats/synth/street_caster.h"
-#include "adasplats/synth/vehicle_path.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kFewestPoints = 1000;
+constexpr std::size_t kMinPoints = 1000;
 /// Random stream of the driving scans' noise; mapping scans are numbered from zero.
 constexpr std::uint64_t kDrivingScans = std::uint64_t{1} << 32;
 
@@ -31,9 +30,8 @@ void check_options(const StreetScanOptions& options) {
     check(std::isfinite(value) && value >= 0,
           std::string(name) + " is " + std::to_string(value) + "; expected 0 or more");
   };
-  check(options.points >= kFewestPoints, "points is " + std::to_string(options.points) +
-                                             "; expected " + std::to_string(kFewestPoints) +
-                                             " or more");
+  check(options.points >= kMinPoints, "points is " + std::to_string(options.points) +
+                                          "; expected " + std::to_string(kMinPoints) + " or more");
   check(options.passes >= 1,
         "passes is " + std::to_string(options.passes) + "; expected 1 or more");
   at_least_zero(options.range_noise_m, "range noise");
@@ -47,16 +45,16 @@ void check_options(const StreetScanOptions& options) {
 /// Mean share of rays with a return, estimated from a few sparse revolutions along each pass.
 double return_share(const StreetCaster& caster, const Street& street,
                     const StreetScanOptions& options) {
-  constexpr std::size_t kPlaces = 24;
+  constexpr std::size_t kPoses = 24;
   LidarModel thin = hdl_32_paper();
   thin.columns = 120;
   const std::vector<Firing> firings = firings_of(thin);
   double sum = 0;
   for (int pass = 0; pass < std::min(options.passes, 2); ++pass)
     for (const RecordedPose& pose :
-         poses_of_pass(street, options, pass, kPlaces, vehicle_from_mapping_sensor()))
+         poses_of_pass(street, options, pass, kPoses, vehicle_from_mapping_sensor()))
       sum += caster.fixed_share(thin, firings, pose.truth);
-  return sum / (static_cast<double>(kPlaces) * std::min(options.passes, 2));
+  return sum / (static_cast<double>(kPoses) * std::min(options.passes, 2));
 }
 
 /// Derives columns per metre from the number of points. The full sensor at 10 Hz and 8 m/s gives
@@ -72,10 +70,10 @@ MappingPlan plan_mapping(const StreetScanOptions& options, double way_m, double 
   const double columns_per_pass =
       static_cast<double>(options.points) / points_per_column / options.passes;
   const double density = columns_per_pass / way_m;
-  const double wish =
+  const double columns =
       std::clamp(full_columns * std::pow(density / full_density, 0.7), 16.0, full_columns);
   plan.revolutions =
-      static_cast<std::size_t>(std::max(1L, std::lround(std::ceil(columns_per_pass / wish))));
+      static_cast<std::size_t>(std::max(1L, std::lround(std::ceil(columns_per_pass / columns))));
   plan.sensor.columns = static_cast<std::uint32_t>(
       std::max(1L, std::lround(columns_per_pass / static_cast<double>(plan.revolutions))));
   return plan;

@@ -10,8 +10,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/synth/street.h"
-#include "adasplats/synth/street_caster.h"
 #include "adasplats/synth/street_plan.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
@@ -64,7 +64,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 // Oracle: brute-force distance to the triangles of the point's class, with movers at their poses.
-TEST(ScanStreet, ExactPointsLieOnTheSurfaceOfTheirClass) {
+TEST(ScanStreet, ExactPointsAreOnTheSurfaceOfTheirClass) {
   const Street street = make_street(kShortStreet);
   const StreetRecording recording = scan(street, exact_scan(20'000));
   const PointCloud& cloud = recording.mapping;
@@ -84,15 +84,15 @@ TEST(ScanStreet, ExactPointsLieOnTheSurfaceOfTheirClass) {
   EXPECT_GT(checked_moving, 3U);
 }
 
-TEST(ScanStreet, CloudHasAboutTheWishedNumberOfPointsAndEveryAttribute) {
+TEST(ScanStreet, CloudHasTheTargetNumberOfPointsAndEveryAttribute) {
   for (const auto& [points, passes] :
        {std::pair<std::size_t, int>{5'000, 1}, {50'000, 2}, {100'000, 3}, {300'000, 2}}) {
     const Street street = make_street({1, street_length_for(points)});
     StreetScanOptions options = exact_scan(points);
     options.passes = passes;
     const PointCloud cloud = scan(street, options).mapping;
-    const auto wish = static_cast<double>(points);
-    EXPECT_NEAR(static_cast<double>(cloud.size()), wish, 0.1 * wish);
+    const auto wanted = static_cast<double>(points);
+    EXPECT_NEAR(static_cast<double>(cloud.size()), wanted, 0.1 * wanted);
     EXPECT_EQ(cloud.sensor_positions.size(), cloud.size());
     EXPECT_EQ(cloud.intensities.size(), cloud.size());
     EXPECT_EQ(cloud.classes.size(), cloud.size());
@@ -138,28 +138,28 @@ TEST(ScanStreet, SameBytesForEveryNumberOfThreads) {
 
 // Oracle: each mover's trajectory. Its points, in its own frame, are inside its bounding box, and
 // they move in the world.
-TEST(ScanStreet, MovingObjectsAreWhereTheirTrajectoryIs) {
+TEST(ScanStreet, MovingObjectsFollowTheirTrajectory) {
   const Street street = make_street({1, 60});
   const StreetRecording recording = scan(street, exact_scan(60'000));
   const PointCloud& cloud = recording.mapping;
   std::map<std::uint16_t, const MovingObject*> movers;
   for (const MovingObject& object : street.moving) movers[object.instance] = &object;
 
-  std::map<std::uint16_t, std::map<std::uint32_t, Vec3d>> places;  // by instance and scan
+  std::map<std::uint16_t, std::map<std::uint32_t, Vec3d>> positions;  // by instance and scan
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.classes[i] < 250) continue;
     ASSERT_TRUE(movers.contains(cloud.instances[i]));
     const MovingObject& object = *movers[cloud.instances[i]];
     const double time_s = recording.true_mapping_trajectory[cloud.scan_indices[i]].time_s;
-    const RigidTransform place =
+    const RigidTransform world_from_object =
         interpolate(object.world_from_object, std::fmod(time_s, street.traffic_period_s));
-    const Vec3d p = place.inverse() * cloud.world(i);
+    const Vec3d p = world_from_object.inverse() * cloud.world(i);
     EXPECT_LT(std::fabs(p.x), 2.6);
     EXPECT_LT(std::fabs(p.y), 1.3);
-    places[cloud.instances[i]][cloud.scan_indices[i]] = place.translation;
+    positions[cloud.instances[i]][cloud.scan_indices[i]] = world_from_object.translation;
   }
   std::size_t moved = 0;
-  for (const auto& [instance, by_scan] : places) {
+  for (const auto& [instance, by_scan] : positions) {
     if (by_scan.size() < 2) continue;
     const Vec3d way = by_scan.rbegin()->second - by_scan.begin()->second;
     moved += length(way) > 0.1 ? 1U : 0U;
@@ -189,7 +189,7 @@ TEST(ScanStreet, RangeNoiseIsWhite) {
 }
 
 // Oracle: recorded points are the exact ones moved by one rigid transform per pass.
-TEST(ScanStreet, PoseErrorMovesEachPassAsAWhole) {
+TEST(ScanStreet, PoseErrorIsOneRigidTransformPerPass) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(20'000);
   const StreetRecording exact = scan(street, options);
@@ -257,7 +257,7 @@ TEST(ScanStreet, MappingSensorIsPitchedAndDrivingSensorLevel) {
 }
 
 // Oracle: analytic. The second pass is the first one seen from the other end.
-TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
+TEST(ScanStreet, PassesWithTurnsStartInTheCrossStreet) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);
   options.turns = true;
@@ -286,7 +286,7 @@ TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
   EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // a turning radius of 6 m
 }
 
-TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
+TEST(ScanStreet, MaxDrivingScansLimitsTheirNumber) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);
   options.driving_spacing_m = 1;
@@ -296,7 +296,7 @@ TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
   EXPECT_TRUE(scan(street, options).driving_trajectory.empty());
 }
 
-TEST(ScanStreet, RefusesOptionsOutOfRange) {
+TEST(ScanStreet, RejectsOptionsOutOfRange) {
   const Street street = make_street(kShortStreet);
   const auto expect_usage = [&](auto change) {
     StreetScanOptions options = exact_scan(2'000);

@@ -38,12 +38,12 @@ struct Street {
   double traffic_period_s = 0;  ///< `moving` repeats with this period
 };
 
-inline constexpr double kShortestStreet_m = 50;
-inline constexpr double kLongestStreet_m = 2000;
+inline constexpr double kMinStreetLength_m = 50;
+inline constexpr double kMaxStreetLength_m = 2000;
 
 struct StreetOptions {
   std::uint64_t seed = 1;
-  double length_m = 60;  ///< of the road: kShortestStreet_m to kLongestStreet_m
+  double length_m = 60;  ///< of the road: kMinStreetLength_m to kMaxStreetLength_m
 };
 
 /// Builds the street: road with crossfall, markings and kerbs, sidewalks, a side street, apartment

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adasplats/synth/facade.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {

@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kSmallestCell = 0.06;
+constexpr double kMinCell_m = 0.06;
 constexpr double kTerrainRoughness = 0.035;
 
 struct Cell {
@@ -116,8 +116,8 @@ std::vector<double> merged_cuts(std::vector<double> features, double low, double
     const double cut = low + k * step;
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(fixed);
     const auto above = std::lower_bound(cuts.begin(), end, cut);
-    const bool near_above = above != end && *above - cut < kSmallestCell;
-    const bool near_below = above != cuts.begin() && cut - *(above - 1) < kSmallestCell;
+    const bool near_above = above != end && *above - cut < kMinCell_m;
+    const bool near_below = above != cuts.begin() && cut - *(above - 1) < kMinCell_m;
     if (!near_above && !near_below) cuts.push_back(cut);
   }
   std::ranges::sort(cuts);

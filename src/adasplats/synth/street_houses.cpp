@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/facade.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/vehicle_path.h"
-
 #include <cmath>
 #include <numbers>
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/synth/street_plan.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
@@ -32,7 +31,7 @@ double straight_between_turns(const Street& street) {
 }
 
 /// Position after `travelled` metres; z is 0.
-Vec3d place_on_turning_way(const Street& street, double travelled) {
+Vec3d position_on_turning_path(const Street& street, double travelled) {
   const double r = kTurnRadius_m;
   const Vec3d right = {-0.5 * kCrossRoad + r, -kLaneCenter - r, 0};  // centers of the turns
   const double straight_m = straight_between_turns(street);
@@ -62,16 +61,16 @@ RigidTransform world_from_vehicle(const Street& street, bool turns, int pass, do
   const int direction = pass % 2 == 0 ? 1 : -1;
   const auto on_road = [](double x, double y) { return Vec3d{x, y, road_height(x, y)}; };
   if (turns) {
-    const auto place = [&](double at) {
-      const Vec3d forth = place_on_turning_way(street, at);
+    const auto position = [&](double at) {
+      const Vec3d forth = position_on_turning_path(street, at);
       return direction > 0 ? on_road(forth.x, forth.y)
                            : on_road(street.length_m - forth.x, -forth.y);
     };
-    return vehicle_between(place(travelled), place(travelled + 1));
+    return vehicle_between(position(travelled), position(travelled + 1));
   }
   const double x = direction > 0 ? kMargin_m + travelled : street.length_m - kMargin_m - travelled;
-  const auto place = [&](double at) { return on_road(at, vehicle_y(direction, pass, at)); };
-  return vehicle_between(place(x), place(x + direction * 1.0));
+  const auto position = [&](double at) { return on_road(at, vehicle_y(direction, pass, at)); };
+  return vehicle_between(position(x), position(x + direction * 1.0));
 }
 
 /// recorded_from_true of a pass.
@@ -107,13 +106,13 @@ double drive_length(const Street& street, const StreetScanOptions& options) {
 std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOptions& options,
                                         int pass, std::size_t count,
                                         const RigidTransform& vehicle_from_sensor) {
-  const double way = drive_length(street, options);
-  const double start_s = pass * (way / options.speed_m_per_s + kTurnRound_s);
+  const double way_m = drive_length(street, options);
+  const double start_s = pass * (way_m / options.speed_m_per_s + kTurnRound_s);
   const RigidTransform recorded_from_true = pass_error(street, options, pass);
   std::vector<RecordedPose> poses;
   poses.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double travelled = way * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    const double travelled = way_m * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
     const double time_s = start_s + travelled / options.speed_m_per_s;
     const RigidTransform truth =
         world_from_vehicle(street, options.turns, pass, travelled) * vehicle_from_sensor;

@@ -29,7 +29,7 @@ class WriteStreet : public testing::Test {
 };
 
 // Oracle: round trip through the readers.
-TEST_F(WriteStreet, FilesHoldWhatWasMade) {
+TEST_F(WriteStreet, FilesRoundTrip) {
   const Executor executor(2);
   ProgressSink progress;
   const StreetOptions street_options = {.seed = 5, .length_m = 0};
@@ -71,7 +71,7 @@ TEST_F(WriteStreet, FilesHoldWhatWasMade) {
   EXPECT_EQ(read_trajectory(folder_ / "true_driving_trajectory.csv").size(), report.driving_scans);
 }
 
-TEST_F(WriteStreet, RefusesAFolderThatHoldsAStreet) {
+TEST_F(WriteStreet, RejectsAFolderWithAStreet) {
   const Executor executor(2);
   ProgressSink progress;
   StreetScanOptions options;
@@ -88,7 +88,7 @@ TEST_F(WriteStreet, RefusesAFolderThatHoldsAStreet) {
   EXPECT_EQ(std::filesystem::file_size(folder_ / "mesh.ply"), before);
 }
 
-TEST_F(WriteStreet, FolderThatCannotBeMadeIsAnError) {
+TEST_F(WriteStreet, RejectsAFolderThatCannotBeCreated) {
   std::ofstream(folder_) << "a file";
   const Executor executor(1);
   ProgressSink progress;

@@ -22,7 +22,7 @@ int sector_of(double azimuth) {
 
 /// Whether a ray is inside a box anywhere between t_min and t_max; `inverse` is inverse_of() its
 /// direction.
-bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
+bool hits_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   float from = ray.t_min;
   float to = ray.t_max;
   const auto axis = [&](float origin, float inverse_direction, float a, float b) {
@@ -78,26 +78,26 @@ Vec3f inverse_of(Vec3f direction) {
 void cast_pieces(const CityScene& scene, Vec3f sensor, Nearest& nearest, Batch& batch,
                  const Executor& executor) {
   std::vector<std::pair<float, std::size_t>> order;
-  for (std::size_t p = 0; p < scene.pieces.size(); ++p) {
-    const CityPiece& piece = *scene.pieces[p];
-    const Vec3f inside = min(max(sensor, piece.low), piece.high);
+  for (std::size_t p = 0; p < scene.sections.size(); ++p) {
+    const CitySection& section = *scene.sections[p];
+    const Vec3f inside = min(max(sensor, section.low), section.high);
     order.emplace_back(length(inside - sensor), p);
   }
   std::ranges::sort(order);
   std::vector<std::uint32_t> reaching(nearest.rays.size());  // rays that reach the next section
   std::iota(reaching.begin(), reaching.end(), 0U);
   for (const auto& [distance, p] : order) {
-    const CityPiece& piece = *scene.pieces[p];
+    const CitySection& section = *scene.sections[p];
     batch.clear();
     const float nearer = distance - static_cast<float>(kFiringOrigin_m);
     std::erase_if(reaching, [&](std::uint32_t i) { return nearest.rays[i].t_max < nearer; });
     for (const std::uint32_t i : reaching) {
       const Ray& ray = nearest.rays[i];
-      if (!meets_box(ray, nearest.inverses[i], piece.low, piece.high)) continue;
+      if (!hits_box(ray, nearest.inverses[i], section.low, section.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
-    if (!batch.rays.empty()) batch.cast(*piece.tracer, p, nearest, executor);
+    if (!batch.rays.empty()) batch.cast(*section.tracer, p, nearest, executor);
   }
 }
 
@@ -114,8 +114,7 @@ void cast_movers(const CityScene& scene, const FiringSectors& sectors,
     const PlacedMover& mover = scene.movers[m];
     const MoverModel& model = scene.models->model(mover.model);
     const RigidTransform mover_from_world = mover.world_from_mover.inverse();
-    if (meets_vehicle(model.low, model.high, mover_from_world * world_from_sensor.translation))
-      continue;
+    if (collides(model.low, model.high, mover_from_world * world_from_sensor.translation)) continue;
     const Vec3d middle = 0.5 * vec_cast<double>(model.low + model.high);
     const double radius = 0.5 * length(vec_cast<double>(model.high - model.low));
     const Vec3d center = sensor_from_world * (mover.world_from_mover * middle);
@@ -123,11 +122,12 @@ void cast_movers(const CityScene& scene, const FiringSectors& sectors,
     batch.clear();
     for (const std::uint32_t i : sectors.towards(center, radius)) {
       const Ray ray = ray_in(mover_from_world, nearest.rays[i]);
-      if (!meets_box(ray, inverse_of(ray.direction), model.low, model.high)) continue;
+      if (!hits_box(ray, inverse_of(ray.direction), model.low, model.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
-    if (!batch.rays.empty()) batch.cast(*model.tracer, scene.pieces.size() + m, nearest, executor);
+    if (!batch.rays.empty())
+      batch.cast(*model.tracer, scene.sections.size() + m, nearest, executor);
   }
 }
 
@@ -145,11 +145,11 @@ StreetEcho echo_of(const CityScene& scene, const Nearest& nearest, std::size_t i
     echo.intensity =
         street_intensity(built.mesh.triangle(hit.primitive), echo.reflectance, ray, hit.t, random);
   };
-  if (owner < scene.pieces.size()) {
-    const BuiltMesh& built = scene.pieces[owner]->built;
+  if (owner < scene.sections.size()) {
+    const BuiltMesh& built = scene.sections[owner]->built;
     fill(built, nearest.rays[i], built.instances[hit.primitive]);
   } else {
-    const PlacedMover& mover = scene.movers[owner - scene.pieces.size()];
+    const PlacedMover& mover = scene.movers[owner - scene.sections.size()];
     fill(scene.models->model(mover.model).built,
          ray_in(mover.world_from_mover.inverse(), nearest.rays[i]), mover.instance);
   }

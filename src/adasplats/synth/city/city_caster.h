@@ -8,9 +8,9 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/synth/city/city_pieces.h"
+#include "adasplats/synth/city/city_sections.h"
 #include "adasplats/synth/city/city_traffic.h"
-#include "adasplats/synth/street_caster.h"
+#include "adasplats/synth/street_scan.h"
 
 // Private to synth/city/: casts the rays of one revolution against nearby sections and movers.
 
@@ -30,7 +30,7 @@ class FiringSectors {
 
 /// Sections and movers for one revolution.
 struct CityScene {
-  std::vector<const CityPiece*> pieces;
+  std::vector<const CitySection*> sections;
   const MoverModels* models = nullptr;
   std::vector<PlacedMover> movers;
 };

@@ -36,7 +36,7 @@ struct Leg {
   }
   bool along_east() const { return heading % 2 == 0; }
   bool forth() const { return heading < 2; }
-  CityPieceId street() const {
+  CitySectionId street() const {
     const Node end = to();
     if (along_east()) return {CityAxis::east, from.j, std::min(from.i, end.i)};
     return {CityAxis::north, from.i, std::min(from.j, end.j)};
@@ -48,19 +48,19 @@ std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
   const int side = std::max(
       2, static_cast<int>(std::ceil(std::sqrt(kBlocksOfDrive * static_cast<double>(legs)))));
   Random random = random_of(grid, CityPurpose::drive, 0, 0);
-  std::map<CityPieceId, int> passes;
-  std::vector<Leg> way = {{{side / 2, side / 2}, 0}};
-  while (way.size() < legs) {
-    ++passes[way.back().street()];
-    const Node here = way.back().to();
+  std::map<CitySectionId, int> passes;
+  std::vector<Leg> walk = {{{side / 2, side / 2}, 0}};
+  while (walk.size() < legs) {
+    ++passes[walk.back().street()];
+    const Node here = walk.back().to();
     std::array<double, 4> weights{};
     double all = 0;
     for (int turn : {0, 1, 3}) {
-      const Leg next = {here, (way.back().heading + turn) % 4};
+      const Leg next = {here, (walk.back().heading + turn) % 4};
       const Node end = next.to();
       if (end.i < 0 || end.j < 0 || end.i > side || end.j > side) continue;
-      const auto known = passes.find(next.street());
-      const double times = known == passes.end() ? 0 : known->second;
+      const auto found = passes.find(next.street());
+      const double times = found == passes.end() ? 0 : found->second;
       all += weights[next.heading] = (turn == 0 ? kStraightOn : 1) / (1 + 3 * times);
     }
     double draw = random.uniform() * all;
@@ -71,9 +71,9 @@ std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
       draw -= weights[k];
       if (draw < 0) break;
     }
-    way.push_back({here, heading});
+    walk.push_back({here, heading});
   }
-  return way;
+  return walk;
 }
 
 /// The driven line of a leg: u or v of the center of its rightmost lane.
@@ -155,8 +155,8 @@ CityDrive::CityDrive(const CityGrid& grid, double length_m)
       const double left = direction * (line.end() - s);
       double across = mix(before, line.across(), past);
       if (left < kChange_m) across = mix(line.across(), after, -left);
-      const Vec3d place = line.at(s, across);
-      append(grid.land(), place.x, place.y);
+      const Vec3d position = line.at(s, across);
+      append(grid.land(), position.x, position.y);
     }
     if (joint.turns) {
       const int steps =
@@ -183,7 +183,7 @@ void CityDrive::append(const CityLand& land, double u, double v) {
   samples_.push_back(sample);
 }
 
-Vec3d CityDrive::grid_place(double travelled_m) const {
+Vec3d CityDrive::grid_position(double travelled_m) const {
   const auto next = std::ranges::upper_bound(samples_, travelled_m, {}, &Sample::travelled_m);
   if (next == samples_.begin()) return {samples_.front().u, samples_.front().v, 0};
   if (next == samples_.end()) return {samples_.back().u, samples_.back().v, 0};
@@ -192,18 +192,18 @@ Vec3d CityDrive::grid_place(double travelled_m) const {
   return {one.u + share * (next->u - one.u), one.v + share * (next->v - one.v), 0};
 }
 
-Vec3d CityDrive::world_place(double travelled_m) const {
-  const Vec3d place = grid_place(travelled_m);
-  return land_.at(place.x, place.y);
+Vec3d CityDrive::world_position(double travelled_m) const {
+  const Vec3d position = grid_position(travelled_m);
+  return land_.at(position.x, position.y);
 }
 
 TimedPose CityDrive::at(double travelled_m) const {
   const double here = std::clamp(travelled_m, 0.0, length_m_);
-  const Vec3d ahead = world_place(here + 0.5) - world_place(here - 0.5);
+  const Vec3d ahead = world_position(here + 0.5) - world_position(here - 0.5);
   const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
   return {
       here / kCityDriveSpeed_m_per_s,
-      {rotation_from_yaw_pitch_roll(std::atan2(ahead.y, ahead.x), pitch, 0), world_place(here)}};
+      {rotation_from_yaw_pitch_roll(std::atan2(ahead.y, ahead.x), pitch, 0), world_position(here)}};
 }
 
 }  // namespace adasplats

@@ -25,7 +25,7 @@ class CityDrive {
   /// Pose and time after a driven distance; clamped to the ends of the drive.
   TimedPose at(double travelled_m) const;
   /// The same position on the grid's plane: x is u, y is v.
-  Vec3d grid_place(double travelled_m) const;
+  Vec3d grid_position(double travelled_m) const;
 
  private:
   struct Sample {
@@ -33,7 +33,7 @@ class CityDrive {
     double travelled_m = 0;
   };
 
-  Vec3d world_place(double travelled_m) const;
+  Vec3d world_position(double travelled_m) const;
   void append(const CityLand& land, double u, double v);
 
   CityLand land_;

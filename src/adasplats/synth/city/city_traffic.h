@@ -62,19 +62,19 @@ struct Walker {
 };
 
 /// The walkers of a section.
-std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, const WorldPlan& plan,
-                                 const MoverModels& models);
+std::vector<Walker> draw_walkers(const CityGrid& grid, const CitySectionId& id,
+                                 const WorldPlan& plan, const MoverModels& models);
 PlacedMover place_walker(const Walker& walker, const WorldPlan& plan, double time_s);
 
 /// The vehicles at a given time on all streets within `reach_m` of a grid position.
 std::vector<PlacedMover> vehicles_around(const CityGrid& grid, const MoverModels& models,
-                                         Vec3d grid_place, double reach_m, double time_s);
+                                         Vec3d grid_position, double reach_m, double time_s);
 
 /// Instance ids below this one belong to static objects, the others to movers. Ids are unique
 /// within about a kilometre, not in the entire city.
 inline constexpr std::uint16_t kFirstMover = 38401;
 /// Group of instance ids of a section; sections that share a group are far apart.
-std::uint16_t piece_group(const CityPieceId& id);
-inline constexpr std::uint16_t kPieceGroups = 128;
+std::uint16_t section_group(const CitySectionId& id);
+inline constexpr std::uint16_t kSectionGroups = 128;
 
 }  // namespace adasplats

@@ -49,7 +49,7 @@ SynthCityOptions thin_city(double length_m, double spacing_m) {
 
 struct Recorded {
   std::map<std::size_t, Scan> scans;
-  std::map<std::string, std::size_t> pieces;  ///< triangles by name
+  std::map<std::string, std::size_t> sections;  ///< triangles by name
   SynthCityReport report;
 };
 
@@ -62,10 +62,11 @@ Recorded record(const SynthCityOptions& options, int threads) {
             const std::lock_guard lock(mutex);
             EXPECT_TRUE(recorded.scans.emplace(index, scan).second) << index;
           },
-      .piece =
-          [&](const std::string& name, const BuiltMesh& piece) {
+      .section =
+          [&](const std::string& name, const BuiltMesh& section) {
             const std::lock_guard lock(mutex);
-            EXPECT_TRUE(recorded.pieces.emplace(name, piece.mesh.triangles.size()).second) << name;
+            EXPECT_TRUE(recorded.sections.emplace(name, section.mesh.triangles.size()).second)
+                << name;
           },
       .scans_done = {}};
   const Executor executor(threads);
@@ -80,7 +81,7 @@ TEST(ScanSynthCity, DoesNotDependOnThreads) {
   const Recorded three = record(thin_city(60, 15), 3);
   ASSERT_EQ(one.scans.size(), 5U);
   ASSERT_EQ(three.scans.size(), 5U);
-  EXPECT_EQ(one.pieces, three.pieces);
+  EXPECT_EQ(one.sections, three.sections);
   for (const auto& [index, scan] : one.scans) {
     const Scan& other = three.scans.at(index);
     EXPECT_EQ(scan.positions, other.positions);
@@ -92,7 +93,7 @@ TEST(ScanSynthCity, DoesNotDependOnThreads) {
 }
 
 // Oracle: the density of streets does not depend on the length of the drive.
-TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
+TEST(ScanSynthCity, SectionsInMemoryDoNotGrowWithTheDrive) {
   const SynthCityReport few = record(thin_city(300, 100), 2).report;
   const SynthCityReport many = record(thin_city(1500, 100), 2).report;
   EXPECT_GT(many.pieces, 2 * few.pieces);
@@ -100,7 +101,7 @@ TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
   EXPECT_EQ(many.scans, 16U);
 }
 
-TEST(ScanSynthCity, GivesAsManyPointsAsWished) {
+TEST(ScanSynthCity, MeetsTheTargetNumberOfPoints) {
   SynthCityOptions options = thin_city(300, 1);
   options.spacing_m.reset();
   options.points = 200'000;
@@ -109,7 +110,7 @@ TEST(ScanSynthCity, GivesAsManyPointsAsWished) {
   EXPECT_GT(made.report.scans, 5U);
 }
 
-TEST(ScanSynthCity, SeesWhatMovesAndWhatStands) {
+TEST(ScanSynthCity, ScansHaveMovingAndStaticClasses) {
   const Recorded made = record(thin_city(800, 20), 2);
   std::set<std::uint16_t> classes;
   for (const auto& [index, scan] : made.scans)
@@ -119,7 +120,7 @@ TEST(ScanSynthCity, SeesWhatMovesAndWhatStands) {
 }
 
 // Oracle: brute force over all triangles of the sections and the movers at their poses.
-TEST(CastCity, FindsTheNearestOfAll) {
+TEST(CastCity, EqualsBruteForce) {
   const Executor executor(2);
   const CityGrid grid(9);
   const MoverModels models(grid, executor);
@@ -129,13 +130,13 @@ TEST(CastCity, FindsTheNearestOfAll) {
   sensor.max_range_m = 40;
   sensor.columns = 240;
   const std::vector<Firing> firings = firings_of(sensor);
-  CityPieces pieces;
+  CitySections sections;
   std::size_t on_movers = 0;
   for (const double travelled : {20.0, 120.0, 250.0}) {
     TimedPose pose = drive.at(travelled);
     pose.world_from_sensor.translation.z += 1.7;
     CityScene scene = {.models = &models};
-    scene.movers = vehicles_around(grid, models, drive.grid_place(travelled), 40, pose.time_s);
+    scene.movers = vehicles_around(grid, models, drive.grid_position(travelled), 40, pose.time_s);
     std::vector<Ray> rays = street_rays(sensor, firings, pose.world_from_sensor, executor);
     std::vector<float> expected(rays.size(), std::numeric_limits<float>::infinity());
     const auto look = [&](const BuiltMesh& built, const RigidTransform& world_from_mesh) {
@@ -145,15 +146,16 @@ TEST(CastCity, FindsTheNearestOfAll) {
       make_cpu_tracer(SceneView{{}, &mesh}, executor)->nearest(rays, hits, executor);
       for (std::size_t i = 0; i < rays.size(); ++i) expected[i] = std::min(expected[i], hits[i].t);
     };
-    for (const CityPieceId& id : pieces_around(grid, drive.grid_place(travelled), 40)) {
-      if (!pieces.holds(id)) pieces.add(std::make_unique<CityPiece>(grid, id, models), executor);
-      scene.pieces.push_back(&pieces.piece(id));
-      look(pieces.piece(id).built, {});
+    for (const CitySectionId& id : sections_around(grid, drive.grid_position(travelled), 40)) {
+      if (!sections.holds(id))
+        sections.add(std::make_unique<CitySection>(grid, id, models), executor);
+      scene.sections.push_back(&sections.section(id));
+      look(sections.section(id).built, {});
     }
     const Vec3d here = pose.world_from_sensor.translation;
     for (const PlacedMover& mover : scene.movers) {
       const MoverModel& model = models.model(mover.model);
-      if (!meets_vehicle(model.low, model.high, mover.world_from_mover.inverse() * here))
+      if (!collides(model.low, model.high, mover.world_from_mover.inverse() * here))
         look(model.built, mover.world_from_mover);
     }
     const auto echoes =
@@ -190,7 +192,7 @@ class WriteSynthCity : public testing::Test {
 };
 
 // Oracle: round trip through the readers.
-TEST_F(WriteSynthCity, FilesHoldWhatWasMade) {
+TEST_F(WriteSynthCity, FilesRoundTrip) {
   const Executor executor(2);
   const SynthCityReport report = write_synth_city(folder_, thin_city(60, 20), executor, progress_);
   EXPECT_EQ(report.scans, 4U);
@@ -207,7 +209,7 @@ TEST_F(WriteSynthCity, FilesHoldWhatWasMade) {
   EXPECT_EQ(faces, report.mesh_triangles);
 }
 
-TEST_F(WriteSynthCity, LeavesTruthOutWhereNotWanted) {
+TEST_F(WriteSynthCity, OmitsTruthOnRequest) {
   const Executor executor(2);
   SynthCityOptions options = thin_city(50, 50);
   options.truth = false;
@@ -215,7 +217,7 @@ TEST_F(WriteSynthCity, LeavesTruthOutWhereNotWanted) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "truth"));
 }
 
-TEST_F(WriteSynthCity, RefusesAFolderThatHoldsOne) {
+TEST_F(WriteSynthCity, RejectsAFolderWithACity) {
   const Executor executor(2);
   SynthCityOptions options = thin_city(50, 50);
   options.truth = false;

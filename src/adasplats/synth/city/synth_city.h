@@ -31,26 +31,27 @@ struct SynthCityOptions {
 template <class Visit>
 void visit_settings(SynthCityOptions& city, Visit&& visit) {
   visit(Setting{.name = "length",
-                .help = "Of the drive, m, or with a unit: 10km",
+                .help = "Drive length, m, or with a unit: 10km",
                 .value = "M",
                 .key = "length_m",
                 .min = 50,
                 .max = 1e6},
         city.length_m);
   visit(Setting{.name = "points",
-                .help = "Of all scans together: chooses their spacing",
+                .help = "Target number of points of all scans; sets their spacing",
                 .value = "N",
                 .min = 1,
                 .max = 1e12},
         city.points);
   visit(Setting{.name = "spacing",
-                .help = "Between scans, m (1 where --points is not given)",
+                .help = "Distance between scans, m (default without --points: 1)",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0.001,
                 .max = 1000},
         city.spacing_m);
-  visit(Setting{.name = "truth", .help = "Write the exact surface of what stands, piece by piece"},
+  visit(Setting{.name = "truth",
+                .help = "Write the exact static surface, one mesh per street section"},
         city.truth);
 }
 
@@ -70,7 +71,7 @@ struct SynthCitySink {
   std::function<void(std::size_t index, const Scan& scan)> scan;
   /// Static mesh of a section, with its name ("x0_y2_east"): called once, when the section first
   /// comes within the sensor's range.
-  std::function<void(const std::string& name, const BuiltMesh& piece)> piece;
+  std::function<void(const std::string& name, const BuiltMesh& section)> section;
   /// All scans below this number have been delivered; called from the calling thread.
   std::function<void(std::size_t scans)> scans_done;
 };

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/synth/street_caster.h"
-#include "adasplats/synth/vehicle_path.h"
+#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/synth/street_scan.h"
+#include "adasplats/synth/world/world.h"
 #include "adasplats/synth/world/world_parts.h"
-#include "adasplats/synth/world/world_scan.h"
 
 namespace adasplats {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kLostAnywhere = 0.01;  // share of all returns
 constexpr double kLostOnWindows = 0.5;  // share of returns from panes
 constexpr double kLostOnCarGlass = 0.85;
 constexpr double kOutliers = 0.0002;  // share of returns at random ranges: dust, double echoes
-constexpr double kFaintest =
+constexpr double kMinStrength =
     0.24;  // minimum intensity / (range / 100 m)^2 of returns that are never lost
 
 bool is_about(float reflectance, float pane) { return std::fabs(reflectance - pane) < 1e-6F; }
@@ -50,7 +50,7 @@ bool is_lost(const StreetEcho& echo, Random& random) {
   const double far = static_cast<double>(echo.range_m) / 100;
   // Specular paint still returns from short range.
   const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);
-  return strength < kFaintest * random.uniform();
+  return strength < kMinStrength * random.uniform();
 }
 
 }  // namespace
@@ -101,16 +101,16 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                 const Executor& executor, ProgressSink& progress) {
   check_settings(options);
   const double way = static_cast<double>(options.scans - 1) * options.spacing_m;
-  if (way > world.place.length_m - 10)
+  if (way > world.street.length_m - 10)
     throw Error(ErrorKind::usage,
                 "a drive of " + std::to_string(way) + " m does not fit on a road of " +
-                    std::to_string(world.place.length_m) + " m; `length` makes it longer");
+                    std::to_string(world.street.length_m) + " m; increase `length`");
   const LidarModel sensor = load_lidar_model(options.sensor);
-  const StreetCaster caster(world.place, sensor.range_noise_m, executor);
+  const StreetCaster caster(world.street, sensor.range_noise_m, executor);
   const RigidTransform vehicle_from_sensor = draw_world_mount(options.seed);
   const double end_s = world.drive.back().time_s;
-  const double m_per_s = world.place.length_m / end_s;
-  const double first_m = 0.5 * (world.place.length_m - way);
+  const double m_per_s = world.street.length_m / end_s;
+  const double first_m = 0.5 * (world.street.length_m - way);
   std::vector<Firing> firings = firings_of(sensor);
   progress.begin_step("scans", options.scans);
   for (std::size_t k = 0; k < options.scans; ++k) {
@@ -123,6 +123,28 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
     progress.advance(k + 1);
   }
   progress.end_step();
+}
+
+WorldReport write_world(const std::filesystem::path& folder, const WorldOptions& world_options,
+                        const WorldScanOptions& scan_options, const Executor& executor,
+                        ProgressSink& progress) {
+  const SynthWorld world = make_world(world_options);
+  WorldReport report;
+  report.mesh_triangles = world.street.fixed.triangles.size();
+  report.moving_objects = world.street.moving.size();
+  // First, because it rejects a folder with another sequence.
+  SemanticKittiWriter sequence(folder / "sequences" / "00");
+  scan_world(
+      world, scan_options,
+      [&](std::size_t index, const Scan& scan) {
+        sequence.write_scan(index, scan);
+        report.points += scan.size();
+        ++report.scans;
+      },
+      executor, progress);
+  sequence.finish();
+  save_street_mesh(folder / "mesh.ply", world.street);
+  return report;
 }
 
 }  // namespace adasplats

@@ -47,9 +47,9 @@ struct WorldScanOptions {
 
 template <class Visit>
 void visit_settings(WorldOptions& world, Visit&& visit) {
-  visit(Setting{.name = "kind", .help = "Of place"}, world.kind);
+  visit(Setting{.name = "kind", .help = "Kind of world"}, world.kind);
   visit(Setting{.name = "length",
-                .help = "Of the road, m",
+                .help = "Road length, m",
                 .value = "M",
                 .key = "length_m",
                 .min = 80,
@@ -59,10 +59,10 @@ void visit_settings(WorldOptions& world, Visit&& visit) {
 
 template <class Visit>
 void visit_settings(WorldScanOptions& scan, Visit&& visit) {
-  visit(Setting{.name = "scans", .help = "How many", .value = "N", .min = 1, .max = 10000},
+  visit(Setting{.name = "scans", .help = "Number of scans", .value = "N", .min = 1, .max = 10000},
         scan.scans);
   visit(Setting{.name = "spacing",
-                .help = "Between scans, m",
+                .help = "Distance between scans, m",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0,
@@ -73,7 +73,7 @@ void visit_settings(WorldScanOptions& scan, Visit&& visit) {
 /// A scene for learning semantic classes: exact geometry with SemanticKITTI's classes, and another
 /// layout for every seed. Metres, z up; the road is curved and starts at the origin.
 struct SynthWorld {
-  Street place;      ///< with a curved road; movers exist from time 0 on
+  Street street;     ///< with a curved road; movers exist from time 0 on
   Trajectory drive;  ///< of the vehicle in the right lane, origin on the road, from end to end
 };
 

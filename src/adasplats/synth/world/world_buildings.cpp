@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/synth/facade.h"
+#include "adasplats/synth/street_parts.h"
 #include "adasplats/synth/world/world_parts.h"
 
 namespace adasplats {
@@ -15,7 +15,7 @@ constexpr double kStorey = 2.75;
 // Distance behind the sidewalk at which a row along a joining street begins, and its minimum
 // length.
 constexpr double kRowBehindFacades_m = 11.5, kRowBehindHouses_m = 22;
-constexpr double kShortestRow_m = 5;
+constexpr double kMinRow_m = 5;
 
 struct WorldHouse {
   double width = 9, depth = 8;
@@ -133,22 +133,23 @@ void add_house_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot
   WorldHouse house = draw_house(widest, random);
   if (gap == 0 && random.uniform() < 0.7) house.width = widest;
   const double middle = left + random.uniform(0.5, 1) * (widest - house.width) + 0.5 * house.width;
-  builder.stand_at(plan.stand(middle, plot.side, front, random.normal() * 0.01));
+  builder.set_frame(plan.pose_at(middle, plot.side, front, random.normal() * 0.01));
   add_house(builder, house, random);
   if (plot.driveway && random.uniform() < 0.6) {
     const double back = front + random.uniform(1, 7);
-    builder.stand_at(plan.stand(plot.s0 + 1.9, plot.side, back));
+    builder.set_frame(plan.pose_at(plot.s0 + 1.9, plot.side, back));
     const double z = random.uniform(2.3, 2.9);
     builder.box({-1.6, 0, -kFooting}, {1.6, 5.5, z}, {label::kBuilding, house.wall * 0.9F});
     builder.box({-1.7, -0.2, z}, {1.7, 5.7, z + 0.15}, {label::kBuilding, house.tiles});
   }
   if (random.uniform() < 0.3) {  // a shed at the back
-    builder.stand_at(plan.stand(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
-                                front + house.depth + random.uniform(3, 9), random.uniform(-1, 1)));
+    builder.set_frame(plan.pose_at(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
+                                   front + house.depth + random.uniform(3, 9),
+                                   random.uniform(-1, 1)));
     builder.box({-1.4, -1.1, -1}, {1.4, 1.1, 2.1},
                 {random.uniform() < 0.6 ? label::kBuilding : label::kOtherStructure, 0.35F});
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
@@ -166,10 +167,10 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
     const Vec3d chord = {other.x - one.x, other.y - one.y, 0};
     const Vec3d along = normalized(chord);
     const Vec3d out = static_cast<double>(plot.side) * Vec3d{along.y, -along.x, 0};
-    builder.stand_at({Mat3d{}, {one.x, one.y, std::min(one.z, other.z)}});
+    builder.set_frame({Mat3d{}, {one.x, one.y, std::min(one.z, other.z)}});
     add_facade_row(builder, {{0, 0, 0}, along, out}, length(chord), 0.1, random);
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 /// A barn, workshop or shop: large, with few openings.
@@ -183,14 +184,14 @@ void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot
   hall.wall = static_cast<float>(random.uniform(0.3, 0.75));
   hall.tiles = static_cast<float>(random.uniform(0.2, 0.6));
   const double front = plan.property_line(plot.side) + random.uniform(5, 18);
-  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.05 * random.normal()));
+  builder.set_frame(plan.pose_at(plot.center(), plot.side, front, 0.05 * random.normal()));
   const double half = 0.5 * hall.width;
   builder.box({-half, 0, -kFooting}, {half, hall.depth, hall.eaves()},
               {label::kBuilding, hall.wall});
   add_house_roof(builder, hall);
   for (double x = 1 - half; x < half - 4; x += random.uniform(5, 9))  // gates
     builder.box({x, -0.05, -0.2}, {x + 3, 0.05, 2.6}, {label::kBuilding, 0.25F});
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 /// The houses of the next street, visible between those of this one.
@@ -200,9 +201,9 @@ void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
   const double front = plan.property_line(plot.side) + plot.setback + random.uniform(24, 32);
   const WorldHouse house = draw_house(plot.width() - 2, random);
   if (front + house.depth > plan.reach(plot.side)) return;
-  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.1 * random.normal()));
+  builder.set_frame(plan.pose_at(plot.center(), plot.side, front, 0.1 * random.normal()));
   add_house(builder, house, random);
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 /// Houses or a row of facades along one side of a street that joins at s. `towards`: +1 if the
@@ -213,13 +214,13 @@ void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPl
       random_of(plan, WorldPurpose::behind, 2 * plot.number + (towards > 0 ? 1 : 0) + 100'000);
   const double back = plan.property_line(plot.side) + from;
   const double reach = plan.reach(plot.side);
-  if (reach - back < kShortestRow_m) return;
+  if (reach - back < kMinRow_m) return;
   if (plot.use == Frontage::facades) {
     const Vec3d one = plan.ground_at(s, plot.side * back);
     const Vec3d along =
         normalized(plan.route.at(s, plot.side * (back + 1)) - plan.route.at(s, plot.side * back));
     const double turn = static_cast<double>(plot.side * towards);
-    builder.stand_at({Mat3d{}, one});
+    builder.set_frame({Mat3d{}, one});
     add_facade_row(builder, {{0, 0, 0}, along, turn * Vec3d{along.y, -along.x, 0}}, reach - back,
                    0.1, random);
   } else if (plot.use == Frontage::houses) {
@@ -227,11 +228,11 @@ void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPl
     for (double d = back + 6; d < reach - 6; d += random.uniform(13, 20)) {
       // The front faces the street; y of its frame points away from it.
       const double yaw = (plot.side > 0) == (towards > 0) ? 0.5 : -0.5;
-      builder.stand_at(plan.stand(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
+      builder.set_frame(plan.pose_at(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
       add_house(builder, draw_house(11, random), random);
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void add_side_streets(const WorldPlan& plan, MeshBuilder& builder) {

@@ -86,12 +86,12 @@ class Furnisher {
 
   template <class Add>
   void along(double in_100_m, double room, double from_axis, Add add) {
-    for (const double s : places_along(plan_, in_100_m, room, random_)) {
+    for (const double s : positions_along(plan_, in_100_m, room, random_)) {
       if (plan_.is_open(side_, s - 0.4, s + 0.4)) continue;
-      builder_.stand_at(plan_.stand(s, side_, from_axis));
+      builder_.set_frame(plan_.pose_at(s, side_, from_axis));
       add(builder_, random_);
     }
-    builder_.stand_in_world();
+    builder_.reset_frame();
   }
   Random& random() { return random_; }
 
@@ -146,7 +146,7 @@ void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
   for (const Patch& patch : plan.patches) {
     if (patch.ground != Ground::road || !patch.crosses_sidewalk) continue;
     for (const double s : {patch.s0 - 1.2, patch.s1 + 1.2}) {
-      builder.stand_at(plan.stand(s, patch.side, patch.d0 + 0.5));
+      builder.set_frame(plan.pose_at(s, patch.side, patch.d0 + 0.5));
       const double tall = over_road ? 5.8 : 3.4;
       builder.tube(kInGround, {0, 0, tall}, 0.07, 0.06, 10, steel);
       builder.box({0.1, -0.15, 2.3}, {0.32, 0.15, 3.2}, kHead);
@@ -155,7 +155,7 @@ void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
       builder.box({0.05, -3, tall - 0.9}, {0.27, -2.7, tall}, kHead);
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
@@ -167,11 +167,11 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
     });
   }
   Random random = random_of(plan, WorldPurpose::signs, 0);
-  for (const double s : places_along(plan, plan.style.gantries, 40, random)) {
+  for (const double s : positions_along(plan, plan.style.gantries, 40, random)) {
     const Material steel = {label::kPole, 0.4F};
     for (const int side : {1, -1}) {
       const double reach = plan.road_end(side) + 1.2;
-      builder.stand_at(plan.stand(s, side, reach));
+      builder.set_frame(plan.pose_at(s, side, reach));
       builder.box({-0.2, -0.2, -0.5}, {0.2, 0.2, 6.5}, steel);
       builder.beam({0, 0, 6.2}, {0, -reach, 6.2}, 0.2, 0.3, steel);
       for (int lane = 0; lane < plan.style.lanes; ++lane) {
@@ -180,7 +180,7 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
       }
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace

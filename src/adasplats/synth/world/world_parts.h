@@ -3,11 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/synth/mesh_builder.h"
 #include "adasplats/synth/street.h"
 #include "adasplats/synth/street_parts.h"
+#include "adasplats/synth/street_scan.h"
 #include "adasplats/synth/world/world_plan.h"
 
 // Private to synth/: builders that turn the parts of a world plan into triangles, and shapes that
@@ -48,7 +53,7 @@ void add_world_plants(const WorldPlan& plan, MeshBuilder& builder);
 /// Lamps, signs, power and tram poles, bollards, boxes, gantries.
 void add_world_furniture(const WorldPlan& plan, MeshBuilder& builder);
 /// Parked vehicles, bicycles and standing people; ids start at 1. Returns the first unused one.
-std::uint16_t add_world_standing(const WorldPlan& plan, MeshBuilder& builder);
+std::uint16_t add_world_objects(const WorldPlan& plan, MeshBuilder& builder);
 /// Movers; instance ids start at `first_instance`.
 std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_t first_instance);
 
@@ -56,8 +61,8 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
 inline constexpr float kDarkPane = 0.09F, kCarPane = 0.1F;
 
 /// Draws the positions of objects along a side from their density, at least `room` apart.
-std::vector<double> places_along(const WorldPlan& plan, double in_100_m, double room,
-                                 Random& random);
+std::vector<double> positions_along(const WorldPlan& plan, double in_100_m, double room,
+                                    Random& random);
 
 /// A hedge of leaves around a core from `from` to `to`, both on the ground.
 void add_leafy_hedge(MeshBuilder& builder, Vec3d from, Vec3d to, double height, double thickness,
@@ -90,5 +95,14 @@ void add_motorcycle(MeshBuilder& builder, const Material& material);
 
 /// Reflectance of paint; most paint is specular.
 float draw_paint(Random& random);
+
+/// Pose of the sensor on its vehicle: at KITTI's height, with realistic errors of mounting and
+/// load.
+RigidTransform draw_world_mount(std::uint64_t seed);
+
+/// Scan number `number`: drops returns that the vehicle blocks and lost ones, and adds random
+/// outliers. Draws by (seed, number, ray).
+Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
+                   const TimedPose& pose, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace adasplats

@@ -161,7 +161,7 @@ class WorldPlan {
   double height(double s, double d) const;
   Vec3d ground_at(double s, double d) const;
   /// Pose of an object on either side: x along the road, y away from it, turned by `yaw`.
-  RigidTransform stand(double s, int side, double from_axis, double yaw = 0) const;
+  RigidTransform pose_at(double s, int side, double from_axis, double yaw = 0) const;
   /// Whether an island is in the parking lane between s0 and s1.
   bool has_island(int side, double s0, double s1) const;
   /// Whether a driveway or a street crosses the sidewalk between s0 and s1.

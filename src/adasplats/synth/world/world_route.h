@@ -21,14 +21,14 @@ struct RouteLimits {
 };
 
 /// World coordinates of a position (s, d), including the height of the land.
-using LandPlace = std::function<Vec3d(double s, double d)>;
+using LandPosition = std::function<Vec3d(double s, double d)>;
 
 /// The axis of a road: its heading is the sum of two waves, its height another wave; or it follows
 /// a given land.
 class WorldRoute {
  public:
   WorldRoute(double length_m, const RouteLimits& limits, Random random);
-  WorldRoute(double length_m, LandPlace place_of);
+  WorldRoute(double length_m, LandPosition land);
 
   double length_m() const { return length_m_; }
   double heading(double s) const;
@@ -44,7 +44,7 @@ class WorldRoute {
   };
 
   double length_m_;
-  LandPlace place_of_;  ///< the given land, else empty
+  LandPosition land_;  ///< the given land, else empty
   std::array<Wave, 2> heading_;
   std::array<Wave, 2> height_;
   std::vector<Vec3d> axis_;  ///< every kStep_m from -kBeyond_m on

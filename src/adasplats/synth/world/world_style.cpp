@@ -12,7 +12,7 @@ class Draw {
   double in(double low, double high) { return random_.uniform(low, high); }
   bool chance(double share) { return random_.uniform() < share; }
   /// Mostly small, sometimes near the maximum, like the variety of real streets.
-  double few(double most) { return most * in(0, 1) * in(0.2, 1); }
+  double few(double max) { return max * in(0, 1) * in(0.2, 1); }
 
  private:
   Random random_;

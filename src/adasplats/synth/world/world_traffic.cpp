@@ -35,19 +35,19 @@ struct TrafficLane {
   double in_100_m = 1;
 };
 
-Trajectory way_along(const WorldPlan& plan, const TrafficLane& lane, double from_s) {
-  Trajectory way;
+Trajectory path_along(const WorldPlan& plan, const TrafficLane& lane, double from_s) {
+  Trajectory path;
   const double yaw = (lane.side > 0) == lane.forth ? 0 : std::numbers::pi;
   for (int k = 0; k < 400; ++k) {
     const double time_s = kPoseEvery_s * k;
     const double s = from_s + (lane.forth ? 1 : -1) * lane.speed_m_per_s * time_s;
     if (s < 1 || s > plan.options.length_m - 1) {
-      if (!way.empty()) break;
+      if (!path.empty()) break;
       continue;
     }
-    way.push_back({time_s, plan.stand(s, lane.side, lane.from_axis, yaw)});
+    path.push_back({time_s, plan.pose_at(s, lane.side, lane.from_axis, yaw)});
   }
-  return way;
+  return path;
 }
 
 class TrafficMaker {
@@ -78,14 +78,14 @@ class TrafficMaker {
       own.forth = random.uniform() < 0.5;
       own.speed_m_per_s = random.uniform(0.8, 1.7);
     }
-    Trajectory way = way_along(plan_, own, from_s);
-    if (way.size() < 2) return;
+    Trajectory path = path_along(plan_, own, from_s);
+    if (path.size() < 2) return;
     MeshBuilder builder;
     add_vehicle(builder, lane.kind, RigidTransform{},
                 {moving_class(lane.kind), draw_paint(random), instance_}, random);
     BuiltMesh built = builder.take();
     moving_.push_back(
-        {std::move(built.mesh), std::move(built.reflectances), instance_++, std::move(way)});
+        {std::move(built.mesh), std::move(built.reflectances), instance_++, std::move(path)});
   }
 
   const WorldPlan& plan_;
@@ -112,20 +112,19 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
       const double speed = style.speed_m_per_s * (outer ? 0.8 : 1.0) * random.uniform(0.85, 1.15);
       const double many = kind == VehicleKind::car ? style.cars : std::max(0.4, heavy);
       // No oncoming traffic if the vehicle drives in the middle of a narrow road.
-      const double beside = plan.lane_center(lane);
-      if (side > 0 && beside + plan.driven_line() < kPassing_m) continue;
-      maker.fill({kind, side, beside, side < 0, speed, many / style.lanes});
+      const double line = plan.lane_center(lane);
+      if (side > 0 && line + plan.driven_line() < kPassing_m) continue;
+      maker.fill({kind, side, line, side < 0, speed, many / style.lanes});
     }
     const double edge = plan.road_end(side);
-    const double beside = plan.side(side).parking_width > 0 ? plan.lanes_end() - 0.4 : edge - 0.5;
+    const double line = plan.side(side).parking_width > 0 ? plan.lanes_end() - 0.4 : edge - 0.5;
     // Nothing overtakes the scanning vehicle in its lane.
-    constexpr double kElbowRoom_m = 1.4;
+    constexpr double kClearance_m = 1.4;
     const double driven = plan.driven_line();
     const auto fits = [&](double from_axis) {
-      return side > 0 || from_axis - driven > kElbowRoom_m;
+      return side > 0 || from_axis - driven > kClearance_m;
     };
-    maker.fill(
-        {VehicleKind::cyclist, side, beside, side < 0, 4.5, fits(beside) ? style.cyclists : 0});
+    maker.fill({VehicleKind::cyclist, side, line, side < 0, 4.5, fits(line) ? style.cyclists : 0});
     const double beside_line = plan.lanes_end() - 0.9;
     maker.fill({VehicleKind::motorcyclist, side, beside_line, side < 0, 8,
                 fits(beside_line) ? style.motorcyclists : 0});

@@ -117,8 +117,8 @@ void add_stretched_car(MeshBuilder& builder, const RigidTransform& world_from_ve
                     : body < 0.92 ? 2
                                   : 3;
   const bool estate = shape == 0 && random.uniform() < 0.45;
-  builder.stand_at(world_from_vehicle, {(estate ? 1.16 : 1.0) * random.uniform(0.92, 1.08),
-                                        random.uniform(0.94, 1.04), random.uniform(0.93, 1.03)});
+  builder.set_frame(world_from_vehicle, {(estate ? 1.16 : 1.0) * random.uniform(0.92, 1.08),
+                                         random.uniform(0.94, 1.04), random.uniform(0.93, 1.03)});
   add_car(builder, shape, paint, RigidTransform{});
 }
 
@@ -174,7 +174,7 @@ void add_motorcycle(MeshBuilder& builder, const Material& material) {
 void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& world_from_vehicle,
                  const Material& material, Random& random) {
   const double scale = random.uniform(0.93, 1.07);
-  builder.stand_at(world_from_vehicle, {scale, scale, scale});
+  builder.set_frame(world_from_vehicle, {scale, scale, scale});
   switch (kind) {
     case VehicleKind::car: add_stretched_car(builder, world_from_vehicle, material, random); break;
     case VehicleKind::truck: add_truck(builder, material, random); break;
@@ -190,7 +190,7 @@ void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& w
       break;
     case VehicleKind::walker: add_person(builder, random.uniform(1.15, 1.95), material); break;
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace adasplats

@@ -37,7 +37,7 @@ WorldScanOptions few_scans(std::size_t scans) {
 }
 
 // Oracle: round trip through the readers.
-TEST_F(WriteWorld, FilesHoldWhatWasMade) {
+TEST_F(WriteWorld, FilesRoundTrip) {
   const Executor executor(2);
   const WorldReport report = write_world(folder_, kSmall, few_scans(3), executor, progress_);
   EXPECT_EQ(report.scans, 3U);
@@ -55,7 +55,7 @@ TEST_F(WriteWorld, FilesHoldWhatWasMade) {
         2, 0.05);
 }
 
-TEST_F(WriteWorld, RefusesAFolderThatHoldsAWorld) {
+TEST_F(WriteWorld, RejectsAFolderWithAWorld) {
   const Executor executor(2);
   write_world(folder_, kSmall, few_scans(1), executor, progress_);
   try {
@@ -82,7 +82,7 @@ TEST_F(WriteWorld, ScansDoNotDependOnThreads) {
   EXPECT_LT(scans[0].size(), scans[0].rays);
 }
 
-TEST_F(WriteWorld, RefusesMoreScansThanTheRoadHasRoomFor) {
+TEST_F(WriteWorld, RejectsMoreScansThanFitOnTheRoad) {
   const Executor executor(1);
   const SynthWorld world = make_world(kSmall);
   for (const WorldScanOptions& options :

@@ -15,7 +15,8 @@
 #include "adasplats/synth/street.h"
 #include "adasplats/trace/tracer.h"
 
-// Private to synth/: casts the rays of one revolution against a street with its movers.
+// Private to synth/: the path of the scanning vehicle, and the rays of one revolution against a
+// street with its movers.
 
 namespace adasplats {
 
@@ -39,7 +40,7 @@ float street_intensity(const Triangle& triangle, float reflectance, const Ray& r
                        Random& random);
 
 /// Whether a mover with these bounds would collide with a vehicle; all in the mover's frame.
-bool meets_vehicle(Vec3f low, Vec3f high, Vec3d vehicle);
+bool collides(Vec3f low, Vec3f high, Vec3d vehicle);
 
 /// The movers that exist at a given time, in world coordinates. Those that would collide with a
 /// vehicle at position `vehicle` are omitted.
@@ -64,5 +65,26 @@ class StreetCaster {
   const Executor& executor_;
   std::unique_ptr<Tracer> fixed_;
 };
+
+/// A sensor's true and recorded pose.
+struct RecordedPose {
+  TimedPose truth;
+  TimedPose recorded;
+};
+
+/// Sensor mounts; vehicle frame: x forward, z up, origin on the road.
+RigidTransform vehicle_from_mapping_sensor();
+RigidTransform vehicle_from_driving_sensor();
+
+/// Length of one pass, m: the street without a margin at both ends, or including the turns at both
+/// ends.
+double drive_length(const Street& street, const StreetScanOptions& options);
+
+/// Poses of a sensor at `count` evenly spaced positions of one pass. Passes alternate in direction,
+/// each in its right lane. The recorded pose contains the pass's error: one rotation about the
+/// middle of the street and one offset.
+std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOptions& options,
+                                        int pass, std::size_t count,
+                                        const RigidTransform& vehicle_from_sensor);
 
 }  // namespace adasplats

@@ -19,34 +19,34 @@
 namespace adasplats {
 
 /// The static content of a section; depends only on the seed and its id.
-struct CityPiece {
-  CityPiece(const CityGrid& grid, const CityPieceId& id, const MoverModels& models);
+struct CitySection {
+  CitySection(const CityGrid& grid, const CitySectionId& id, const MoverModels& models);
 
-  CityPieceId id;
+  CitySectionId id;
   CityRect rect;
   WorldPlan plan;
   BuiltMesh built;
   std::vector<Walker> walkers;
   Vec3f low, high;                 ///< city_bounds()
-  std::unique_ptr<Tracer> tracer;  ///< views `built`; set by CityPieces::add()
+  std::unique_ptr<Tracer> tracer;  ///< views `built`; set by CitySections::add()
 };
 
 /// Ids of the sections that a ray of `range_m` from a grid position may hit, ascending.
-std::set<CityPieceId> pieces_around(const CityGrid& grid, Vec3d grid_place, double range_m);
+std::set<CitySectionId> sections_around(const CityGrid& grid, Vec3d grid_position, double range_m);
 
 /// The sections around the sensor, built and dropped as it moves.
-class CityPieces {
+class CitySections {
  public:
   /// Drops sections that are not in `wanted`.
-  void keep(const std::set<CityPieceId>& wanted);
+  void keep(const std::set<CitySectionId>& wanted);
   /// Adds a section and builds its tree. Must not run within a loop of the executor.
-  void add(std::unique_ptr<CityPiece> piece, const Executor& executor);
-  bool holds(const CityPieceId& id) const { return pieces_.count(id) > 0; }
-  const CityPiece& piece(const CityPieceId& id) const { return *pieces_.at(id); }
-  std::size_t size() const { return pieces_.size(); }
+  void add(std::unique_ptr<CitySection> section, const Executor& executor);
+  bool holds(const CitySectionId& id) const { return sections_.count(id) > 0; }
+  const CitySection& section(const CitySectionId& id) const { return *sections_.at(id); }
+  std::size_t size() const { return sections_.size(); }
 
  private:
-  std::map<CityPieceId, std::unique_ptr<CityPiece>> pieces_;
+  std::map<CitySectionId, std::unique_ptr<CitySection>> sections_;
 };
 
 }  // namespace adasplats

@@ -14,16 +14,17 @@ namespace adasplats {
 /// Positions of scans, batch by batch. With a fixed spacing they are known in advance. With a
 /// target number of points, each batch uses the spacing at which the remaining scans, with the mean
 /// number of points so far, end with the drive.
-class CityPace {
+class ScanSchedule {
  public:
   /// `rays`: rays of one scan. Errors: usage.
-  CityPace(const SynthCityOptions& options, std::size_t rays);
+  ScanSchedule(const SynthCityOptions& options, std::size_t rays);
 
-  /// Positions of the next scans along the drive, m: at most `max_scans`, over at most `way_m` (but
-  /// at least one scan); empty at the end of the drive. `points`: total of all scans so far.
-  std::vector<double> next(std::size_t most, double way_m, std::size_t points);
+  /// Positions of the next scans along the drive, m: at max_scans `max_scans`, over at max_scans
+  /// `way_m` (but at least one scan); empty at the end of the drive. `points`: total of all scans
+  /// so far.
+  std::vector<double> next(std::size_t max_scans, double way_m, std::size_t points);
   /// The positions that the next call of next() will probably return.
-  std::vector<double> foreseen(std::size_t most, double way_m) const;
+  std::vector<double> preview(std::size_t max_scans, double way_m) const;
   /// Number of positions returned so far.
   std::size_t scans() const { return scans_; }
 
