@@ -12,7 +12,7 @@
 set -euo pipefail
 
 [[ $# -ge 2 ]] || {
-  sed -n '6,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
+  sed -n '7,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
   exit 64
 }
 bin=$1

@@ -145,7 +145,7 @@ class Drives:
         if len(paths) == 3:  # stations
             inputs = paths[0]
             source = ["--at", ",".join(f"{v:.3f}" for v in paths[2]), "--sensor",
-                   "velodyne-hdl-64e-kitti"]
+                      "velodyne-hdl-64e-kitti"]
         else:
             inputs, source = [paths[0]], [*options, "--sensor", "hesai-pandar64"]
         commands = [["model", *inputs, *options, "-o", model], ["simulate", model, *source, "-o", scans],

@@ -259,7 +259,7 @@ class Kinds:
         subprocess.run([str(w) for w in words], check=True, stdout=subprocess.DEVNULL)
 
     def still(self, capture, calibration):
-        return self.read(capture, packets_of=calibration, trajectory=capture.with_name("poses.csv"),
+        return self.read(capture, packet_sensor=calibration, trajectory=capture.with_name("poses.csv"),
                          **AS_THEY_STAND)
 
     def captures(self):
