@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/street.h"
 #include "adasplats/synth/street_plan.h"
 #include "adasplats/synth/street_scan.h"
@@ -301,12 +301,7 @@ TEST(ScanStreet, RejectsOptionsOutOfRange) {
   const auto expect_usage = [&](auto change) {
     StreetScanOptions options = exact_scan(2'000);
     change(options);
-    try {
-      scan(street, options);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
-    }
+    expect_error(ErrorKind::usage, {}, [&] { scan(street, options); });
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expect_usage([](StreetScanOptions& o) { o.points = 999; });

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/street_plan.h"
 
 namespace adasplats {
@@ -124,12 +124,7 @@ TEST(Street, DependsOnlyOnItsOptions) {
 TEST(Street, RejectsLengthsOutOfRange) {
   for (const double length_m : {0.0, -5.0, 49.0, 2001.0, std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::quiet_NaN()}) {
-    try {
-      make_street({1, length_m});
-      ADD_FAILURE() << length_m;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { make_street({1, length_m}); });
   }
 }
 

@@ -62,7 +62,7 @@ bool is_read_and_runs(const std::string& content) {
   return true;
 }
 
-TEST(NetworkFuzz, TheSeedsAreValid) {
+TEST(NetworkFuzz, SeedsAreValid) {
   for (const NetworkText& seed : seeds()) EXPECT_TRUE(is_read_and_runs(seed.text()));
 }
 

@@ -12,11 +12,10 @@ namespace adasplats {
 namespace {
 
 constexpr int kSectors = 360;
-constexpr double kFullCircle = 2 * std::numbers::pi;
 constexpr double kFiringOrigin_m = 0.3;  // maximum distance of a beam's origin from the sensor's
 
 int sector_of(double azimuth) {
-  const double share = azimuth / kFullCircle + 0.5;
+  const double share = azimuth / kFullTurn + 0.5;
   return std::clamp(static_cast<int>(share * kSectors), 0, kSectors - 1);
 }
 
@@ -170,9 +169,9 @@ std::vector<std::uint32_t> FiringSectors::towards(Vec3d center, double radius) c
   const double half = level > reach ? std::asin(reach / level) : std::numbers::pi;
   std::vector<std::uint32_t> indices;
   const int first =
-      static_cast<int>(std::floor((azimuth - half) / kFullCircle * kSectors)) + kSectors / 2;
+      static_cast<int>(std::floor((azimuth - half) / kFullTurn * kSectors)) + kSectors / 2;
   const int last =
-      static_cast<int>(std::floor((azimuth + half) / kFullCircle * kSectors)) + kSectors / 2;
+      static_cast<int>(std::floor((azimuth + half) / kFullTurn * kSectors)) + kSectors / 2;
   for (int k = first; k <= std::min(last, first + kSectors - 1); ++k) {
     const auto& sector = sectors_[((k % kSectors) + kSectors) % kSectors];
     indices.insert(indices.end(), sector.begin(), sector.end());

@@ -226,28 +226,27 @@ WorldPlan CityGrid::plan(const CitySectionId& id, bool bare) const {
 namespace {
 
 constexpr std::uint64_t kLandStream = 0x6c616e64;
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kMaxSlopeOfBend = 0.045;  // per wave: crossings within 10 degrees of square
 constexpr double kMaxSlopeOfHill = 0.014;
 
 }  // namespace
 
 double CityLand::Wave::at(double t) const {
-  return amplitude * std::sin(kTurn * t / length_m + phase);
+  return amplitude * std::sin(kFullTurn * t / length_m + phase);
 }
 
 CityLand::CityLand(std::uint64_t seed) {
   Random random(seed, kLandStream, 0);
   const auto draw = [&](double shortest, double longest, double slope) {
-    Wave wave = {0, random.uniform(shortest, longest), random.uniform(0, kTurn)};
-    wave.amplitude = random.uniform(0.2, 1) * slope * wave.length_m / kTurn;
+    Wave wave = {0, random.uniform(shortest, longest), random.uniform(0, kFullTurn)};
+    wave.amplitude = random.uniform(0.2, 1) * slope * wave.length_m / kFullTurn;
     return wave;
   };
   for (Wave& wave : shift_east_) wave = draw(400, 1100, kMaxSlopeOfBend);
   for (Wave& wave : shift_north_) wave = draw(400, 1100, kMaxSlopeOfBend);
   for (Hill& hill : hills_) {
     hill.wave = draw(250, 1000, kMaxSlopeOfHill);
-    const double direction = random.uniform(0, kTurn);
+    const double direction = random.uniform(0, kFullTurn);
     hill.east = std::cos(direction);
     hill.north = std::sin(direction);
   }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/city/city_caster.h"
@@ -177,17 +177,10 @@ TEST(CastCity, EqualsBruteForce) {
   EXPECT_GT(on_movers, 0U);
 }
 
-/// A temporary folder of this process.
 class WriteSynthCity : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("adasplats write city " + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path() / "city";
   ProgressSink progress_;
 };
 
@@ -222,12 +215,8 @@ TEST_F(WriteSynthCity, RejectsAFolderWithACity) {
   SynthCityOptions options = thin_city(50, 50);
   options.truth = false;
   write_synth_city(folder_, options, executor, progress_);
-  try {
-    write_synth_city(folder_, options, executor, progress_);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::cannot_create) << error.what();
-  }
+  expect_error(ErrorKind::cannot_create, {},
+               [&] { write_synth_city(folder_, options, executor, progress_); });
 }
 
 }  // namespace

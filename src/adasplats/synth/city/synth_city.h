@@ -31,27 +31,26 @@ struct SynthCityOptions {
 template <class Visit>
 void visit_settings(SynthCityOptions& city, Visit&& visit) {
   visit(Setting{.name = "length",
-                .help = "Drive length, m, or with a unit: 10km",
+                .help = "Of the drive, m, or with a unit: 10km",
                 .value = "M",
                 .key = "length_m",
                 .min = 50,
                 .max = 1e6},
         city.length_m);
   visit(Setting{.name = "points",
-                .help = "Target number of points of all scans; sets their spacing",
+                .help = "Of all scans together: chooses their spacing",
                 .value = "N",
                 .min = 1,
                 .max = 1e12},
         city.points);
   visit(Setting{.name = "spacing",
-                .help = "Distance between scans, m (default without --points: 1)",
+                .help = "Between scans, m (1 where --points is not given)",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0.001,
                 .max = 1000},
         city.spacing_m);
-  visit(Setting{.name = "truth",
-                .help = "Write the exact static surface, one mesh per street section"},
+  visit(Setting{.name = "truth", .help = "Write the exact surface of what stands, piece by piece"},
         city.truth);
 }
 

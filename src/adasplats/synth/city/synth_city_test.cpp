@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/city/city_drive.h"
 #include "adasplats/synth/city/city_grid.h"
 #include "adasplats/synth/city/city_sections.h"
@@ -251,9 +251,9 @@ TEST(CityTraffic, VehiclesMoveForwards) {
 }
 
 TEST(ScanSchedule, SpacingGivesEveryPositionOnce) {
-  ScanSchedule pace({.length_m = 100, .spacing_m = 3}, 1000);
+  ScanSchedule schedule({.length_m = 100, .spacing_m = 3}, 1000);
   std::vector<double> all;
-  for (auto some = pace.next(7, 12, 0); !some.empty(); some = pace.next(7, 12, 0)) {
+  for (auto some = schedule.next(7, 12, 0); !some.empty(); some = pace.next(7, 12, 0)) {
     EXPECT_LE(some.back() - some.front(), 12);
     all.insert(all.end(), some.begin(), some.end());
   }
@@ -266,11 +266,11 @@ TEST(ScanSchedule, SpacingGivesEveryPositionOnce) {
 TEST(ScanSchedule, PointsAreMetToWithinOneScan) {
   constexpr std::size_t kRays = 1000;
   for (const double points_wanted : {700.0, 5'000.0, 300'000.0, 2e6}) {
-    ScanSchedule pace({.length_m = 400, .points = points_wanted}, kRays);
+    ScanSchedule schedule({.length_m = 400, .points = points_wanted}, kRays);
     double points = 0;
     double last = -1;
-    for (auto some = pace.next(64, 48, 0); !some.empty();
-         some = pace.next(64, 48, static_cast<std::size_t>(points))) {
+    for (auto some = schedule.next(64, 48, 0); !some.empty();
+         some = schedule.next(64, 48, static_cast<std::size_t>(points))) {
       for (const double position : some) {
         EXPECT_GT(position, last);
         EXPECT_LE(position, 400 + 1e-6);
@@ -287,12 +287,7 @@ TEST(ScanSchedule, RejectsContradictoryOptions) {
   for (const SynthCityOptions& options : {SynthCityOptions{.points = 1e6, .spacing_m = 1},
                                           SynthCityOptions{.length_m = 50, .points = 1e12},
                                           SynthCityOptions{.length_m = 1e6, .spacing_m = 0.01}}) {
-    try {
-      const ScanSchedule pace(options, 100'000);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { const ScanSchedule schedule(options, 100'000); });
   }
 }
 

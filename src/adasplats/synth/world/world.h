@@ -47,9 +47,9 @@ struct WorldScanOptions {
 
 template <class Visit>
 void visit_settings(WorldOptions& world, Visit&& visit) {
-  visit(Setting{.name = "kind", .help = "Kind of world"}, world.kind);
+  visit(Setting{.name = "kind", .help = "Of place"}, world.kind);
   visit(Setting{.name = "length",
-                .help = "Road length, m",
+                .help = "Of the road, m",
                 .value = "M",
                 .key = "length_m",
                 .min = 80,
@@ -59,10 +59,10 @@ void visit_settings(WorldOptions& world, Visit&& visit) {
 
 template <class Visit>
 void visit_settings(WorldScanOptions& scan, Visit&& visit) {
-  visit(Setting{.name = "scans", .help = "Number of scans", .value = "N", .min = 1, .max = 10000},
+  visit(Setting{.name = "scans", .help = "How many", .value = "N", .min = 1, .max = 10000},
         scan.scans);
   visit(Setting{.name = "spacing",
-                .help = "Distance between scans, m",
+                .help = "Between scans, m",
                 .value = "M",
                 .key = "spacing_m",
                 .min = 0,

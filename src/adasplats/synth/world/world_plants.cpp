@@ -9,8 +9,6 @@
 namespace adasplats {
 namespace {
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
-
 Vec3d draw_direction(Random& random) {
   const double z = random.uniform(-1, 1);
   const double azimuth = random.uniform(0, kFullTurn);

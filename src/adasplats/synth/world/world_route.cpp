@@ -11,7 +11,6 @@ namespace adasplats {
 namespace {
 
 constexpr double kRouteStep_m = 0.5;
-constexpr double kFullTurn = 2 * std::numbers::pi;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "adasplats/core/maths/random.h"
@@ -13,6 +14,8 @@
 // metres along the axis of the road, and metres to its left.
 
 namespace adasplats {
+
+inline constexpr double kFullTurn = 2 * std::numbers::pi;
 
 /// Limits of the curvature and slope of a kind of world.
 struct RouteLimits {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/world/world_plan.h"
 
 namespace adasplats {
@@ -85,12 +85,7 @@ TEST(SynthWorld, DriveIsOnTheRoad) {
 
 TEST(SynthWorld, RejectsALengthOutOfRange) {
   for (const double length_m : {0.0, 79.0, 1001.0, std::nan("")}) {
-    try {
-      make_world({.length_m = length_m});
-      ADD_FAILURE() << length_m;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { make_world({.length_m = length_m}); });
   }
 }
 
