@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--plain", action="store_true")
     options = parser.parse_args()
     workshop = Workshop(options.program, options.data, options.out)
-    print("| scans | judge | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
+    print("| scans | classifier | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
     rows = []
     for row in workshop.available(wanted_rows(), options.only):
         rows.append(row_of(workshop, row, options.plain))

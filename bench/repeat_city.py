@@ -68,11 +68,11 @@ class Tree:
 
     def branch(self, x, y, wide, deep, first, children, level):
         row = self.levels.rows[0].copy()
-        most = max(wide, deep)
+        scale = max(wide, deep)
         row["low"] += np.float32([x * self.step_m, y * self.step_m, 0])
         row["high"] += np.float32([(x + wide - 1) * self.step_m, (y + deep - 1) * self.step_m, 0])
-        row["spacing"] *= most
-        row["radius"] *= most
+        row["spacing"] *= scale
+        row["radius"] *= scale
         row["first"], row["children"], row["level"] = first, children, level
         self.elements.append(self.levels.elements[:ELEMENT_BYTES * int(row["count"])])
         return row

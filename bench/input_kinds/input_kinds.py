@@ -303,9 +303,9 @@ def compared(ours, theirs):
 def shown(row):
     """Number of points and difference as text."""
     if "points" not in row:
-        return "refused" if "refused" in row else row["error"], "-"
+        return "rejected" if "refused" in row else row["error"], "-"
     other = row["points_other_reader"]
-    there = "" if row["points"] == other else f" ({other:,} there)"
+    there = "" if row["points"] == other else f" ({other:,} in the other reader)"
     return f"{row['points']:,}{there}", row["shown"] or "-"
 
 
@@ -335,8 +335,8 @@ def main():
     provenance["command"] = "input_kinds.py BUILD REAL_DATA FORMATS OUT"
     report = {"kinds": rows, "provenance": provenance}
     (words.out / "input_kinds.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
-    print(f"{good} of {len(rows)} kinds are read as their other readers read them, or refused as "
-          "wanted")
+    print(f"{good} of {len(rows)} kinds agree with their other readers, or are rejected as "
+          "expected")
     return 0 if good == len(rows) else 1
 
 

@@ -160,7 +160,7 @@ SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std:
   SplatModel part = load_model(file);
   if (part.size() != tile.splats)
     throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
-                                     " splats; the city's manifest says " +
+                                     " splats; the city's manifest has " +
                                      std::to_string(tile.splats));
   // The file's CRS header refers to world coordinates; the loaded model has a nearby origin.
   const Vec3d shift = part.origin - city.origin;

@@ -78,7 +78,7 @@ TEST(GroundBox, SegmentsCrossItOrNot) {
   EXPECT_TRUE(box.is_crossed({5, 5, 0}, {5, 5, 3}));       // straight up
   EXPECT_FALSE(box.is_crossed({-5, 5, 0}, {-1, 5, 0}));    // ends before it
   EXPECT_FALSE(box.is_crossed({-5, 8, 0}, {3, 16, 0}));    // past a corner
-  EXPECT_FALSE(box.is_crossed({-5, 12, 0}, {15, 12, 0}));  // beside it
+  EXPECT_FALSE(box.is_crossed({-5, 12, 0}, {15, 12, 0}));  // misses it
 }
 
 TEST(TilePoints, RoundTripTileByTile) {

@@ -139,7 +139,7 @@ TEST(SegmentCloud, AcceptsAnyCloud) {
   EXPECT_EQ(segment_cloud(cloud, network, {}, executor).classes.size(), 1U);
   cloud.intensities = {std::numeric_limits<float>::quiet_NaN()};
   EXPECT_LT(segment_cloud(cloud, network, {}, executor).classes[0], 19);
-  cloud.positions.assign(1000, {7, 7, 7});  // all at one place
+  cloud.positions.assign(1000, {7, 7, 7});  // all equal
   cloud.intensities.clear();
   const std::vector<std::uint8_t> classes = segment_cloud(cloud, network, {}, executor).classes;
   EXPECT_EQ(classes, std::vector<std::uint8_t>(1000, classes[0]));

@@ -234,8 +234,8 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerInPlace,
                                          Place{5, {0, 0, 0}, 0.05, 1e-3, 0.02},
                                          Place{6, {-900, 20, 3}, 100, 30, 1000}));
 
-/// Rays of rows side by side. With `travel_m` they start along a line, as those of a sensor that
-/// moves do; `pitch_rad` apart in azimuth.
+/// Rays of adjacent rows. With `travel_m` they start along a line, as from a moving
+/// sensor; `pitch_rad` apart in azimuth.
 std::vector<Ray> laser_rows(int rows, int columns, double pitch_rad, double travel_m) {
   std::vector<Ray> rays;
   for (int row = 0; row < rows; ++row) {
@@ -327,7 +327,7 @@ std::vector<Arrangement> arrangements() {
   return result;
 }
 
-// Oracle: brute force, for single rays, packets and lists. (Embree leaves out what is beyond 1e18.)
+// Oracle: brute force, for single rays, packets and lists. (Embree omits primitives beyond 1e18.)
 TEST(Tracer, WideTreesOfOddScenesEqualBruteForce) {
   const Executor executor(2);
   for (const Arrangement& scene : arrangements()) {

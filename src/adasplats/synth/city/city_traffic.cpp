@@ -118,7 +118,8 @@ class Rail {
     const double along = before + (blocks - block) * (next - before);
     const double half = forth_ ? 0.5 : -0.5;
     const Vec3d here = position_on(along, more_right);
-    const Vec3d ahead = position_on(along + half, more_right) - place_on(along - half, more_right);
+    const Vec3d ahead =
+        position_on(along + half, more_right) - position_on(along - half, more_right);
     const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
     // 8 streets of 2 axes, 2 directions and 2 lanes; 128 vehicles each.
     const int street =

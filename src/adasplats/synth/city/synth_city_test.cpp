@@ -253,7 +253,7 @@ TEST(CityTraffic, VehiclesMoveForwards) {
 TEST(ScanSchedule, SpacingGivesEveryPositionOnce) {
   ScanSchedule schedule({.length_m = 100, .spacing_m = 3}, 1000);
   std::vector<double> all;
-  for (auto some = schedule.next(7, 12, 0); !some.empty(); some = pace.next(7, 12, 0)) {
+  for (auto some = schedule.next(7, 12, 0); !some.empty(); some = schedule.next(7, 12, 0)) {
     EXPECT_LE(some.back() - some.front(), 12);
     all.insert(all.end(), some.begin(), some.end());
   }
