@@ -8,10 +8,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <system_error>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/core/error.h"
+#include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/street_parts.h"
@@ -45,18 +44,6 @@ Street make_street(const StreetOptions& options) {
   return street;
 }
 
-namespace {
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure)
-    throw system_error(ErrorKind::cannot_create, folder, "cannot create the folder",
-                       failure.value());
-}
-
-}  // namespace
-
 void save_street_mesh(const std::filesystem::path& path, const Street& street) {
   save_street_mesh(path, street.fixed, street.instances, street.reflectances);
 }
@@ -88,7 +75,7 @@ StreetReport write_street(const std::filesystem::path& folder, StreetOptions str
                           ProgressSink& progress) {
   if (street_options.length_m == 0) street_options.length_m = street_length_for(scan.points);
   const Street street = make_street(street_options);
-  make_folder(folder);
+  create_folder(folder);
 
   // First, because it rejects a folder with another street.
   std::optional<SemanticKittiWriter> sequence;
