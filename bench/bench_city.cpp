@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Driving through a city whose tiles come and go, as figures of bench/results:
+// A drive through a city with streamed tiles:
 //   bench_city CITY TRAJECTORY [--sensor NAME] [--device cpu|cuda] [--threads N] [--spacing M]
 //       [--passes N] [--tile-memory GB] [--scans N] [--check STEP] [--json FILE]
-// A drive along TRAJECTORY, a scan every `spacing` metres, `passes` times. Each figure is of a
-// scene that begins with no tile in memory, loading included: complete scans in host memory
-// (`complete`), on a GPU also batches in page-locked memory (`host`) and on the device (`device`).
-// `scans` bounds how many. Then every STEP-th scan again, tile by tile and in the whole city in
-// memory: whether all their bytes are the same.
+// Drives along TRAJECTORY `passes` times with a scan every `spacing` metres, at most `scans` in
+// all. Each figure includes loading and starts with no tile in memory: complete scans in host
+// memory
+// (`complete`); on a GPU also batches in page-locked memory (`host`) and on the device (`device`).
+// Then compares the bytes of every STEP-th scan with streamed tiles and with the entire city in
+// memory.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,81 +24,42 @@
 #include "adasplats/jobs/scene/drive.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
+#include "common.h"
 
 namespace {
 
 using namespace adasplats;
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
-  std::string city, trajectory, json, sensor = kDefaultSensor, device = "cpu";
-  int threads = 0;
-  double spacing_m = 0.5, tile_memory_gb = 1;
-  std::size_t passes = 1, scans = 0, check = 0;
-};
+constexpr double kDefaultSpacing_m = 0.5, kDefaultTileMemory_gb = 1;
 
-Arguments parse(int argc, char** argv) {
-  Arguments arguments;
-  std::vector<std::string> inputs;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto value = [&] { return i + 1 < argc ? std::string(argv[++i]) : std::string(); };
-    if (word == "--sensor") {
-      arguments.sensor = value();
-    } else if (word == "--device") {
-      arguments.device = value();
-    } else if (word == "--threads") {
-      arguments.threads = std::stoi(value());
-    } else if (word == "--spacing") {
-      arguments.spacing_m = std::stod(value());
-    } else if (word == "--passes") {
-      arguments.passes = std::stoul(value());
-    } else if (word == "--tile-memory") {
-      arguments.tile_memory_gb = std::stod(value());
-    } else if (word == "--scans") {
-      arguments.scans = std::stoul(value());
-    } else if (word == "--check") {
-      arguments.check = std::stoul(value());
-    } else if (word == "--json") {
-      arguments.json = value();
-    } else {
-      inputs.push_back(word);
-    }
-  }
-  if (inputs.size() != 2) {
-    std::fprintf(stderr,
-                 "usage: bench_city CITY TRAJECTORY [--sensor NAME] [--device cpu|cuda] [--threads "
-                 "N] [--spacing M] [--passes N] [--tile-memory GB] [--scans N] [--check STEP] "
-                 "[--json FILE]\n");
-    std::exit(64);
-  }
-  arguments.city = inputs[0];
-  arguments.trajectory = inputs[1];
-  return arguments;
+std::size_t tile_memory_bytes(const bench::Arguments& arguments) {
+  return static_cast<std::size_t>(arguments.number("--tile-memory", kDefaultTileMemory_gb) * 1e9);
 }
 
-std::vector<ScanMotion> scans_of(const Arguments& arguments, const LidarModel& sensor,
+std::vector<ScanMotion> scans_of(const bench::Arguments& arguments, const LidarModel& sensor,
                                  ProgressSink& progress) {
   DriveOptions drive;
-  drive.trajectory = arguments.trajectory;
-  drive.spacing_m = arguments.spacing_m;
+  drive.trajectory = arguments.input(1);
+  drive.spacing_m = arguments.number("--spacing", kDefaultSpacing_m);
   const std::vector<ScanMotion> once = scans_along(drive, sensor, progress);
   std::vector<ScanMotion> scans;
-  for (std::size_t pass = 0; pass < arguments.passes; ++pass) {
+  const auto passes = arguments.number<std::size_t>("--passes", 1);
+  for (std::size_t pass = 0; pass < passes; ++pass) {
     scans.insert(scans.end(), once.begin(), once.end());
-    if (pass % 2 == 1) std::ranges::reverse(std::span(scans).last(once.size()));  // and back
+    if (pass % 2 == 1) std::ranges::reverse(std::span(scans).last(once.size()));
   }
-  if (arguments.scans > 0 && arguments.scans < scans.size()) scans.resize(arguments.scans);
+  const auto max_scans = arguments.number<std::size_t>("--scans", 0);
+  if (max_scans > 0 && max_scans < scans.size()) scans.resize(max_scans);
   return scans;
 }
 
-/// The whole drive in a scene of its own; gives rates and what was loaded.
+/// Runs the entire drive in a new scene; returns its rates and tile counts.
 template <class Run>
-Json streamed(const Arguments& arguments, const ScanSettings& settings,
+Json streamed(const bench::Arguments& arguments, const ScanSettings& settings,
               std::span<const ScanMotion> scans, Session& session, Run&& run) {
   const Stopwatch watch;
-  const CityScene scene(arguments.city, "", session,
-                        static_cast<std::size_t>(arguments.tile_memory_gb * 1e9));
+  const CityScene scene(arguments.input(0), "", session, tile_memory_bytes(arguments));
   ScanSimulator simulator(scene, settings, session.executor);
   const double opened_s = watch.seconds();
   std::size_t returns = 0;
@@ -132,41 +92,45 @@ std::string digest_in(const ScanScene& scene, const ScanSettings& settings,
   return hash.digest();
 }
 
-Json checked(const Arguments& arguments, const ScanSettings& settings,
-             std::span<const ScanMotion> scans, Session& session) {
+Json check_bytes(const bench::Arguments& arguments, const ScanSettings& settings,
+                 std::span<const ScanMotion> scans, std::size_t step, Session& session) {
   std::vector<ScanMotion> some;
-  for (std::size_t i = 0; i < scans.size(); i += arguments.check) some.push_back(scans[i]);
-  const CityScene tiles(arguments.city, "", session,
-                        static_cast<std::size_t>(arguments.tile_memory_gb * 1e9));
-  const std::string in_tiles = digest_in(tiles, settings, some, session.executor);
-  const ModelScene whole(arguments.city, "", session);
-  const std::string in_whole = digest_in(whole, settings, some, session.executor);
-  return {{"scans", some.size()}, {"same_bytes", in_tiles == in_whole}, {"sha256", in_whole}};
+  for (std::size_t i = 0; i < scans.size(); i += step) some.push_back(scans[i]);
+  const CityScene tiles(arguments.input(0), "", session, tile_memory_bytes(arguments));
+  const std::string streamed_digest = digest_in(tiles, settings, some, session.executor);
+  const ModelScene in_memory(arguments.input(0), "", session);
+  const std::string memory_digest = digest_in(in_memory, settings, some, session.executor);
+  return {{"scans", some.size()},
+          {"same_bytes", streamed_digest == memory_digest},
+          {"sha256", memory_digest}};
 }
 
-Json measure_all(const Arguments& arguments) {
-  const Executor executor(arguments.threads);
+Json measure_all(const bench::Arguments& arguments) {
+  const Executor executor(arguments.number("--threads", 0));
+  const std::string sensor = arguments.text("--sensor", kDefaultSensor);
+  const std::string backend = arguments.text("--device", "cpu");
   ProgressSink progress;
   DeviceOptions chosen;
-  chosen.kind = arguments.device == "cuda" ? DeviceKind::cuda : DeviceKind::cpu;
+  chosen.kind = backend == "cuda" ? DeviceKind::cuda : DeviceKind::cpu;
   DeviceChoice device = choose_device(chosen);
   Session session{executor, progress, 1, device};
   ScanSettings settings;
-  settings.sensor = load_lidar_model(arguments.sensor);
+  settings.sensor = load_lidar_model(sensor);
   const std::vector<ScanMotion> scans = scans_of(arguments, settings.sensor, progress);
-  const CityManifest city = load_city_manifest(arguments.city);
+  const CityManifest city = load_city_manifest(arguments.input(0));
   Json json;
   json["provenance"] = to_json(provenance_of(executor.threads(), device));
-  json["device"] = arguments.device;
+  json["device"] = backend;
   json["threads"] = executor.threads();
-  json["sensor"] = arguments.sensor;
+  json["sensor"] = sensor;
   json["points"] = city.points();
   json["splats"] = city.splats();
   json["tiles"] = city.tiles.size();
   json["tile_m"] = city.grid.side_m;
-  json["tile_memory_gb"] = arguments.tile_memory_gb;
+  json["tile_memory_gb"] = arguments.number("--tile-memory", kDefaultTileMemory_gb);
   json["scans"] = scans.size();
-  json["driven_m"] = static_cast<double>(scans.size()) * arguments.spacing_m;
+  json["driven_m"] =
+      static_cast<double>(scans.size()) * arguments.number("--spacing", kDefaultSpacing_m);
   json["complete"] = streamed(
       arguments, settings, scans, session, [&](ScanSimulator& simulator, std::size_t& returns) {
         return simulator.run(scans, 0,
@@ -182,20 +146,20 @@ Json measure_all(const Arguments& arguments) {
           });
     }
   }
-  if (arguments.check > 0) json["check"] = checked(arguments, settings, scans, session);
+  const auto step = arguments.number<std::size_t>("--check", 0);
+  if (step > 0) json["check"] = check_bytes(arguments, settings, scans, step, session);
   return json;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const Arguments arguments = parse(argc, argv);
-    const std::string text = measure_all(arguments).dump(2) + "\n";
-    std::fputs(text.c_str(), stdout);
-    if (!arguments.json.empty()) std::ofstream(arguments.json) << text;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_city: %s\n", error.what());
-    return 1;
-  }
+  return bench::exit_code_of("bench_city", [&] {
+    const bench::Arguments arguments(
+        argc, argv,
+        "bench_city CITY TRAJECTORY [--sensor NAME] [--device cpu|cuda] [--threads N] "
+        "[--spacing M] [--passes N] [--tile-memory GB] [--scans N] [--check STEP] [--json FILE]",
+        2, 2);
+    bench::print_and_write(measure_all(arguments), arguments.text("--json"));
+  });
 }

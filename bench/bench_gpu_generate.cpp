@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-// Time of every step of build_model on a GPU, from host memory to the model in host memory; the
-// median of several runs, as one line of JSON.
+// Time of every step of build_model() on a GPU, from host memory to the model in host memory.
+// Prints the median of several runs as one line of JSON.
 //   bench_gpu_generate POINTS|INPUT [METHOD] [resample|no-resample] [RUNS] [cpu]
-// POINTS makes a procedural street of about so many points. "cpu" does the same on the CPU after
-// that, once, and says how many splats have other bytes.
+// POINTS makes a procedural street with about that many points. "cpu" repeats the build once on the
+// CPU and reports how many splats differ.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -18,12 +17,13 @@
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/base/engines.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/session/device_choice.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/synth/street.h"
+#include "common.h"
 
 namespace {
 
@@ -59,11 +59,10 @@ Run timed_build(const PointCloud& cloud, const BuildOptions& options, const Exec
                 const ModelEngine* engine) {
   ProgressSink quiet;
   PointCloud copy = cloud;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   auto [model, report] =
       build_model(std::move(copy), &semantickitti_labels(), options, executor, quiet, engine);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return {seconds.count(), std::move(model), std::move(report)};
+  return {watch.seconds(), std::move(model), std::move(report)};
 }
 
 void print_run(const char* device, const Run& run) {
@@ -74,7 +73,7 @@ void print_run(const char* device, const Run& run) {
     std::fprintf(stderr, "  %-18s %8.4f s\n", step.name.c_str(), step.seconds);
 }
 
-/// Splats of a model that the other one has not in the same bytes.
+/// Number of splats of a model without an equal one in the other model.
 std::size_t different(const SplatModel& model, const SplatModel& other) {
   const auto less = [](const Disk& a, const Disk& b) {
     return std::memcmp(&a, &b, sizeof(Disk)) < 0;
@@ -87,21 +86,18 @@ std::size_t different(const SplatModel& model, const SplatModel& other) {
   return missing.size();
 }
 
-int run(int argc, char** argv) {
-  const auto argument = [&](int i, const char* otherwise) {
-    return std::string(argc > i ? argv[i] : otherwise);
-  };
+void run(const bench::Arguments& arguments) {
   const Executor executor;
   ProgressSink quiet;
-  const PointCloud cloud = input_cloud(argv[1], executor, quiet);
+  const PointCloud cloud = input_cloud(arguments.input(0), executor, quiet);
   BuildOptions options;
   MethodChoice choice;
-  choice.method = value_of(argument(2, "semantic"), kSplatMethods);
-  choice.paper.resample = argument(3, "resample") != "no-resample";
+  choice.method = value_of(arguments.input(1, "semantic"), kSplatMethods);
+  choice.paper.resample = arguments.input(2) != "no-resample";
   options.recipe = choice.recipe();
   const auto engine = make_cuda_model_engine(0);
   std::vector<Run> runs;
-  for (int i = 0; i < std::max(1, std::atoi(argument(4, "3").c_str())); ++i) {
+  for (int i = 0; i < std::max(1, arguments.input_number(3, 3)); ++i) {
     runs.push_back(timed_build(cloud, options, executor, engine.get()));
     print_run("cuda", runs.back());
   }
@@ -113,35 +109,28 @@ int run(int argc, char** argv) {
       {"provenance", to_json(provenance_of(executor.threads(), device))},
       {"device", device.gpus[0].name},
       {"points", cloud.size()},
-      {"method", argument(2, "semantic")},
+      {"method", arguments.input(1, "semantic")},
       {"resample", choice.paper.resample},
       {"splats", median.report.primitives},
       {"seconds", median.seconds},
       {"fastest_s", runs.front().seconds},
       {"slowest_s", runs.back().seconds}};
   std::printf("%s\n", result.dump().c_str());
-  if (argument(5, "") == "cpu") {
+  if (arguments.input(4) == "cpu") {
     const Run cpu = timed_build(cloud, options, executor, nullptr);
     print_run("cpu", cpu);
-    std::printf("%zu of %zu splats differ from the CPU's\n", different(median.model, cpu.model),
-                median.model.size());
+    std::printf("%zu of %zu splats differ from those of the CPU\n",
+                different(median.model, cpu.model), median.model.size());
   }
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: bench_gpu_generate POINTS|INPUT [basic|descriptors|semantic|consistent] "
-                 "[resample|no-resample] [RUNS] [cpu]\n");
-    return 64;
-  }
-  try {
-    return run(argc, argv);
-  } catch (const adasplats::Error& error) {
-    std::fprintf(stderr, "bench_gpu_generate: error: %s\n", error.what());
-    return adasplats::exit_code(error.kind());
-  }
+  return adasplats::bench::exit_code_of("bench_gpu_generate", [&] {
+    run({argc, argv,
+         "bench_gpu_generate POINTS|INPUT [basic|descriptors|semantic|consistent] "
+         "[resample|no-resample] [RUNS] [cpu]",
+         1, 5});
+  });
 }

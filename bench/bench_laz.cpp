@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Million points a second of reading LAS and LAZ files: read_las() as a whole (the file to columns)
-// and its decoder alone (chunks to records, LAZ only), with every number of threads, beside
-// LASzip's own reader where its library is on the machine (liblaszip8 of Debian 13; it has one
-// thread). All take turns, in rounds; files are in memory after the first, which is not counted.
-// LASzip has to find the same coordinates.
+// Million points per second of reading LAS and LAZ files: all of read_las() (from the file to
+// columns) and its decoder alone (from chunks to records, only LAZ), for several numbers of
+// threads, and LASzip's reader if its library is installed (liblaszip8 of Debian 13;
+// single-threaded). All alternate in rounds; the first round, which brings the files into memory,
+// is not counted. LASzip must find the same coordinates.
 //
 //   bench_laz FILE... [--threads A,B] [--rounds N] [--laszip LIBRARY] [--json FILE]
 
@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -29,44 +28,37 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/packed_chunk.h"
 #include "adasplats/jobs/provenance/provenance.h"
+#include "common.h"
 
 namespace adasplats {
 namespace {
 
-struct Options {
-  std::vector<std::filesystem::path> files;
-  std::vector<int> threads = {1, 2};
-  int rounds = 5;
-  std::string laszip = "liblaszip.so.8";
-  std::string json;
-};
-
-/// The few functions of LASzip's interface that read; all give 0 where they succeed.
+/// The reading functions of LASzip's interface; they return 0 on success.
 class Laszip {
  public:
-  /// Nothing where there is no such library.
+  /// nullopt if the library is missing.
   static std::optional<Laszip> open(const std::string& library) {
     void* const handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) return std::nullopt;
     return Laszip(handle);
   }
 
-  /// Reads all points; gives the sum of their coordinates.
+  /// Reads all points; returns the sum of their coordinates.
   double read(const std::filesystem::path& file, std::uint64_t points) const {
     void* reader = nullptr;
     std::int32_t is_compressed = 0;
     require(create_(&reader) == 0 && open_(reader, file.c_str(), &is_compressed) == 0, file);
     double sum = 0;
-    double at[3] = {};
+    double coordinates[3] = {};
     for (std::uint64_t i = 0; i < points; ++i) {
-      require(read_(reader) == 0 && coordinates_(reader, at) == 0, file);
-      sum += at[0] + at[1] + at[2];
+      require(read_(reader) == 0 && coordinates_(reader, coordinates) == 0, file);
+      sum += coordinates[0] + coordinates[1] + coordinates[2];
     }
     close_(reader);
     destroy_(reader);
@@ -85,7 +77,7 @@ class Laszip {
   template <class Function>
   static void find(void* handle, const char* name, Function*& function) {
     function = reinterpret_cast<Function*>(::dlsym(handle, name));
-    if (function == nullptr) throw std::runtime_error(std::string("LASzip has no ") + name);
+    if (function == nullptr) throw std::runtime_error(std::string("LASzip lacks ") + name);
   }
   static void require(bool good, const std::filesystem::path& file) {
     if (!good) throw std::runtime_error("LASzip cannot read " + file.string());
@@ -106,7 +98,7 @@ double sum_of(const Table& table) {
   return sum;
 }
 
-/// Unpacks every chunk into records, which are dropped; gives how many were whole.
+/// Decodes every chunk into records, which are dropped; returns the number of complete ones.
 std::uint64_t unpack(const std::filesystem::path& file, const Executor& executor) {
   const LazLayout layout = read_laz_layout(file, false);
   const std::string bytes = read_file(file);
@@ -114,7 +106,7 @@ std::uint64_t unpack(const std::filesystem::path& file, const Executor& executor
                                        bytes.size());
   return executor.sum_chunks(
       layout.chunks.size(), 1, std::uint64_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t whole = 0;
+        std::uint64_t complete = 0;
         for (std::size_t k = begin; k < end; ++k) {
           const LazChunk& chunk = layout.chunks[k];
           const auto points = static_cast<std::size_t>(chunk.points);
@@ -122,23 +114,20 @@ std::uint64_t unpack(const std::filesystem::path& file, const Executor& executor
           const auto decoder = make_packed_chunk(
               layout.packing, all.subspan(static_cast<std::size_t>(chunk.offset_bytes),
                                           static_cast<std::size_t>(chunk.bytes)));
-          whole += decoder->decode(records.data(), points);
+          complete += decoder->decode(records.data(), points);
         }
-        return whole;
+        return complete;
       });
 }
 
-/// One reader of a file, in turns with the others.
+/// One reader of a file.
 struct Contender {
   std::string name;
   int threads;
   std::function<void()> read;
   std::vector<double> seconds = {};
 
-  double median_s() {
-    std::ranges::sort(seconds);
-    return seconds[seconds.size() / 2];
-  }
+  double median_s() { return upper_median_of(seconds); }
 };
 
 std::vector<Contender> contenders_of(const std::filesystem::path& file, const LasFacts& facts,
@@ -165,26 +154,26 @@ std::vector<Contender> contenders_of(const std::filesystem::path& file, const La
     contenders.push_back({"LASzip", 1, [&file, &laszip, expected, points = facts.points] {
                             const double sum = laszip->read(file, points);
                             if (!(std::fabs(sum - expected) <= 1e-9 * std::fabs(expected)))
-                              throw std::runtime_error("LASzip finds other coordinates");
+                              throw std::runtime_error("LASzip returns other coordinates");
                           }});
   return contenders;
 }
 
-nlohmann::ordered_json measure(const std::filesystem::path& file, const Options& options,
+nlohmann::ordered_json measure(const std::filesystem::path& file, int rounds,
                                const std::vector<std::unique_ptr<Executor>>& executors,
                                const std::optional<Laszip>& laszip) {
   const LasFacts facts = read_las_facts(file);
   std::vector<Contender> contenders = contenders_of(file, facts, executors, laszip);
-  // Small files are read again and again, so that a round takes a tenth of a second or more.
-  constexpr double kLeast_s = 0.1;
-  for (int round = -1; round < options.rounds; ++round)
+  // Small files are read repeatedly, so that a round takes at least 0.1 s.
+  constexpr double kMin_s = 0.1;
+  for (int round = -1; round < rounds; ++round)
     for (Contender& contender : contenders) {
       int times = 0;
       const Stopwatch watch;
       do {
         contender.read();
         ++times;
-      } while (watch.seconds() < kLeast_s);
+      } while (watch.seconds() < kMin_s);
       if (round >= 0) contender.seconds.push_back(watch.seconds() / times);
     }
   nlohmann::ordered_json json = {{"file", file.filename().string()},
@@ -203,61 +192,34 @@ nlohmann::ordered_json measure(const std::filesystem::path& file, const Options&
   return json;
 }
 
-void run(const Options& options) {
-  const std::optional<Laszip> laszip = Laszip::open(options.laszip);
-  if (!laszip) std::printf("LASzip: no %s, so not beside it\n", options.laszip.c_str());
+void run(const bench::Arguments& arguments) {
+  const int rounds = std::max(1, arguments.number("--rounds", 5));
+  const std::string library = arguments.text("--laszip", "liblaszip.so.8");
+  const std::optional<Laszip> laszip = Laszip::open(library);
+  if (!laszip) std::printf("LASzip skipped: %s not found\n", library.c_str());
   std::vector<std::unique_ptr<Executor>> executors;
-  for (const int threads : options.threads)
-    executors.push_back(std::make_unique<Executor>(threads));
+  std::istringstream counts(arguments.text("--threads", "1,2"));
+  for (std::string count; std::getline(counts, count, ',');)
+    executors.push_back(std::make_unique<Executor>(std::stoi(count)));
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
-  for (const std::filesystem::path& file : options.files)
-    files.push_back(measure(file, options, executors, laszip));
-  if (options.json.empty()) return;
+  for (const std::filesystem::path file : arguments.inputs())
+    files.push_back(measure(file, rounds, executors, laszip));
+  if (!arguments.has("--json")) return;
   const nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(2))},
-                                         {"rounds", options.rounds},
+                                         {"rounds", rounds},
                                          {"laszip", laszip.has_value()},
                                          {"files", files}};
-  write_file(options.json, result.dump(2) + "\n");
-}
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (!word.starts_with("--")) {
-      options.files.emplace_back(word);
-      continue;
-    }
-    if (i + 1 >= argc) throw std::runtime_error(word + " is unknown or needs a value");
-    const std::string value = argv[++i];
-    if (word == "--rounds") {
-      options.rounds = std::max(1, std::stoi(value));
-    } else if (word == "--threads") {
-      options.threads.clear();
-      std::istringstream numbers(value);
-      for (std::string number; std::getline(numbers, number, ',');)
-        options.threads.push_back(std::stoi(number));
-    } else if (word == "--laszip") {
-      options.laszip = value;
-    } else if (word == "--json") {
-      options.json = value;
-    } else {
-      throw std::runtime_error("unknown option " + word);
-    }
-  }
-  if (options.files.empty()) throw std::runtime_error("which files?");
-  return options;
+  write_file(arguments.text("--json"), result.dump(2) + "\n");
 }
 
 }  // namespace
 }  // namespace adasplats
 
 int main(int argc, char** argv) {
-  try {
-    adasplats::run(adasplats::parse(argc, argv));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_laz: %s\n", error.what());
-    return 1;
-  }
+  return adasplats::bench::exit_code_of("bench_laz", [&] {
+    adasplats::run(
+        {argc, argv,
+         "bench_laz FILE... [--threads A,B] [--rounds N] [--laszip LIBRARY] [--json FILE]", 1,
+         1000});
+  });
 }

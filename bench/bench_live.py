@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""How many scans a second `adasplats view` sends to one page that drives a LiDAR.
+"""Scans per second that `adasplats view` sends to one page that drives a LiDAR.
 
 usage: bench_live.py PROGRAM MODEL [--sensor NAME] [--seconds S] [--runs N] [--json FILE]
 
-Starts the program, drives the sensor in a circle of 10 m around where it begins, takes every scan
-and answers "ready" as the page does, and prints the median over the runs as JSON. Standard library
-alone.
+Starts the program, drives the sensor in a circle of 10 m next to its start, receives every scan and
+answers "ready" as the page does, and prints the median over the runs as JSON. Needs only the
+standard library.
 """
 import argparse
 import base64
@@ -40,19 +40,19 @@ class Live:
             f"Origin: {parts.scheme}://{parts.netloc}\r\n\r\n".encode())
         self.stream = self.socket.makefile("rb", buffering=1 << 20)
         if b" 101 " not in self.stream.readline():
-            sys.exit("bench_live: the server refused the WebSocket")
+            sys.exit("bench_live: the server rejected the WebSocket")
         while self.stream.readline() != b"\r\n":
             pass
 
-    def say(self, message):
+    def send(self, message):
         body = json.dumps(message).encode()
         mask = os.urandom(4)
         head = struct.pack(">BB", 0x81, 0x80 | len(body)) if len(body) < 126 else \
             struct.pack(">BBH", 0x81, 0x80 | 126, len(body))
         self.socket.sendall(head + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(body)))
 
-    def hear(self):
-        """(is binary, bytes) of the next whole message."""
+    def receive(self):
+        """Returns (is binary, bytes) of the next complete message."""
         first, length = struct.unpack(">BB", self.stream.read(2))
         if length == 126:
             (length,) = struct.unpack(">H", self.stream.read(2))
@@ -60,31 +60,31 @@ class Live:
             (length,) = struct.unpack(">Q", self.stream.read(8))
         body = self.stream.read(length)
         if not first & 0x80:
-            more = self.hear()
+            more = self.receive()
             return first & 15 == 2 or more[0], body + more[1]
         return first & 15 == 2, body
 
 
 def drive(live, start, seconds):
-    """Scans a second, points a scan, and the server's seconds a scan over some seconds."""
-    live.say({"type": "run", "on": True})
+    """Returns scans per second, points per scan and the server's seconds per scan."""
+    live.send({"type": "run", "on": True})
     points, simulated, begin = [], [], None
     while begin is None or time.perf_counter() - begin < seconds:
-        is_scan, body = live.hear()
+        is_scan, body = live.receive()
         if not is_scan:
             continue
         if begin is None:
-            begin = time.perf_counter()  # the first scan also made the sensor's rays
+            begin = time.perf_counter()  # the first scan includes computing the sensor's rays
         else:
             points.append(struct.unpack_from("<I", body, 12)[0])
             simulated.append(struct.unpack_from("<f", body, 60)[0])
         angle = 0.05 * len(points)
         pose = [start[0] + 10 * math.sin(angle), start[1] + 10 - 10 * math.cos(angle), start[2],
                 0, 0, math.sin(angle / 2), math.cos(angle / 2)]
-        live.say({"type": "pose", "pose": pose})
-        live.say({"type": "ready"})
+        live.send({"type": "pose", "pose": pose})
+        live.send({"type": "ready"})
     elapsed = time.perf_counter() - begin
-    live.say({"type": "run", "on": False})
+    live.send({"type": "run", "on": False})
     return len(points) / elapsed, statistics.median(points), statistics.median(simulated)
 
 
@@ -95,7 +95,7 @@ def main():
     arguments.add_argument("--sensor", default="hdl-64-paper")
     arguments.add_argument("--seconds", type=float, default=10)
     arguments.add_argument("--runs", type=int, default=3)
-    arguments.add_argument("--json", help="also write the figures here")
+    arguments.add_argument("--json", help="write the figures to a file, too")
     given = arguments.parse_args()
     server = subprocess.Popen([given.program, "view", given.model, "--no-browser", "--sensor",
                                given.sensor], stdout=subprocess.PIPE, text=True)

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-// What loading a drive costs: seconds of its parts, processor time and peak memory, with one thread
-// and with several, each load in a process of its own, and from both the share that does not get
-// faster with threads (Amdahl). With --beside the same program of another build takes turns.
-// All of them have to load the very same bytes. Shares need a machine that does nothing else;
-// ratios of processor time do not.
-//   bench_load DRIVE [--trajectory FILE] [--rounds N] [--threads N] [--beside PROGRAM] [--json
-//   FILE]
+// The cost of loading a drive: seconds of its parts, processor time and peak memory, with one
+// thread and with several, each load in its own process; also the serial share, which does not get
+// faster with threads (Amdahl). --beside alternates with the same program of another build. All
+// programs must load the same bytes. The serial share needs an idle machine; ratios of processor
+// time do not.
+//   bench_load DRIVE [--trajectory FILE] [--rounds N] [--threads N] [--beside PROGRAM] [--once 1]
+//              [--json FILE]
+// --once loads once and prints the figures as a line of JSON.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -14,8 +15,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -25,22 +24,14 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/child_process.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/memory.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/provenance/provenance.h"
+#include "common.h"
 
 namespace adasplats {
-
 namespace {
-
-struct Options {
-  std::string drive;
-  int rounds = 5;
-  int threads = 0;
-  bool once = false;  ///< loads once and prints the figures as a line of JSON
-  std::string trajectory, beside, json;
-};
 
 double seconds_of(timeval time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -53,7 +44,7 @@ void add_bytes(const std::vector<T>& values, std::uint32_t& hash) {
   for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) hash = (hash ^ bytes[i]) * kPrime;
 }
 
-/// Of every byte of a cloud; no struct of it has gaps.
+/// Hash of all bytes of a cloud; its structs have no padding.
 std::uint32_t fingerprint_of(const PointCloud& cloud) {
   std::uint32_t hash = 2'166'136'261;
   add_bytes(std::vector<Vec3d>{cloud.origin}, hash);
@@ -64,14 +55,14 @@ std::uint32_t fingerprint_of(const PointCloud& cloud) {
   return hash;
 }
 
-nlohmann::json loaded_once(const Options& options) {
-  const Executor executor(options.threads);
+nlohmann::json load_once(const bench::Arguments& arguments) {
+  const Executor executor(arguments.number("--threads", 0));
   ProgressSink silent;
   LoadOptions load;
   load.empty_beams = true;
-  load.trajectory = options.trajectory;
+  load.trajectory = arguments.text("--trajectory");
   const Stopwatch watch;
-  const std::filesystem::path input = options.drive;
+  const std::filesystem::path input = arguments.input(0);
   const auto [cloud, report] = load_cloud({&input, 1}, load, executor, silent);
   nlohmann::json figures = {{"seconds", watch.seconds()}};
   rusage used{};
@@ -87,14 +78,15 @@ nlohmann::json loaded_once(const Options& options) {
   return figures;
 }
 
-/// What a program's `--once` says.
-nlohmann::json figures_of(const std::string& program, const Options& options, int threads) {
+/// Output of a program with --once.
+nlohmann::json figures_of(const std::string& program, const bench::Arguments& arguments,
+                          int threads) {
   const std::filesystem::path log =
       std::filesystem::temp_directory_path() / ("bench_load." + std::to_string(::getpid()));
   ProgressSink silent;
   const ChildResult result =
-      run_child({{program, options.drive, "--once", "1", "--threads", std::to_string(threads),
-                  "--trajectory", options.trajectory},
+      run_child({{program, arguments.input(0), "--once", "1", "--threads", std::to_string(threads),
+                  "--trajectory", arguments.text("--trajectory")},
                  {},
                  log},
                 silent);
@@ -104,53 +96,50 @@ nlohmann::json figures_of(const std::string& program, const Options& options, in
   return nlohmann::json::parse(text);
 }
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
-/// Medians of the rounds of one program with so many threads.
+/// Figures of one program with a number of threads, by round.
 struct Row {
   std::string program;
   int threads;
   std::map<std::string, std::vector<double>> rounds = {};
 
-  double of(const std::string& name) const { return median(rounds.at(name)); }
+  double of(const std::string& name) const { return upper_median_of(std::vector(rounds.at(name))); }
 };
 
-/// Of the time with one thread what `threads` of them do not share.
+/// Share of the time with one thread that does not get faster with more threads.
 double serial_share(const Row& one, const Row& all, const std::string& name) {
   const double n = all.threads, left = all.of(name) / one.of(name);
   return std::clamp((left - 1 / n) / (1 - 1 / n), 0.0, 1.0);
 }
 
-std::vector<Row> measured(const Options& options, const std::string& self, int threads) {
+std::vector<Row> measure(const bench::Arguments& arguments, const std::string& self, int rounds,
+                         int threads) {
   std::vector<Row> rows;
   std::vector<std::string> programs = {self};
-  if (!options.beside.empty()) programs.push_back(options.beside);
+  if (arguments.has("--beside")) programs.push_back(arguments.text("--beside"));
   for (const std::string& program : programs)
     for (const int count : {1, threads}) rows.push_back({program, count});
-  for (int round = 0; round < options.rounds; ++round)
+  for (int round = 0; round < rounds; ++round)
     for (Row& row : rows) {
-      const nlohmann::json figures = figures_of(row.program, options, row.threads);
+      const nlohmann::json figures = figures_of(row.program, arguments, row.threads);
       for (const auto& [name, value] : figures.items())
         row.rounds[name].push_back(value.get<double>());
     }
   return rows;
 }
 
-void run(const Options& options, const std::string& self) {
-  if (options.once) {
-    std::printf("%s\n", loaded_once(options).dump().c_str());
+void run(const bench::Arguments& arguments, const std::string& self) {
+  if (arguments.has("--once")) {
+    std::printf("%s\n", load_once(arguments).dump().c_str());
     return;
   }
-  const int threads = Executor(options.threads).threads();
-  const std::vector<Row> rows = measured(options, self, threads);
+  const int threads = Executor(arguments.number("--threads", 0)).threads();
+  const int rounds = std::max(1, arguments.number("--rounds", 5));
+  const std::vector<Row> rows = measure(arguments, self, rounds, threads);
   for (const Row& row : rows)
     for (const double fingerprint : row.rounds.at("fingerprint"))
       if (fingerprint != rows.front().rounds.at("fingerprint").front())
-        throw std::runtime_error(row.program + " loads other bytes");
-  std::printf("medians of %d rounds; columns: ", options.rounds);
+        throw std::runtime_error(row.program + " loads different bytes");
+  std::printf("medians of %d rounds; columns: ", rounds);
   for (const Row& row : rows) std::printf("[%s, %d threads] ", row.program.c_str(), row.threads);
   std::printf("\n");
   nlohmann::ordered_json figures;
@@ -161,60 +150,31 @@ void run(const Options& options, const std::string& self) {
       figures[row.program][std::to_string(row.threads)][name] = row.of(name);
     }
     if (rows.size() == 4 && rows[2].of(name) > 0 && rows[3].of(name) > 0)
-      std::printf("   %.2f and %.2f of before", rows[0].of(name) / rows[2].of(name),
+      std::printf("   ratios %.2f and %.2f", rows[0].of(name) / rows[2].of(name),
                   rows[1].of(name) / rows[3].of(name));
     std::printf("\n");
   }
   for (std::size_t k = 0; k + 1 < rows.size(); k += 2) {
     const double share = serial_share(rows[k], rows[k + 1], "seconds");
     figures[rows[k].program]["serial_share"] = share;
-    std::printf("serial share %.3f, %.2f s of one thread's: %s\n", share,
+    std::printf("serial share %.3f, %.2f s with one thread: %s\n", share,
                 share * rows[k].of("seconds"), rows[k].program.c_str());
   }
-  if (options.json.empty()) return;
-  const nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(threads))},
-                                         {"rounds", options.rounds},
-                                         {"figures", figures}};
-  write_file(options.json, result.dump(2) + "\n");
-}
-
-Options parse(int argc, char** argv) {
-  if (argc < 2) throw std::runtime_error("which drive?");
-  Options options;
-  options.drive = argv[1];
-  for (int i = 2; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (i + 1 >= argc) throw std::runtime_error(word + " is unknown or needs a value");
-    const std::string value = argv[++i];
-    if (word == "--rounds") {
-      options.rounds = std::max(1, std::stoi(value));
-    } else if (word == "--threads") {
-      options.threads = std::stoi(value);
-    } else if (word == "--once") {
-      options.once = value != "0";
-    } else if (word == "--trajectory") {
-      options.trajectory = value;
-    } else if (word == "--beside") {
-      options.beside = value;
-    } else if (word == "--json") {
-      options.json = value;
-    } else {
-      throw std::runtime_error("unknown option " + word);
-    }
-  }
-  return options;
+  if (!arguments.has("--json")) return;
+  const nlohmann::ordered_json result = {
+      {"provenance", to_json(provenance_of(threads))}, {"rounds", rounds}, {"figures", figures}};
+  write_file(arguments.text("--json"), result.dump(2) + "\n");
 }
 
 }  // namespace
-
 }  // namespace adasplats
 
 int main(int argc, char** argv) {
-  try {
-    adasplats::run(adasplats::parse(argc, argv), argv[0]);
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_load: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return adasplats::bench::exit_code_of("bench_load", [&] {
+    adasplats::run({argc, argv,
+                    "bench_load DRIVE [--trajectory FILE] [--rounds N] [--threads N] "
+                    "[--beside PROGRAM] [--once 1] [--json FILE]",
+                    1, 1},
+                   argv[0]);
+  });
 }

@@ -1,57 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-// k nearest neighbours of every point of a cloud: PointIndex beside nanoflann, in one run on the
-// same points (in Hilbert order for both, which favours nanoflann several times over).
+// The k nearest neighbours of every point of a cloud: PointIndex and nanoflann, in one run on the
+// same points (in Hilbert order for both, which makes nanoflann several times faster).
 //   bench_neighbors INPUT [K] [THREADS] [REPEATS] [RESULT.json]
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cstdio>
-#include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/core/error.h"
-#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/core/maths/median.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/neighbors/point_index.h"
+#include "common.h"
+#include "flann_tree.h"
 
 namespace {
 
 using namespace adasplats;
-using Clock = std::chrono::steady_clock;
 
-struct FlannCloud {
-  const std::vector<Vec3f>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<int>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using FlannTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, FlannCloud>, FlannCloud,
-                                        3, std::uint32_t>;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Build and search time, and the sum of K-th distances as proof that both found the same.
+/// Build and search times, and the sum of the K-th distances, which must agree.
 struct Measured {
   double build_s, search_s, kth_sum_m;
 };
 
 Measured run_ours(const std::vector<Vec3f>& points, std::uint32_t k, const Executor& executor) {
-  auto start = Clock::now();
+  const Stopwatch build;
   const PointIndex index = PointIndex::from_sorted(points, executor);
-  const double build_s = seconds_since(start);
-  start = Clock::now();
+  const double build_s = build.seconds();
+  const Stopwatch search;
   std::vector<float> kth(points.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t) { return NeighborLimit{k}; },
@@ -59,7 +37,7 @@ Measured run_ours(const std::vector<Vec3f>& points, std::uint32_t k, const Execu
         for (std::uint32_t i = 0; i < neighbors.size; ++i)
           kth[rank] = std::max(kth[rank], neighbors.squared_distances[i]);
       });
-  const double search_s = seconds_since(start);
+  const double search_s = search.seconds();
   double sum = 0;
   for (const float d : kth) sum += std::sqrt(static_cast<double>(d));
   return {build_s, search_s, sum};
@@ -67,12 +45,12 @@ Measured run_ours(const std::vector<Vec3f>& points, std::uint32_t k, const Execu
 
 Measured run_nanoflann(const std::vector<Vec3f>& points, std::uint32_t k,
                        const Executor& executor) {
-  auto start = Clock::now();
-  const FlannCloud cloud{points};
-  FlannTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  const Stopwatch build;
+  const bench::FlannCloud cloud{points};
+  bench::FlannTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   tree.buildIndex();
-  const double build_s = seconds_since(start);
-  start = Clock::now();
+  const double build_s = build.seconds();
+  const Stopwatch search;
   std::vector<float> kth(points.size());
   executor.for_chunks(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> indices(k);
@@ -83,30 +61,25 @@ Measured run_nanoflann(const std::vector<Vec3f>& points, std::uint32_t k,
       kth[i] = distances[found - 1];
     }
   });
-  const double search_s = seconds_since(start);
+  const double search_s = search.seconds();
   double sum = 0;
   for (const float d : kth) sum += std::sqrt(static_cast<double>(d));
   return {build_s, search_s, sum};
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-int run(int argc, char** argv) {
-  const Executor executor(argc > 3 ? std::atoi(argv[3]) : 0);
-  const std::uint32_t k = argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 40;
-  const int repeats = argc > 4 ? std::atoi(argv[4]) : 3;
+void run(const bench::Arguments& arguments) {
+  const auto k = arguments.input_number<std::uint32_t>(1, 40);
+  const Executor executor(arguments.input_number(2, 0));
+  const int repeats = arguments.input_number(3, 3);
   ProgressSink quiet;
-  const std::vector<std::filesystem::path> inputs = {argv[1]};
+  const std::vector<std::filesystem::path> inputs = {arguments.input(0)};
   const PointCloud cloud = load_cloud(inputs, {}, executor, quiet).first;
-  auto start = Clock::now();
+  const Stopwatch sorting;
   std::vector<Vec3f> points;
   for (const std::uint32_t i : hilbert_order(cloud.positions, executor))
     points.push_back(cloud.positions[i]);
   std::printf("%zu points, K = %u, %d threads; Hilbert order %.2f s\n", points.size(), k,
-              executor.threads(), seconds_since(start));
+              executor.threads(), sorting.seconds());
   std::vector<double> ours_s, flann_s, ratios;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const Measured ours = run_ours(points, k, executor);
@@ -120,32 +93,24 @@ int run(int argc, char** argv) {
     flann_s.push_back(flann.build_s + flann.search_s);
     ratios.push_back(flann_s.back() / ours_s.back());
   }
-  std::printf("median of %d: ours %.2f s, nanoflann %.2f s, ratio %.2f\n", repeats, median(ours_s),
-              median(flann_s), median(ratios));
-  if (argc > 5) {
+  std::printf("median of %d: ours %.2f s, nanoflann %.2f s, ratio %.2f\n", repeats,
+              upper_median_of(ours_s), upper_median_of(flann_s), upper_median_of(ratios));
+  if (!arguments.input(4).empty()) {
     const nlohmann::ordered_json result = {
         {"provenance", to_json(provenance_of(executor.threads()))},
         {"points", points.size()},
         {"neighbors", k},
-        {"ours_s", median(ours_s)},
-        {"nanoflann_s", median(flann_s)},
-        {"ratio", median(ratios)}};
-    write_file(argv[5], result.dump(2) + "\n");
+        {"ours_s", upper_median_of(ours_s)},
+        {"nanoflann_s", upper_median_of(flann_s)},
+        {"ratio", upper_median_of(ratios)}};
+    write_file(arguments.input(4), result.dump(2) + "\n");
   }
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: bench_neighbors INPUT [K] [THREADS] [REPEATS] [RESULT.json]\n");
-    return 64;
-  }
-  try {
-    return run(argc, argv);
-  } catch (const adasplats::Error& error) {
-    std::fprintf(stderr, "bench_neighbors: error: %s\n", error.what());
-    return adasplats::exit_code(error.kind());
-  }
+  return adasplats::bench::exit_code_of("bench_neighbors", [&] {
+    run({argc, argv, "bench_neighbors INPUT [K] [THREADS] [REPEATS] [RESULT.json]", 1, 5});
+  });
 }

@@ -1,26 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of 2560 x 1440 pixels costs from poses of a drive, with relief and bare (each
-// sample its own colour, as pictures were before), by turns in one run.
+// Seconds for a picture of 2560 x 1440 pixels from poses of a drive, with and without relief
+// (without: each sample has its own colour), alternating in one run.
 //   bench_pictures MODEL TRAJECTORY [--device cpu|cuda|optix] [--json FILE]
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/maths/median.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/jobs/session/device_choice.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/model/splat_model.h"
+#include "common.h"
 
 namespace adasplats {
 namespace {
@@ -28,11 +26,7 @@ namespace {
 constexpr int kRounds = 7;
 constexpr std::size_t kCpuPictures = 2, kGpuPictures = 200;
 
-struct Options {
-  std::string model, trajectory, device = "cpu", json;
-};
-
-/// Draws all cameras' pictures, by a GPU as many at once as it likes.
+/// Renders the pictures of all cameras; a GPU renders them in batches.
 class Drawer {
  public:
   Drawer(const SplatModel& model, const std::string& device, const Executor& executor) {
@@ -50,15 +44,14 @@ class Drawer {
     }
   }
 
-  /// Seconds a picture.
+  /// Seconds per picture.
   double measure(const std::vector<Camera>& cameras, const ImageOptions& options) {
     const auto renderer = engine_->renderer(scene_, options);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     renderer->render_all(cameras, [&](std::size_t, std::span<const std::uint8_t> pixels) {
       bytes_ += pixels.size();
     });
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    return seconds.count() / static_cast<double>(cameras.size());
+    return watch.seconds() / static_cast<double>(cameras.size());
   }
 
  private:
@@ -90,8 +83,9 @@ nlohmann::ordered_json measure(Drawer& drawer, const std::vector<Camera>& camera
     seconds[1].push_back(drawer.measure(cameras, with));
   }
   const double bare_s = upper_median_of(seconds[0]), with_s = upper_median_of(seconds[1]);
-  std::printf("%d x %d samples a pixel: %.4f s a picture bare, %.4f s with relief: %.2f times\n",
-              samples, samples, bare_s, with_s, with_s / bare_s);
+  std::printf(
+      "%d x %d samples per pixel: %.4f s per picture without relief, %.4f s with: %.2f times\n",
+      samples, samples, bare_s, with_s, with_s / bare_s);
   return {{"samples_per_axis", samples},
           {"bare_s", bare_s},
           {"relief_s", with_s},
@@ -99,59 +93,35 @@ nlohmann::ordered_json measure(Drawer& drawer, const std::vector<Camera>& camera
           {"relief_per_s", 1 / with_s}};
 }
 
-void run(const Options& options) {
+void run(const bench::Arguments& arguments) {
+  const std::string backend = arguments.text("--device", "cpu");
   const Executor executor;
-  const SplatModel model = load_model(options.model);
-  const Trajectory poses = load_trajectory(options.trajectory);
-  Drawer drawer(model, options.device, executor);
-  const bool on_cpu = options.device == "cpu";
+  const SplatModel model = load_model(arguments.input(0));
+  const Trajectory poses = load_trajectory(arguments.input(1));
+  Drawer drawer(model, backend, executor);
+  const bool on_cpu = backend == "cpu";
   const auto cameras = cameras_along(poses, on_cpu ? kCpuPictures : kGpuPictures);
   DeviceOptions chosen;
   if (!on_cpu)
-    chosen = {.kind = options.device == "optix" ? DeviceKind::optix : DeviceKind::cuda,
-              .gpus = {0}};
+    chosen = {.kind = backend == "optix" ? DeviceKind::optix : DeviceKind::cuda, .gpus = {0}};
   nlohmann::ordered_json result = {
       {"provenance", to_json(provenance_of(executor.threads(), choose_device(chosen)))},
-      {"device", options.device},
+      {"device", backend},
       {"splats", model.size()},
       {"width", 2560},
       {"height", 1440}};
   for (const int samples : {1, 2})
     result["samples_" + std::to_string(samples)] = measure(drawer, cameras, samples);
-  if (!options.json.empty()) write_file(options.json, result.dump(2) + "\n");
-}
-
-Options parse(int argc, char** argv) {
-  Options options;
-  std::vector<std::string> inputs;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      inputs.push_back(word);
-      continue;
-    }
-    if (i + 1 >= argc) throw std::runtime_error(word + " needs a value");
-    if (word == "--json") {
-      options.json = argv[++i];
-    } else if (word == "--device") {
-      options.device = argv[++i];
-    } else {
-      throw std::runtime_error(word + " is unknown");
-    }
-  }
-  if (inputs.size() != 2) throw std::runtime_error("usage: bench_pictures MODEL TRAJECTORY");
-  options.model = inputs[0];
-  options.trajectory = inputs[1];
-  return options;
+  if (arguments.has("--json")) write_file(arguments.text("--json"), result.dump(2) + "\n");
 }
 
 }  // namespace
 }  // namespace adasplats
 
-int main(int argc, char** argv) try {
-  adasplats::run(adasplats::parse(argc, argv));
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "bench_pictures: %s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  return adasplats::bench::exit_code_of("bench_pictures", [&] {
+    adasplats::run({argc, argv,
+                    "bench_pictures MODEL TRAJECTORY [--device cpu|cuda|optix] [--json FILE]", 2,
+                    2});
+  });
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What Python costs: the rate of Scene.simulate against the same loop in C++, by turns in one run,
-and what casting 10 million rays adds to the memory.
+"""The overhead of Python: the rate of Scene.simulate against the same loop in C++, alternating in one
+run, and the additional memory for casting 10 million rays.
 
     PYTHONPATH=build/release/python python3 bench/bench_python.py MODEL.ply TRAJECTORY
         [--sensor hdl-64-paper] [--program build/release/bin/bench_simulate] [--repeats 9]
@@ -23,13 +23,13 @@ RAYS = 10_000_000
 
 
 def memory_bytes(key):
-    """VmRSS, what is in memory now, or VmHWM, its peak."""
+    """VmRSS (current memory) or VmHWM (its peak)."""
     with open("/proc/self/status", encoding="ascii") as status:
         return next(1024 * int(x.split()[1]) for x in status if x.startswith(key + ":"))
 
 
 class Counterpart:
-    """bench_simulate, which does one run for every line it reads."""
+    """bench_simulate, which performs one run per input line."""
 
     def __init__(self, *command):
         self.process = subprocess.Popen([*command, "--step"], stdin=subprocess.PIPE,
@@ -49,7 +49,7 @@ class Counterpart:
 
 
 def simulated(arguments):
-    """Scans a second in Python and in C++, and the median ratio of runs beside each other."""
+    """Scans per second in Python and in C++, and the median ratio of consecutive runs."""
     scene = adasplats.Scene(arguments.model, device="cpu")
     sensor = adasplats.Sensor(arguments.sensor)
     poses = adasplats.Trajectory.read(arguments.trajectory)
@@ -73,7 +73,7 @@ def simulated(arguments):
 
 
 def cast_memory(arguments):
-    """What casting adds to the peak of memory, beside its input."""
+    """Increase of the peak memory by casting, without its input."""
     scene = adasplats.Scene(arguments.model, device="cpu")
     middle = adasplats.Model.load(arguments.model).bounds.mean(axis=0)
     azimuth = np.linspace(0, 2 * np.pi * RAYS / 2250, RAYS, dtype=np.float32)
@@ -104,7 +104,7 @@ def main():
     parser.add_argument("--sensor", default="hdl-64-paper")
     parser.add_argument("--program", default="build/release/bin/bench_simulate")
     parser.add_argument("--repeats", type=int, default=9)
-    parser.add_argument("--json", help="also write the figures here")
+    parser.add_argument("--json", help="write the figures to a file, too")
     arguments = parser.parse_args()
     figures = {"provenance": adasplats.provenance(), "cast": cast_memory(arguments),
                "simulate": simulated(arguments)}

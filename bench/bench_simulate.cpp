@@ -1,17 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Seconds that scans along a trajectory take, sensor noise and attributes included: what
-// Scene.simulate of Python does, in C++. bench_python.py runs both by turns.
+// Seconds for scans along a trajectory, with sensor noise and attributes: the C++ counterpart of
+// Scene.simulate in Python. bench_python.py alternates between both.
 //
 //   bench_simulate MODEL.ply TRAJECTORY SENSOR [--threads N] [--step]
 //
-// Prints the seconds of five runs; with --step those of one run for every line of stdin.
+// Prints the seconds of five runs; with --step those of one run per line of stdin.
 
 #include <cstdio>
-#include <exception>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,35 +18,12 @@
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "common.h"
 
 namespace adasplats {
 namespace {
 
-struct Options {
-  std::vector<std::string> inputs;
-  int threads = 0;
-  bool by_step = false;
-};
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--step") {
-      options.by_step = true;
-    } else if (word == "--threads" && i + 1 < argc) {
-      options.threads = std::stoi(argv[++i]);
-    } else {
-      options.inputs.push_back(word);
-    }
-  }
-  if (options.inputs.size() != 3)
-    throw std::runtime_error(
-        "usage: bench_simulate MODEL.ply TRAJECTORY SENSOR [--threads N] [--step]");
-  return options;
-}
-
-/// All scans are kept, as Python keeps them.
+/// Keeps all scans, as Python does.
 double seconds_of(const ModelScene& scene, const LidarModel& sensor,
                   std::span<const ScanMotion> motions, const Executor& executor) {
   const Stopwatch watch;
@@ -60,19 +35,19 @@ double seconds_of(const ModelScene& scene, const LidarModel& sensor,
   return watch.seconds();
 }
 
-void run(const Options& options) {
-  const Executor executor(options.threads);
+void run(const bench::Arguments& arguments) {
+  const Executor executor(arguments.number("--threads", 0));
   ProgressSink progress;
   DeviceChoice cpu;
   Session session{executor, progress, 1, cpu};
-  const ModelScene scene(options.inputs[0], "", session);
-  const std::vector<ScanMotion> motions = still_scans(load_trajectory(options.inputs[1]));
-  const LidarModel sensor = load_lidar_model(options.inputs[2]);
+  const ModelScene scene(arguments.input(0), "", session);
+  const std::vector<ScanMotion> motions = still_scans(load_trajectory(arguments.input(1)));
+  const LidarModel sensor = load_lidar_model(arguments.input(2));
   const auto print = [&] {
     std::printf("%.9f\n", seconds_of(scene, sensor, motions, executor));
     std::fflush(stdout);
   };
-  if (!options.by_step) {
+  if (!arguments.has("--step")) {
     for (int i = 0; i < 5; ++i) print();
     return;
   }
@@ -83,11 +58,8 @@ void run(const Options& options) {
 }  // namespace adasplats
 
 int main(int argc, char** argv) {
-  try {
-    adasplats::run(adasplats::parse(argc, argv));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_simulate: %s\n", error.what());
-    return 1;
-  }
+  return adasplats::bench::exit_code_of("bench_simulate", [&] {
+    adasplats::run(
+        {argc, argv, "bench_simulate MODEL.ply TRAJECTORY SENSOR [--threads N] [--step]", 3, 3});
+  });
 }

@@ -1,17 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scans per second of the paper's HDL-64: our tree, our user geometry in Embree (in packets and one
-// ray at a time) and Embree's own oriented discs, all in one run on the same disks and rays.
+// Scans per second of the paper's HDL-64: our tree, our user geometry in Embree (in packets and
+// single rays) and Embree's oriented discs, all in one run on the same disks and rays.
 //
 //   bench_trace [MODEL.ply] [--disks N] [--threads N] [--json FILE]
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,33 +18,27 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/tracer.h"
+#include "common.h"
 
 namespace adasplats {
-
 namespace {
 
 constexpr int kScans = 10;   // sensor positions along the street
-constexpr int kRepeats = 5;  // the median is printed
+constexpr int kRepeats = 5;  // for medians
 constexpr double kSensorHeight_m = 1.73;
 constexpr float kMaxRange_m = 120.0F;
 
-struct Options {
-  std::string model;
-  std::string json;
-  std::size_t disks = 1'700'000;
-  int threads = 0;
-};
-
 // ---- the scene -----------------------------------------------------------------------------
 
-/// Disks in Morton order: models come in a space-filling order too.
+/// Disks in Morton order; real models are in a similar order.
 std::vector<Disk> in_morton_order(const std::vector<Disk>& disks, const Executor& executor) {
   const auto spread = [](std::uint64_t v) {
     std::uint64_t bits = 0;
@@ -73,17 +64,17 @@ Vec3f random_direction(Random& random) {
   return vec_cast<float>(Vec3d{flat * std::cos(angle), flat * std::sin(angle), z});
 }
 
-/// `normal` turned by a few degrees, as normals of real clouds are.
+/// `normal` tilted by a few degrees, as in real clouds.
 Vec3f shaken(Vec3f normal, Random& random) {
   return normalized(normal +
                     static_cast<float>(random.uniform(0, 0.06)) * random_direction(random));
 }
 
-/// A street of 240 m: ground, two rows of facades, trees; each part covered several times.
+/// A street of 240 m: ground, two rows of facades, trees; surfaces are covered several times.
 std::vector<Disk> random_street(std::size_t count, const Executor& executor) {
   constexpr double kHalfLength_m = 120, kHalfWidth_m = 12, kFacade_m = 12;
   constexpr double kArea_m2 = 2 * kHalfLength_m * (2 * kHalfWidth_m + 2 * kFacade_m);
-  constexpr double kCover = 4;  // disks over a point of the ground or a facade
+  constexpr double kCover = 4;  // disks per point of the ground or a facade
   const double mean_radius_m =
       std::sqrt(kCover * kArea_m2 / (0.8 * static_cast<double>(count) * 3.14159265358979));
   std::vector<Disk> disks;
@@ -112,8 +103,8 @@ std::vector<Disk> random_street(std::size_t count, const Executor& executor) {
   return in_morton_order(disks, executor);
 }
 
-/// Rays of `kScans` scans: along the middle of the scene's box, above the ground (the median height
-/// of the disks' lower half stands for it).
+/// Rays of `kScans` scans along the middle of the scene's box, above the ground (the median height
+/// of the lower half of the disks).
 std::vector<std::vector<Ray>> make_scans(const std::vector<Disk>& disks) {
   std::vector<float> xs, ys, zs;
   for (std::size_t i = 0; i < disks.size(); i += 1 + disks.size() / 100'000) {
@@ -139,7 +130,7 @@ std::vector<std::vector<Ray>> make_scans(const std::vector<Disk>& disks) {
   return scans;
 }
 
-// ---- Embree's own oriented discs -----------------------------------------------------------
+// ---- Embree's oriented discs ---------------------------------------------------------------
 
 class EmbreeDiscs {
  public:
@@ -175,7 +166,7 @@ class EmbreeDiscs {
     });
   }
 
-  /// In coherent packets of 16, as our tracer casts them.
+  /// In coherent packets of 16, like our tracer.
   void nearest_in_packets(std::span<const Ray> rays, std::span<Hit> hits,
                           const Executor& executor) const {
     executor.for_chunks(rays.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -242,24 +233,16 @@ class EmbreeDiscs {
 
 // ---- measuring -----------------------------------------------------------------------------
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 struct Figure {
   std::string name;
   std::function<void(std::span<const Ray>, std::span<Hit>)> cast;
-  std::vector<double> rates = {};  ///< scans/s, one a repeat
+  std::vector<double> rates = {};  ///< scans/s, one per repeat
   std::size_t hits = 0;
 
-  double median_rate() const {
-    std::vector<double> sorted = rates;
-    std::ranges::sort(sorted);
-    return sorted[sorted.size() / 2];
-  }
+  double median_rate() const { return upper_median_of(std::vector(rates)); }
 };
 
-/// Each repeat takes the contestants in turn, so that what else the machine does hits all alike.
+/// Alternates between the contestants, so that other load on the machine affects all of them.
 void measure(std::vector<Figure>& figures, const std::vector<std::vector<Ray>>& scans) {
   std::vector<Hit> hits(scans.front().size());
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
@@ -267,37 +250,14 @@ void measure(std::vector<Figure>& figures, const std::vector<std::vector<Ray>>& 
       figure.hits = 0;
       double seconds = 0;
       for (const std::vector<Ray>& rays : scans) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         figure.cast(rays, hits);
-        seconds += seconds_since(start);
+        seconds += watch.seconds();
         figure.hits += static_cast<std::size_t>(std::ranges::count_if(hits, &Hit::valid));
       }
       figure.rates.push_back(static_cast<double>(scans.size()) / seconds);
     }
   }
-}
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto value = [&] {
-      if (i + 1 >= argc) throw std::runtime_error(word + " needs a value");
-      return std::string(argv[++i]);
-    };
-    if (word == "--json") {
-      options.json = value();
-    } else if (word == "--disks") {
-      options.disks = std::stoul(value());
-    } else if (word == "--threads") {
-      options.threads = std::stoi(value());
-    } else if (word.starts_with("--")) {
-      throw std::runtime_error("unknown option " + word);
-    } else {
-      options.model = word;
-    }
-  }
-  return options;
 }
 
 struct BuildTime {
@@ -306,8 +266,9 @@ struct BuildTime {
 };
 
 void report(const std::vector<Figure>& figures, const std::vector<BuildTime>& builds,
-            const Options& options, const Executor& executor, std::size_t disks, std::size_t rays) {
-  std::printf("%zu disks, %d threads, %zu rays a scan\n", disks, executor.threads(), rays);
+            const bench::Arguments& arguments, const Executor& executor, std::size_t disks,
+            std::size_t rays) {
+  std::printf("%zu disks, %d threads, %zu rays per scan\n", disks, executor.threads(), rays);
   nlohmann::json build_seconds;
   for (const BuildTime& build : builds) {
     std::printf("%-34s built in %.3f s\n", build.name.c_str(), build.seconds);
@@ -323,8 +284,8 @@ void report(const std::vector<Figure>& figures, const std::vector<BuildTime>& bu
                     {"ratio_of_ours", ratio},
                     {"hits", figure.hits}});
   }
-  if (options.json.empty()) return;
-  double fastest_discs = 0;  // of Embree, by packets or ray by ray
+  if (!arguments.has("--json")) return;
+  double fastest_discs = 0;  // of Embree, in packets or single rays
   for (const Figure& figure : figures) {
     if (figure.name.starts_with("Embree's"))
       fastest_discs = std::max(fastest_discs, figure.median_rate());
@@ -334,18 +295,20 @@ void report(const std::vector<Figure>& figures, const std::vector<BuildTime>& bu
                                          {"threads", executor.threads()},
                                          {"rays_per_scan", rays},
                                          {"build_seconds", build_seconds},
-                                         {"model", options.model},
+                                         {"model", arguments.input(0)},
                                          {"ours_per_s", figures.front().median_rate()},
                                          {"embree_discs_per_s", fastest_discs},
                                          {"figures", rows}};
-  write_file(options.json, result.dump(2) + "\n");
+  write_file(arguments.text("--json"), result.dump(2) + "\n");
 }
 
-void run(const Options& options) {
-  const Executor executor(options.threads);
-  const std::vector<Disk> disks = options.model.empty() ? random_street(options.disks, executor)
-                                                        : load_model(options.model).disks;
-  if (disks.empty()) throw std::runtime_error("a model with no disks");
+void run(const bench::Arguments& arguments) {
+  const Executor executor(arguments.number("--threads", 0));
+  const std::vector<Disk> disks =
+      arguments.inputs().empty()
+          ? random_street(arguments.number<std::size_t>("--disks", 1'700'000), executor)
+          : load_model(arguments.input(0)).disks;
+  if (disks.empty()) throw std::runtime_error("the model has no disks");
   const auto scans = make_scans(disks);
 
   std::vector<BuildTime> builds;
@@ -354,12 +317,11 @@ void run(const Options& options) {
     std::unique_ptr<Tracer> tracer;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       tracer.reset();
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       tracer = make();
-      seconds.push_back(seconds_since(start));
+      seconds.push_back(watch.seconds());
     }
-    std::ranges::sort(seconds);
-    builds.push_back({name, seconds[seconds.size() / 2]});
+    builds.push_back({name, upper_median_of(seconds)});
     return tracer;
   };
   const SceneView scene = {disks, nullptr};
@@ -386,19 +348,15 @@ void run(const Options& options) {
       {"nearest 5: wide tree", [&](auto rays, auto hits) { cast_lists(*wide, rays, hits); }},
       {"nearest 5: user geometry", [&](auto rays, auto hits) { cast_lists(*user, rays, hits); }}};
   measure(figures, scans);
-  report(figures, builds, options, executor, disks.size(), scans.front().size());
+  report(figures, builds, arguments, executor, disks.size(), scans.front().size());
 }
 
 }  // namespace
-
 }  // namespace adasplats
 
 int main(int argc, char** argv) {
-  try {
-    adasplats::run(adasplats::parse(argc, argv));
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_trace: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return adasplats::bench::exit_code_of("bench_trace", [&] {
+    adasplats::run(
+        {argc, argv, "bench_trace [MODEL.ply] [--disks N] [--threads N] [--json FILE]", 0, 1});
+  });
 }

@@ -1,41 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the viewer's server has to do: the tree of a model (of a PLY, or of a plane of so many
-// splats) and of its centers as points, and scan packets. One thread stands beside as many as the
-// machine has.
+// The main work of the viewer's server: building the tree of a model (a PLY file or a plane with
+// the given number of splats) and of its centers as points, and encoding scan packets. With one
+// thread and with all threads of the machine.
 //   bench_view [MODEL.ply | SPLATS] [RESULT.json]
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/levels/level_tree.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/scan_packet.h"
+#include "common.h"
 
 namespace adasplats {
 namespace {
 
-constexpr int kRepeats = 3;  // the median is printed
+constexpr int kRepeats = 3;  // for medians
 constexpr std::size_t kPacketPoints = 100'000;
 constexpr int kPackets = 200;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 SplatModel plane_of(std::size_t splats) {
   SplatModel model;
@@ -53,23 +47,23 @@ nlohmann::ordered_json measure_tree(const char* name, const LevelInput& input,
   std::vector<double> seconds;
   std::size_t nodes = 0, elements = 0;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const LevelTree tree(input, {}, executor);
-    seconds.push_back(seconds_since(start));
+    seconds.push_back(watch.seconds());
     nodes = tree.nodes().size();
     elements = 0;
     for (std::size_t n = 0; n < nodes; ++n) elements += tree.elements(n).size();
   }
-  std::ranges::sort(seconds);
+  const double median_s = upper_median_of(seconds);
   const std::size_t size = input.disks.size() + input.positions.size();
-  std::printf("%-7s %d threads  %8.3f s  %6zu nodes  %6.1f MB, %.2f elements an input's\n", name,
-              executor.threads(), seconds[kRepeats / 2], nodes,
+  std::printf("%-7s %d threads  %8.3f s  %6zu nodes  %6.1f MB, %.2f elements per input element\n",
+              name, executor.threads(), median_s, nodes,
               static_cast<double>(elements * sizeof(LevelElement)) * 1e-6,
               static_cast<double>(elements) / static_cast<double>(size));
   return {{"input", name},
           {"size", size},
           {"threads", executor.threads()},
-          {"seconds", seconds[kRepeats / 2]},
+          {"seconds", median_s},
           {"nodes", nodes},
           {"elements_over_size", static_cast<double>(elements) / static_cast<double>(size)}};
 }
@@ -86,20 +80,20 @@ nlohmann::ordered_json measure_packets() {
   }
   scan.rays = kPacketPoints;
   std::size_t bytes = 0;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   for (int k = 0; k < kPackets; ++k)
     bytes += scan_packet(scan, {.rings = 64, .columns = 1800})->size();
-  const double seconds = seconds_since(start);
-  std::printf("packets of %zu points: %.0f a second, %.1f GB/s, one thread\n", kPacketPoints,
+  const double seconds = watch.seconds();
+  std::printf("packets of %zu points: %.0f per second, %.1f GB/s, one thread\n", kPacketPoints,
               kPackets / seconds, 1e-9 * static_cast<double>(bytes) / seconds);
   return {{"points", kPacketPoints}, {"per_s", kPackets / seconds}};
 }
 
-void run(const std::string& what, const std::string& json) {
+void run(const std::string& input, const std::string& json) {
   std::size_t splats = 0;
-  const auto [rest, problem] = std::from_chars(what.data(), what.data() + what.size(), splats);
-  const bool is_count = problem == std::errc() && rest == what.data() + what.size();
-  const SplatModel model = is_count ? plane_of(splats) : load_model(what);
+  const auto [rest, problem] = std::from_chars(input.data(), input.data() + input.size(), splats);
+  const bool is_count = problem == std::errc() && rest == input.data() + input.size();
+  const SplatModel model = is_count ? plane_of(splats) : load_model(input);
   std::vector<Vec3f> centers;
   for (const Disk& disk : model.disks) centers.push_back(disk.center);
   nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(Executor().threads()))},
@@ -123,11 +117,10 @@ void run(const std::string& what, const std::string& json) {
 }  // namespace adasplats
 
 int main(int argc, char** argv) {
-  try {
-    adasplats::run(argc > 1 ? argv[1] : "2000000", argc > 2 ? argv[2] : "");
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_view: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  using namespace adasplats;
+  return bench::exit_code_of("bench_view", [&] {
+    const bench::Arguments arguments(argc, argv, "bench_view [MODEL.ply|SPLATS] [RESULT.json]", 0,
+                                     2);
+    run(arguments.input(0, "2000000"), arguments.input(1));
+  });
 }

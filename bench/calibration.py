@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What calibration does for beams that took no part: every real drive, before and after.
+"""The effect of calibration on held-out beams, before and after, for every real drive.
 
   bench/calibration.py build/release/bin/adasplats REAL_DATA OUT [--parts]
 
-REAL_DATA has kitti-0005, pandaset-002 and semantickitti-labelled as unpacked; what is missing is
-left out. Writes OUT/calibration.json (for bench/results) and prints a Markdown table. What the
-program reported since it was built is not run again. Columns: a model of the recording as it is; one that was
-calibrated, its held-out scans corrected by interpolation; these scans registered to that model. With --parts also what is left
-without each part of the calibration, and without what else a drive's models do by themselves.
+REAL_DATA: folder with kitti-0005, pandaset-002 and semantickitti-labelled, unpacked; missing ones
+are skipped. Writes OUT/calibration.json (for bench/results) and prints a Markdown table. Reports
+that are newer than the program are reused. Columns: a model of the uncalibrated recording; a
+calibrated model with its held-out scans corrected by interpolation; these scans registered to that
+model. --parts: also without each part of the calibration, and without other default steps of models
+of drives.
 """
 
 import json
@@ -34,7 +35,7 @@ KITTI_BEAMS = ["--labels", "semantickitti", "--drop-movable"]
 
 
 def drives(data):
-    """(name, use of its figures, input, held-out input, flags of model, flags of evaluate)."""
+    """Yields (name, use of its figures, input, held-out input, model flags, evaluate flags)."""
     found = []
     kitti = data / "kitti-0005/sequences"
     if kitti.exists():
@@ -54,13 +55,13 @@ def drives(data):
 
 
 def report_of(words, file):
-    """What a command reports; not run where it has reported since the program, and every other file
-    that the command names, was made."""
+    """The report of a command. Runs it unless its report is newer than the program and all other files
+    that the command names."""
     words = [str(word) for word in words]
     command = file.with_suffix(".command")
     newest = max(pathlib.Path(word).stat().st_mtime for word in words if pathlib.Path(word).exists())
-    told = command.read_text() if command.exists() else ""
-    if not file.exists() or told != shlex.join(words) or file.stat().st_mtime < newest:
+    last = command.read_text() if command.exists() else ""
+    if not file.exists() or last != shlex.join(words) or file.stat().st_mtime < newest:
         done = subprocess.run([*words, "--report", str(file)], stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True)
         if done.returncode != 0:
@@ -80,7 +81,7 @@ def figures_of(beams):
 
 
 class Drive:
-    """Models of one drive, and what they say of its held-out beams."""
+    """Models of one drive, and their figures for its held-out beams."""
 
     def __init__(self, program, folder, training, held_out, model_flags, beam_flags):
         self.program, self.folder = program, folder
@@ -131,7 +132,7 @@ def main():
               f"| {100 * new['median_m']:.2f} cm | {new['no_hit']:.1%} | {new['early_50cm']:.1%} "
               f"| {new['late_50cm']:.1%} |", flush=True)
     provenance = provenance_of(program)
-    # Paths of data and output mean nothing elsewhere.
+    # Paths of data and output are meaningless on other machines.
     provenance["command"] = ("calibration.py build/release/bin/adasplats REAL_DATA OUT"
                              + with_parts * " --parts")
     provenance["load_average"] = os.getloadavg()[0]

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A procedural city from scans to a model in tiles, and a drive through it whose tiles come and go.
+"""A procedural city from scans to a tiled model, and a drive through it with streamed tiles.
 
   bench/city.py BIN_DIR WORK OUT.json --points 50e6 --points 250e6 [--device cuda|cpu] [--threads N]
       [--tile M] [--calibrate] [--drive-m M] [--spacing M] [--tile-memory GB] [--check STEP]
       [--cpu-drive N] [--drop]
 
-For each number of points: `synth city` of 125,000 points a metre (the length follows), `model
---tile`, then bench_city along the drive, there and back, until `drive-m` metres are driven; with
-`cpu-drive` also one way on N threads of the CPU with 1 GB for tiles. On a GPU a small city comes
-before, unmeasured: the first use of CUDA on a machine takes many seconds. Peak memory of the process is the system's (VmHWM of children), of the GPU what nvidia-smi says most while
-it runs, less what was used before. Writes OUT.json (for bench/results).
+For each number of points: `synth city` with 125,000 points per metre (which gives the length),
+`model --tile`, then bench_city back and forth along the drive until `drive-m` metres are driven;
+with `cpu-drive` also one pass on N CPU threads with 1 GB for tiles. On a GPU, an unmeasured small
+city comes first: the first use of CUDA on a machine takes many seconds. The peak memory of the
+process is VmHWM of its children; that of the GPU is the maximum from nvidia-smi during the run, less
+the memory that was used before. Writes OUT.json (for bench/results).
 """
 import argparse
 import json
@@ -27,7 +28,7 @@ POINTS_A_METRE = 125_000
 
 
 def gpu_bytes():
-    """Memory in use on the first GPU; None where there is no nvidia-smi."""
+    """Used memory of the first GPU; None without nvidia-smi."""
     try:
         text = subprocess.run(["nvidia-smi", "--query-gpu=memory.used", "--format=csv,noheader,nounits"],
                               capture_output=True, text=True, check=True).stdout
@@ -37,17 +38,17 @@ def gpu_bytes():
 
 
 class GpuWatch:
-    """The most that is in use beside what was before."""
+    """Peak GPU memory in excess of the memory used before."""
 
     def __init__(self):
         self.before = gpu_bytes()
-        self.most = self.before
+        self.peak = self.before
         self.ends = threading.Event()
         self.thread = threading.Thread(target=self.look)
 
     def look(self):
         while not self.ends.wait(0.1):
-            self.most = max(self.most, gpu_bytes() or 0)
+            self.peak = max(self.peak, gpu_bytes() or 0)
 
     def __enter__(self):
         if self.before is not None:
@@ -60,11 +61,11 @@ class GpuWatch:
             self.thread.join()
 
     def bytes(self):
-        return None if self.before is None else self.most - self.before
+        return None if self.before is None else self.peak - self.before
 
 
 def run(command):
-    """Runs it; seconds, peak memory of it and of the GPU."""
+    """Runs a command; returns its seconds, peak memory and peak GPU memory."""
     start = time.monotonic()
     with GpuWatch() as gpu:
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
@@ -77,8 +78,8 @@ def run(command):
             "cpu_seconds": usage.ru_utime + usage.ru_stime, "gpu_memory_bytes": gpu.bytes()}
 
 
-def driven(work, options, *words):
-    """What bench_city says of a drive through a city."""
+def drive_figures(work, options, *words):
+    """Figures of bench_city for a drive through a city."""
     report = work / "drive.json"
     used = run([options.bin / "bench_city", work / "city", work / "drive" / "sequences" / "00",
                 "--spacing", str(options.spacing), "--check", str(options.check), "--sensor",
@@ -89,7 +90,7 @@ def driven(work, options, *words):
 
 
 def warm_up(options):
-    """The first use of the GPU."""
+    """First use of the GPU, not measured."""
     work = options.work / "warm"
     work.mkdir(parents=True, exist_ok=True)
     program = options.bin / "adasplats"
@@ -123,10 +124,10 @@ def one_city(points, options):
     found["model"]["us_a_point"] = 1e6 * found["model"]["seconds"] / facts["points"]
     if options.drive_m > 0:
         passes = max(1, round(options.drive_m / metres))
-        found["drive"] = driven(work, options, "--passes", str(passes), "--tile-memory",
+        found["drive"] = drive_figures(work, options, "--passes", str(passes), "--tile-memory",
                                 str(options.tile_memory), *device)
     if options.cpu_drive > 0:
-        found["cpu_drive"] = driven(work, options, "--device", "cpu", "--threads",
+        found["cpu_drive"] = drive_figures(work, options, "--device", "cpu", "--threads",
                                     str(options.cpu_drive))
     if options.drop:
         shutil.rmtree(work)
@@ -148,7 +149,7 @@ def main():
     parser.add_argument("--tile-memory", type=float, default=1)
     parser.add_argument("--check", type=int, default=0)
     parser.add_argument("--cpu-drive", type=int, default=0)
-    parser.add_argument("--drop", action="store_true", help="remove each city behind its figures")
+    parser.add_argument("--drop", action="store_true", help="delete each city after measuring it")
     options = parser.parse_args()
     cities = []
     if options.device != "cpu":

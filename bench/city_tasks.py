@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The tiles of a procedural city by the lines of `model --plan`, on one GPU and on several of a host.
+"""The tiles of a procedural city from the commands of `model --plan`, on one and on several GPUs of a
+host.
 
   bench/city_tasks.py BIN_DIR WORK OUT.json --points 150e6 --gpus 1 --gpus 2 [--a-card N] [--runs N]
       [--tile M]
 
-Makes a city of 125,000 points a metre, plans it once, and for each number of GPUs runs its lines on
-copies of the planned folder, N processes a card; cards are told by CUDA_VISIBLE_DEVICES. What is
-timed is the lines alone. Then the last command finishes each city, and the bytes of all files but
-adasplats.json are compared. Writes OUT.json (for bench/results): seconds of the runs, medians, how
-often faster than the first number of GPUs.
+Makes a city with 125,000 points per metre, plans it once, and for each number of GPUs runs the
+planned commands on copies of the planned folder, N processes per GPU, which CUDA_VISIBLE_DEVICES
+selects. Only these commands are timed. Then the last command finishes each city, and the bytes of
+all files except adasplats.json are compared. Writes OUT.json (for bench/results): seconds of the
+runs, medians, and speedups over the first number of GPUs.
 """
 import argparse
 import hashlib
@@ -37,13 +38,13 @@ def run(command, **options):
 
 
 def run_lines(lines, program, work, gpus, a_card):
-    """Seconds that the lines take, each card with so many processes."""
+    """Runs the commands with `a_card` processes per GPU; returns their seconds."""
     left = queue.SimpleQueue()
     for line in lines:
         left.put([str(program), *shlex.split(line)[1:]])
     failures = []
 
-    def work_off(card):
+    def run_queue(card):
         while not failures:
             try:
                 words = left.get_nowait()
@@ -54,7 +55,7 @@ def run_lines(lines, program, work, gpus, a_card):
             if done.returncode != 0:
                 failures.append(done.stderr)
 
-    threads = [threading.Thread(target=work_off, args=(card,))
+    threads = [threading.Thread(target=run_queue, args=(card,))
                for card in range(gpus) for _ in range(a_card)]
     start = time.monotonic()
     for thread in threads:
@@ -67,7 +68,7 @@ def run_lines(lines, program, work, gpus, a_card):
 
 
 def digest(folder):
-    """Of all files of a city but what says when it was made."""
+    """Digest of all files of a city except adasplats.json, which contains its date."""
     sums = hashlib.sha256()
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.name != "adasplats.json":
@@ -121,7 +122,7 @@ def main():
     print(json.dumps(found, indent=1))
     options.out.write_text(json.dumps(found, indent=1) + "\n")
     if len(digests) != 1:
-        sys.exit("the cities have different bytes")
+        sys.exit("the cities differ")
 
 
 if __name__ == "__main__":

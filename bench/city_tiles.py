@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recording modelled in one piece and in tiles: how many splats are the same, and how well both
+"""A recording modelled at once and in tiles: the number of equal splats, and how well both models
 predict the beams of another pass.
 
   bench/city_tiles.py PROGRAM WORK OUT.json DRIVE HELD_OUT [--tile M] [--halo M] [--device cuda|cpu]
       [--name NAME]
 
-The same are splats with the same place, normal and radius to the last bit; of the others is told
-how far they are from the borders of tiles. `evaluate resimulate` says the figures of held-out beams.
+Equal splats have the same position, normal and radius to the last bit; for the others the distance
+to the nearest tile border is reported. `evaluate resimulate` reports the figures of held-out beams.
 Writes OUT.json (for bench/results). Needs NumPy.
 """
 import argparse
@@ -29,7 +29,7 @@ SHAPE = ("x", "y", "z", "nx", "ny", "nz", "radius")
 
 
 def splats_of(path):
-    """The shapes of a model's splats, one record each."""
+    """The shapes of a model's splats, one record per splat."""
     content = path.read_bytes()
     end = content.index(b"end_header\n") + len(b"end_header\n")
     count, fields = 0, []
@@ -47,7 +47,7 @@ def splats_of(path):
 
 
 def from_borders_m(shapes, tile_m):
-    """How far places are from the nearest border of a tile."""
+    """Distances from positions to the nearest tile border."""
     away = [np.abs((shapes[axis] / tile_m) - np.round(shapes[axis] / tile_m)) * tile_m
             for axis in ("x", "y")]
     return np.minimum(*away)
@@ -74,7 +74,7 @@ def main():
     parser.add_argument("--tile", type=float, default=24)
     parser.add_argument("--halo", type=float, default=8)
     parser.add_argument("--device", default="cpu")
-    parser.add_argument("--name", default="", help="of the recording")
+    parser.add_argument("--name", default="", help="name of the recording")
     given = parser.parse_args()
     shutil.rmtree(given.work, ignore_errors=True)
     given.work.mkdir(parents=True)
@@ -85,12 +85,12 @@ def main():
     held_out = {name: report_of([given.program, "evaluate", "resimulate", made, given.held_out,
                                  "--device", given.device], file)
                 for name, made in (("one_piece", one), ("tiles", city))}
-    whole = splats_of(one)
+    one_model = splats_of(one)
     tiles = json.loads((city / "city.json").read_text())["tiles"]
     parts = np.concatenate([splats_of(city / tile["file"]) for tile in tiles if tile["splats"] > 0])
-    raw = f"V{whole.dtype.itemsize}"
-    is_same = np.isin(whole.view(raw), parts.view(raw))
-    others = from_borders_m(whole[~is_same], given.tile)
+    raw = f"V{one_model.dtype.itemsize}"
+    is_same = np.isin(one_model.view(raw), parts.view(raw))
+    others = from_borders_m(one_model[~is_same], given.tile)
     held_out = {name: {key: report[key] for key in HELD_OUT if key in report}
                 for name, report in held_out.items()}
     provenance = provenance_of(given.program)
@@ -102,7 +102,7 @@ def main():
              "points": {name: report.get("points_in", report.get("points"))
                         for name, report in reports.items()},
              "seconds": {name: report["seconds"]["total"] for name, report in reports.items()},
-             "splats": {"one_piece": len(whole), "tiles": len(parts), "same": int(is_same.sum())},
+             "splats": {"one_piece": len(one_model), "tiles": len(parts), "same": int(is_same.sum())},
              "others_farthest_from_borders_m": float(others.max()) if len(others) else None,
              "held_out": held_out}
     print(json.dumps(found, indent=1))

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes one JSON of the reports of a part, and one of all parts (bench/results_cpu.sh calls it).
+"""Merges the reports of a part into one JSON file, and all parts into another (for
+bench/results_cpu.sh).
 
-usage: collect_results.py part FOLDER OUT.json COMMAND    all *.json below FOLDER, folders as keys
+usage: collect_results.py part FOLDER OUT.json COMMAND    all *.json in FOLDER; subfolders are keys
        collect_results.py all OUT.json PART.json...
        collect_results.py current PART.json PROGRAM COMMAND
-                                    exit code 0: of the program's clean commit and this command
+                                    exit code 0: from the program's clean commit and this command
        collect_results.py compactly FILE.json FOLDER
-                                    the same with a line for what holds no other objects
+                                    rewrite the file with objects of plain values on one line
 
-The reports of a part must come from one commit. Parts of several commits stay visibly so: then the
-result names none, and each part its own.
+The reports of a part must come from one commit. If parts come from several commits, the merged
+result names none, and each part names its own.
 """
 import json
 import pathlib
@@ -19,7 +20,7 @@ import sys
 
 from provenance import provenance_of
 
-# What reports hold besides figures, or too finely for a table.
+# Keys of reports that are no figures or too detailed for a table.
 LEFT_OUT = {"program", "version", "command", "device", "provenance", "parameters", "warnings",
             "files", "by_range", "by_incidence", "by_elevation", "laser_bias", "step_seconds"}
 
@@ -31,7 +32,7 @@ def figures_of(report):
 
 
 def common(values, what, folder):
-    """The one value of all."""
+    """The value that all have in common."""
     if not values or any(value != values[0] for value in values):
         sys.exit(f"collect_results: {folder}: the reports differ in their {what}: {values}")
     return values[0]
@@ -43,22 +44,22 @@ def part(folder, out, command):
         report = json.loads(file.read_text())
         if isinstance(report, dict) and "provenance" in report:
             sources.append(report["provenance"])
-        place = result
+        node = result
         for name in file.relative_to(folder).parts[:-1]:
-            place = place.setdefault(name, {})
-        place.setdefault(file.stem, {})
-        place[file.stem] = figures_of(report)
+            node = node.setdefault(name, {})
+        node.setdefault(file.stem, {})
+        node[file.stem] = figures_of(report)
     dates = sorted(source["date"] for source in sources)
-    cores = [source["machine"].pop("cores", 0) for source in sources]  # a part may vary them
-    told = {key: common([source[key] for source in sources], key, folder)
+    cores = [source["machine"].pop("cores", 0) for source in sources]  # may differ within a part
+    shared = {key: common([source[key] for source in sources], key, folder)
             for key in ("version", "commit", "dirty", "machine")}
-    told["machine"]["cores"] = max(cores)
+    shared["machine"]["cores"] = max(cores)
     devices = [{name: source["device"].get(name) for name in ("kind", "name", "driver")}
                for source in sources]
-    told["device"] = common(devices, "device", folder)
-    told.update(first_date=dates[0] if dates else None, last_date=dates[-1] if dates else None,
+    shared["device"] = common(devices, "device", folder)
+    shared.update(first_date=dates[0] if dates else None, last_date=dates[-1] if dates else None,
                 command=command)
-    write(out, {"provenance": told, **result})
+    write(out, {"provenance": shared, **result})
 
 
 def everything(out, parts):
@@ -70,15 +71,15 @@ def everything(out, parts):
 
 
 def is_current(file, program, command):
-    told = json.loads(pathlib.Path(file).read_text())["provenance"]
+    shared = json.loads(pathlib.Path(file).read_text())["provenance"]
     now = provenance_of(program)
-    same = (told["commit"], told["dirty"]) == (now["commit"], now["dirty"])
-    return (same and told["command"] == command and now["dirty"] is not True
+    same = (shared["commit"], shared["dirty"]) == (now["commit"], now["dirty"])
+    return (same and shared["command"] == command and now["dirty"] is not True
             and now["commit"] != "unknown")
 
 
 def text_of(value, margin=""):
-    """JSON with what holds no other objects on one line."""
+    """JSON with one line per object that contains no other objects."""
     if not isinstance(value, dict) or not any(isinstance(one, dict) for one in value.values()):
         return json.dumps(value)
     rows = (f"{margin} {json.dumps(key)}: {text_of(one, margin + ' ')}"

@@ -2,11 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Whether two versions of the program make the same bytes: models of every method, scans, data sets,
-# meshes, exports and pictures, of the synthetic street.
+# Checks that two versions of the program write the same bytes: models of every method, scans, data
+# sets, meshes, exports and pictures of the synthetic street.
 # usage: bench/compare_outputs.sh BEFORE AFTER WORK [DEVICE]
 #   BEFORE, AFTER  the two programs; WORK  an empty folder; DEVICE  cpu (default) or cuda
-# Says what differs and ends with 1.
+# Lists the differences and exits with 1 if there are any.
 set -euo pipefail
 (($# == 3 || $# == 4)) || { sed -n '5,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 64; }
 before=$(realpath "$1")
@@ -16,7 +16,7 @@ work=$(realpath "$3")
 device=${4:-cpu}
 "$before" synth street --points 300000 --seed 3 -o "$work/street" --overwrite >"$work/log" 2>&1
 
-# outputs PROGRAM: everything, made in the folder that it runs in.
+# outputs PROGRAM: writes all outputs to the current folder.
 outputs() {
   local program=$1 method
   local street=../street/mapping.ply drive=../street/sequences/00
@@ -57,7 +57,7 @@ done
 (cd "$work/before" && find . -type f | LC_ALL=C sort | xargs sha256sum) >"$work/before.sums"
 (cd "$work/after" && find . -type f | LC_ALL=C sort | xargs sha256sum) >"$work/after.sums"
 if ! diff "$work/before.sums" "$work/after.sums"; then
-  echo "compare_outputs: the two make other bytes" >&2
+  echo "compare_outputs: the outputs differ" >&2
   exit 1
 fi
-echo "compare_outputs: $(wc -l <"$work/before.sums") files of the same bytes, $device"
+echo "compare_outputs: $(wc -l <"$work/before.sums") equal files, $device"

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares simulated scans with the real ones of the same poses, ring by ring.
+"""Compares simulated scans with the real ones at the same poses, ring by ring.
 
 usage: compare_rings.py SENSOR.toml REAL SIMULATED --scans FIRST:COUNT[:STRIDE] -o PREFIX
                         [--scan N] [--report FILE]
-  SENSOR.toml  elevations_deg and beam_origins_m tell the ring of a point (its cone)
-  REAL         sequence folder: scans as the sensor measured them, not motion-compensated
+  SENSOR.toml  its elevations_deg and beam_origins_m identify the ring (cone) of a point
+  REAL         sequence folder: scans as measured, not motion-compensated
   SIMULATED    sequence folder of the same scans (adasplats simulate --rolling-shutter)
-  --scans      which of them count. Of a simulation with --ray-drop those that the drop model was not
-               fitted to: with 'fit-drop --every 2', which takes the even ones, 1:COUNT:2
-Prints points and median elevation per ring, and over all cells of ring x azimuth the share that
-only one of them fills and the difference of ranges where both do. Writes PREFIX_ranges.png (real,
-simulated, difference: blue nearer, red farther, black nothing) and PREFIX_pattern.png (azimuth
-across, elevation up; left real, right simulated, 12 degrees of azimuth around forward) of scan N,
-the first of the chosen ones unless told. --report writes the figures as JSON.
+  --scans      scans to compare. With --ray-drop use scans that the drop model was not fitted to:
+               after 'fit-drop --every 2', which uses the even ones, 1:COUNT:2
+Prints points and median elevation per ring and, over all cells of ring x azimuth, the share filled
+by only one of the two and the range difference where both are filled. Writes PREFIX_ranges.png
+(real, simulated, difference: blue nearer, red farther, black empty) and PREFIX_pattern.png (azimuth
+to the right, elevation upwards; left real, right simulated, 12 degrees of azimuth around forward)
+for scan N, by default the first one. --report writes the figures as JSON.
 """
 import argparse
 import json
@@ -50,7 +50,7 @@ class Fan:
         self.heights, self.ahead = origins[:, 2], origins[:, 0]
 
     def rings(self, points):
-        """Of each point: the ring whose cone is nearest in angle, and by how many degrees."""
+        """For each point, the ring with the nearest cone and the angle between them in degrees."""
         rho = np.hypot(points[:, 0], points[:, 1])
         best = np.full(len(points), np.inf)
         ring = np.zeros(len(points), int)
@@ -71,7 +71,7 @@ def range_image(points, ring, rings):
     azimuth = np.arctan2(points[:, 1], points[:, 0])
     column = np.clip(((np.pi - azimuth) / (2 * np.pi) * COLUMNS).astype(int), 0, COLUMNS - 1)
     distance = np.linalg.norm(points[:, :3], axis=1)
-    order = np.argsort(-distance)  # the nearest wins
+    order = np.argsort(-distance)  # the nearest is drawn last
     image[ring[order], column[order]] = distance[order]
     return image
 
@@ -90,8 +90,8 @@ def difference_colors(real, simulated):
     rgb[..., 1] = 1 - np.abs(error)
     rgb[..., 2] = np.where(error > 0, 1 - error, 1)
     rgb[(real == 0) & (simulated == 0)] = 0
-    rgb[(real == 0) & (simulated > 0)] = (0.85, 0.7, 0)  # simulated alone
-    rgb[(real > 0) & (simulated == 0)] = (0, 0.5, 0)  # real alone
+    rgb[(real == 0) & (simulated > 0)] = (0.85, 0.7, 0)  # only simulated
+    rgb[(real > 0) & (simulated == 0)] = (0, 0.5, 0)  # only real
     return (255 * rgb).astype(np.uint8)
 
 
@@ -107,7 +107,7 @@ def pattern(points, width=900, height=900, half_deg=6.0):
 
 
 def chosen_scans(text, real, simulated):
-    """Numbers of "FIRST:COUNT[:STRIDE]", which both folders must have."""
+    """Scan numbers of "FIRST:COUNT[:STRIDE]", which both folders must contain."""
     try:
         first, count, stride = ([int(part) for part in text.split(":")] + [1])[:3]
     except ValueError:
@@ -123,7 +123,7 @@ def chosen_scans(text, real, simulated):
 
 
 class Comparison:
-    """What is counted over the scans: of each ring, and of the cells of ring x azimuth."""
+    """Statistics over the scans: per ring, and of the cells of ring x azimuth."""
 
     def __init__(self, fan):
         self.fan = fan
@@ -134,7 +134,7 @@ class Comparison:
         self.both, self.alone, self.errors = 0, np.zeros(2), []
 
     def add(self, scan_of_sides):
-        """Adds one scan, real and simulated; gives their range images."""
+        """Adds one scan, real and simulated; returns their range images."""
         rings = len(self.fan.elevations)
         images = []
         for side, points in enumerate(scan_of_sides):
@@ -155,7 +155,7 @@ class Comparison:
         return images
 
     def figures(self):
-        """Everything as JSON has it; None where there is nothing to measure."""
+        """All figures for JSON; None where there is no data."""
         median = lambda values: float(np.median(values)) if len(values) else None
         rings = [{"points_a_scan": [float(n) for n in self.counts[:, k] / self.scans],
                   "elevation_deg": [median(self.elevations[side][k]) for side in range(2)]}
@@ -207,7 +207,7 @@ def main():
     parser.add_argument("simulated", type=pathlib.Path)
     parser.add_argument("--scans", required=True, help="FIRST:COUNT[:STRIDE]")
     parser.add_argument("-o", dest="prefix", required=True)
-    parser.add_argument("--scan", type=int, help="of the pictures")
+    parser.add_argument("--scan", type=int, help="scan of the pictures")
     parser.add_argument("--report", type=pathlib.Path, help="write the figures as JSON")
     arguments = parser.parse_args()
     chosen = chosen_scans(arguments.scans, arguments.real, arguments.simulated)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether one version of the program is slower than another: both do the same work in turn, and the
-ratio of the times of each pair counts, so that what else the machine does falls on both.
+"""Whether one version of the program is slower than another: both do the same tasks in alternation,
+and the ratio of each pair of times is used, so that other load on the machine affects both.
 
 usage: bench/compare_versions.py BEFORE AFTER [--runs N] [--device cpu|cuda] [--threads N] [--points N]
-Prints for every piece of work the median of AFTER / BEFORE with its 95 % interval (of the order
-statistics of the pairs) and writes a JSON object to standard output's last line.
+Prints for every task the median of AFTER / BEFORE with its 95 % interval (from the order statistics
+of the pairs) and, as the last line of standard output, a JSON object.
 """
 import argparse
 import json
@@ -19,7 +19,7 @@ import time
 
 
 def interval(ratios):
-    """A 95 % interval of the median, from ranks: binomial, no assumption on the times."""
+    """A 95 % interval of the median from ranks (binomial, distribution-free)."""
     ordered, n = sorted(ratios), len(ratios)
     below = 0.0
     for rank in range(n // 2 + 1):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where figures come from that a script measures with the program."""
+"""Provenance of figures that a script measures with the program."""
 import json
 import os
 import pathlib
@@ -11,8 +11,8 @@ import tempfile
 
 
 def provenance_of(program):
-    """What the program's reports say of version, commit, date, machine and device, with the
-    running script's command."""
+    """Version, commit, date, machine and device from the program's reports, with the command of the
+    running script."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         subprocess.run([program, "sensors", "--report", str(report)], check=True,

@@ -1,30 +1,32 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether scans that a fitted unit simulates can be told from the real ones that they repeat.
+"""Whether classifiers can distinguish scans of a calibrated sensor from the real scans at the same
+poses.
 
   bench/realism.py build/release/bin/adasplats REAL_DATA OUT [--only NAME...] [--plain]
 
-Drives, units and which scans they were fitted to are those of units.py: of each row a model of the
-drive, a unit fitted to other scans than the judged ones (or said otherwise by the row's name), its
-scans simulated at the poses of the real ones, and `evaluate realism` of both. --plain: also with the
-library's sensor of that kind, for what fitting gives. Writes OUT/realism.json (for bench/results):
+units.py defines drives, calibrated sensors and the scans that they were fitted to. For each row: a
+model of the drive, a sensor fitted to other scans than the tested ones (unless the name of the row
+states otherwise), its scans simulated at the poses of the real ones, and `evaluate realism` of both.
+--plain: also with the library's sensor of that kind, which shows the effect of fitting. Writes
+OUT/realism.json (for bench/results):
 
-  rows     by name: AUC of the judge and of logistic regression by all, geometry, dropout and
-           intensity with intervals of 95 %, real against real likewise, statistics side by side
-           foretold: what `evaluate unit` says of held-out scans, where the program has it
-  drives   real against real by drive, of as many scans as the row with most of them has
+  rows     by name: AUC of boosted trees and of logistic regression with all features, geometry,
+           dropout and intensity, with 95 % intervals; the same for real against real; statistics of
+           both; foretold: what `evaluate unit` reports for held-out scans, where available
+  drives   real against real by drive, with as many scans as its largest row
 
-and prints Markdown tables. What is there already is not made again. Needs NumPy.
+and prints Markdown tables. Existing files are reused. Needs NumPy.
 """
 import json
 
 from units import UNIT_OF, Workshop, kitti_rows, labelled_rows, options_parser, other_rows
 
 GROUPS = ("all", "geometry", "dropout", "intensity")
-# Places that no row of the development of units looked at.
-JUDGED = ("03", "05", "07", "09")
-# What is wanted of the judge.
+# Sequences that were not used in the development of calibrated sensors.
+TESTED = ("03", "05", "07", "09")
+# Target AUC of the classifier.
 LIMITS = {"all": 0.8, "geometry": 0.65, "dropout": 0.65, "intensity": 0.75}
 STATISTICS = (
     ("returns", "returns", "{:.0f}"), ("noise of ranges, mm", "range_noise_m", "{:.1f}"),
@@ -40,20 +42,20 @@ STATISTICS = (
 
 
 def wanted_rows():
-    places = [row for place, row in zip(UNIT_OF, labelled_rows()) if place in JUDGED]
+    places = [row for place, row in zip(UNIT_OF, labelled_rows()) if place in TESTED]
     return [*kitti_rows(), *places, *other_rows()]
 
 
 def plain_scans(workshop, row):
-    """As workshop.scans(), by the library's sensor."""
+    """Like workshop.scans(), with the library's sensor."""
     drive, name = workshop.drives[row.drive], f"{row.key}-plain-scans"
     workshop.report(["simulate", workshop.model(drive), *drive.driving, "--sensor",
                      drive.plain_sensor, "-o", workshop.out / name, "--overwrite"], name)
     return workshop.out / name
 
 
-def judged(workshop, row, scans, name):
-    """What `evaluate realism` says of a folder of simulated scans."""
+def evaluated(workshop, row, scans, name):
+    """Figures of `evaluate realism` for a folder of simulated scans."""
     drive = workshop.drives[row.drive]
     report = workshop.report(
         ["evaluate", "realism", scans / drive.scan_folder, drive.scans, *drive.reading,
@@ -69,17 +71,17 @@ def row_of(workshop, row, with_plain):
             "fitted": {"drive": row.fitted_drive, "scans": row.fitted_scans or "all",
                        "agreement": fit.get("agreement")},
             "judged": {"drive": row.drive, "scans": row.judged_scans or "all"}}
-    made.update(judged(workshop, row, workshop.scans(row, f"{row.key}-scans"), f"{row.key}-realism"))
+    made.update(evaluated(workshop, row, workshop.scans(row, f"{row.key}-scans"), f"{row.key}-realism"))
     made["reached"] = {group: made["auc"][group] is not None and made["auc"][group] <= limit
                        for group, limit in LIMITS.items()}
     made["shown"] = shown_of(made)
-    foretold = workshop.foretold(row)
-    if foretold is not None:
-        made["foretold"] = {key: foretold[key] for key in (
+    predicted = workshop.predicted(row)
+    if predicted is not None:
+        made["foretold"] = {key: predicted[key] for key in (
             "within_half_a_metre", "intensity", "intensity_near", "drop", "drop_unblocked",
             "drop_by_rate")}
     if with_plain:
-        made["plain"] = judged(workshop, row, plain_scans(workshop, row), f"{row.key}-plain-realism")
+        made["plain"] = evaluated(workshop, row, plain_scans(workshop, row), f"{row.key}-plain-realism")
     return made
 
 
@@ -90,14 +92,14 @@ def interval(test, group):
 
 
 def pair_text(row, title, key, form):
-    """Real and simulated."""
+    """Text of a statistic, real and simulated."""
     pair, scale = row["statistics"][key], 1000 if title.endswith(", mm") else 1
     return " / ".join("–" if pair[side] is None else form.format(scale * pair[side])
                       for side in ("real", "simulated"))
 
 
 def shown_of(row):
-    """The figures of a row as tables have them."""
+    """The figures of a row as texts for tables."""
     tests = {"trees": row, "logistic": row["logistic"], "real_real": row["real_real"]}
     return {**{kind: {group: interval(test, group) for group in GROUPS}
                for kind, test in tests.items()},
@@ -105,7 +107,7 @@ def shown_of(row):
 
 
 def test_lines(row):
-    """A line a classifier."""
+    """One line per classifier."""
     for kind in ("trees", "logistic", "real_real"):
         cells = row["shown"][kind].values()
         yield f"| {row['name']} | {kind.replace('_', ', ')} | " + " | ".join(cells) + " |"
@@ -119,7 +121,7 @@ def statistic_lines(rows):
 
 
 def real_drives(rows):
-    """Real against real of every drive, by the row with most of its scans."""
+    """Real against real for every drive, from its row with the most scans."""
     found = {}
     for row in rows:
         name = row["judged"]["drive"]
@@ -138,9 +140,9 @@ def main():
     parser.add_argument("--plain", action="store_true")
     options = parser.parse_args()
     workshop = Workshop(options.program, options.data, options.out)
-    print("| scans | judge | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
+    print("| scans | classifier | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
     rows = []
-    for row in workshop.known(wanted_rows(), options.only):
+    for row in workshop.available(wanted_rows(), options.only):
         rows.append(row_of(workshop, row, options.plain))
         print("\n".join(test_lines(rows[-1])), flush=True)
     print("\n" + "\n".join(statistic_lines(rows)))

@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A city as large as one likes, to look at: a city N times along x and y, made in seconds.
+"""Repeats a city N times along x and y, for viewing cities of any size; takes seconds.
 
 usage: repeat_city.py CITY N OUT
 
-Files of tiles and of their levels of detail are hard links, so OUT is on the same disk; what says
-where they are (city.json, levels/top.levels) is written anew. Levels of detail of the copies are
-those of a real city at their places; the nodes above the copies have the elements of the city's
-root, enlarged, so that they cost what real ones do, but are no picture of what is below. Splats
-themselves stay where they are in their files: live scans of such a city mean nothing. The files'
-SHA-256 are right.
+Files of tiles and of their levels of detail are hard links, so OUT must be on the same disk; only
+the files with positions (city.json, levels/top.levels) are new. The copies' levels of detail are
+correct at their new positions. The nodes above the copies have the enlarged elements of the city's
+root, so their cost is realistic but their picture is not. Splats keep their positions in the files,
+so live scans of such a city are meaningless. The SHA-256 of the files are correct.
 """
 import json
 import os
@@ -25,7 +24,7 @@ ELEMENT_BYTES = 16
 
 
 class Levels:
-    """levels/top.levels of a city."""
+    """The file levels/top.levels of a city."""
 
     def __init__(self, city):
         data = (city / "levels" / "top.levels").read_bytes()
@@ -41,7 +40,7 @@ class Levels:
 
 
 class Tree:
-    """The copies' trees below quadrants of each other: branches first, then copy after copy."""
+    """A quadtree above the trees of all copies: first its branches, then copy by copy."""
 
     def __init__(self, levels, n, step_m):
         self.levels, self.step_m = levels, step_m
@@ -69,17 +68,17 @@ class Tree:
 
     def branch(self, x, y, wide, deep, first, children, level):
         row = self.levels.rows[0].copy()
-        most = max(wide, deep)
+        scale = max(wide, deep)
         row["low"] += np.float32([x * self.step_m, y * self.step_m, 0])
         row["high"] += np.float32([(x + wide - 1) * self.step_m, (y + deep - 1) * self.step_m, 0])
-        row["spacing"] *= most
-        row["radius"] *= most
+        row["spacing"] *= scale
+        row["radius"] *= scale
         row["first"], row["children"], row["level"] = first, children, level
         self.elements.append(self.levels.elements[:ELEMENT_BYTES * int(row["count"])])
         return row
 
     def number(self, key, node):
-        """What node `node` of the city is called in a copy."""
+        """Number of the city's node `node` in a copy."""
         return self.copies[key][0] if node == 0 else self.first[key] + node - 1
 
     def rows_of(self, key):
@@ -159,7 +158,7 @@ def write_levels(out, levels, tree, parts, splats):
 
 
 def write_elements(file, levels, tree, above):
-    """Of all nodes above tiles, in the order of their numbers."""
+    """Writes the elements of all nodes above tiles in the order of their numbers."""
     ends = np.cumsum(np.where(levels.own, levels.rows["count"], 0).astype(np.int64)) * ELEMENT_BYTES
     root_bytes = int(ends[0])
     roots = {root: key for key, (root, _) in tree.copies.items()}

@@ -2,17 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Measures what README.md and docs say of the CPU and writes bench/results/cpu.json, and the pictures
-# docs/images/rings.png and pattern.png of a scan that no fit has seen.
+# Measures the CPU figures of README.md and docs: writes bench/results/cpu.json and, for a held-out
+# scan, the pictures docs/images/rings.png and pattern.png.
 # usage: bench/results_cpu.sh [--bin DIR] [--out FILE] [--small] REAL_DATA WORK [PART...]
 #   REAL_DATA  folder with the recordings as SemanticKITTI trees: kitti-0005, semantickitti-00
 #   WORK       folder for models, scans and reports
 #   PART       kitti semantickitti street large bytes sensors speed python live (default: all)
 #   --bin      folder of the built programs (default: build/release/bin)
-#   --out      another file than bench/results/cpu.json; documents' pictures stay as they are
-#   --small    small synthetic data, to see that all parts run; needs --out
-# A part that WORK has of the same, clean commit is not measured again unless it is named. Seconds
-# and rates mean something on a machine that does nothing else; every part tells its load_average.
+#   --out      write to this file and leave the pictures of docs unchanged
+#   --small    small synthetic data, to test that all parts run; needs --out
+# A part in WORK from the same clean commit is reused unless it is named. Seconds and rates need an
+# otherwise idle machine; every part reports its load_average.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 readonly root
@@ -43,16 +43,16 @@ work=$(realpath "$2")
 readonly all_parts="kitti semantickitti street large bytes sensors speed python live"
 named=" ${*:3} "
 for part in $named; do [[ " $all_parts " == *" $part "* ]] || usage; done
-# Commands are told with these names, not with those of this machine.
+# Reported commands contain these paths instead of those of this machine.
 ln -sfn "$(realpath "$1")" "$work/real"
 cd "$work"
 readonly kitti=real/kitti-0005/sequences semantickitti=real/semantickitti-00/sequences/00
-# The first Python that has NumPy, as the build takes it (python/CMakeLists.txt).
+# The first Python with NumPy, as in python/CMakeLists.txt.
 python=python3
 "$python" -c 'import numpy' 2>/dev/null || python=/usr/bin/python3
 collect=(python3 "$root/bench/collect_results.py")
 
-# run KEY COMMAND...: a program that writes no report; what it says goes to files/KEY.log.
+# run KEY COMMAND...: a program without a report; its output goes to files/KEY.log.
 run() {
   local key=$1
   shift
@@ -64,7 +64,7 @@ run() {
     exit 1
   fi
 }
-# report KEY SUBCOMMAND...: a run of the program, whose report becomes KEY of the part.
+# report KEY SUBCOMMAND...: a run of the program; its report becomes KEY of the part.
 report() {
   local key=$1
   shift
@@ -75,7 +75,7 @@ points() { $small && echo $(($1 / 100)) || echo "$1"; }
 # street NAME POINTS: a synthetic street in the part's files.
 street() { run "street-$1" "$bin/adasplats" synth street --points "$2" -o "$(file "$1")" --overwrite; }
 
-# model NAME INPUT OPTIONS...: a model, its report, and the options as the row's title.
+# model NAME INPUT OPTIONS...: a model with its report; the options are the title of the row.
 model() {
   local name=$1 input=$2
   shift 2
@@ -181,14 +181,14 @@ measure_sensors() {
   report compensated evaluate resimulate "$m" $kitti/01
   report raw-standing evaluate resimulate "$m" $raw
   report echoes evaluate echoes "$m" $kitti/01
-  # Fitted to the even scans, judged by the odd ones.
+  # Fitted to the even scans, tested on the odd ones.
   report fit-drop fit-drop "$m" $raw --motion $motion -o "$drop" --every 2
   report drop evaluate echoes "$m" $raw --motion $motion --drop "$drop" --scans 1:4:2
   report simulate simulate "$m" --sensor $sensor --trajectory $raw --rolling-shutter \
     --motion $motion --ray-drop "$drop" -o "$(file scans)" --overwrite
   run rings "$python" "$root/bench/compare_rings.py" "$root/sensors/$sensor.toml" $raw \
     "$(file scans)/sequences/00" -o "$(file rings)" --scans 1:4:2 --report "$part/rings.json"
-  # Of the first odd scan: neither the model nor the drop model has seen it.
+  # The first odd scan is in neither the model nor the drop model.
   mkdir -p pictures
   cp "$(file rings)_ranges.png" pictures/rings.png
   cp "$(file rings)_pattern.png" pictures/pattern.png

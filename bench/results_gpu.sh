@@ -2,17 +2,16 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Measures what docs/performance.md says of GPUs and writes it as JSON.
+# Measures the GPU figures of docs/performance.md and writes them as JSON.
 # usage: bench/results_gpu.sh BIN_DIR OUT.json [SEQUENCE]
 #   BIN_DIR   folder of the built programs (build/release/bin)
-#   SEQUENCE  kitti-0005/sequences/00; without it that figure is left out
-# With two GPUs or more the batched scans are measured on one and on two of them. The commit is that
-# of the programs (ADASPLATS_COMMIT when they were built outside of a clone). Needs about 3 GB in
-# TMPDIR.
+#   SEQUENCE  kitti-0005/sequences/00; without it that figure is omitted
+# With two or more GPUs, batched scans are measured on one and on two of them. The commit is that of
+# the programs (ADASPLATS_COMMIT if they were built outside of a clone). Needs about 3 GB in TMPDIR.
 set -euo pipefail
 
 [[ $# -ge 2 ]] || {
-  sed -n '6,12p' "${BASH_SOURCE[0]}" | cut -c3- >&2
+  sed -n '6,10p' "${BASH_SOURCE[0]}" | cut -c3- >&2
   exit 64
 }
 bin=$1
@@ -29,7 +28,7 @@ street() {
     >"$work/log" 2>&1
 }
 
-# trace NAME ARGUMENTS...: one run of bench_gpu_trace in the street NAME.
+# trace NAME STREET ARGUMENTS...: one run of bench_gpu_trace.
 trace() {
   local name=$1 street=$2
   shift 2
@@ -37,15 +36,15 @@ trace() {
     --json "$work/$name.json" "$@" >"$work/log"
 }
 
-# trace_optix NAME ARGUMENTS...: nothing where the driver has no OptiX; any other failure is one.
+# trace_optix NAME STREET ARGUMENTS...: skipped if the driver has no OptiX.
 trace_optix() {
   local name=$1
-  trace "$@" --backend optix 2>"$work/said" && return
-  grep -q 'it comes with the NVIDIA driver' "$work/said" || {
-    cat "$work/said" >&2
+  trace "$@" --backend optix 2>"$work/errors" && return
+  grep -q 'it comes with the NVIDIA driver' "$work/errors" || {
+    cat "$work/errors" >&2
     exit 1
   }
-  echo "results_gpu: without $name: $(cat "$work/said")" >&2
+  echo "results_gpu: without $name: $(cat "$work/errors")" >&2
   echo '{}' >"$work/$name.json"
 }
 
@@ -79,11 +78,11 @@ def read(name):
 
 
 cuda, optix = read("cuda_2m"), read("optix_2m")
-told = cuda["provenance"]
+provenance = cuda["provenance"]
 best = max((cuda, optix), key=lambda run: run.get("batched_per_s", 0))
 result = {
-    "device": told["device"]["name"], "driver": told["device"]["kernel_driver"],
-    "commit": told["commit"], "command": command, "provenance": {**told, "command": command},
+    "device": provenance["device"]["name"], "driver": provenance["device"]["kernel_driver"],
+    "commit": provenance["commit"], "command": command, "provenance": {**provenance, "command": command},
     "hdl64_single_per_s": max(cuda["single_per_s"], optix.get("single_per_s", 0)),
     "hdl64_batched_per_s": best["batched_per_s"],
     "hdl64_batched_8m_per_s": max(read("cuda_8m")["batched_per_s"],
@@ -103,9 +102,9 @@ result["runs"] = {name: read(name) for name in
 versions = {(run["provenance"]["commit"], run["provenance"]["dirty"])
             for run in result["runs"].values()}
 if len(versions) != 1:
-    sys.exit(f"results_gpu: the programs are of several versions: {sorted(map(str, versions))}")
-if told["commit"] == "unknown" or told["dirty"]:
-    sys.exit(f"results_gpu: the programs are of no clean commit: {versions}")
+    sys.exit(f"results_gpu: the programs come from several versions: {sorted(map(str, versions))}")
+if provenance["commit"] == "unknown" or provenance["dirty"]:
+    sys.exit(f"results_gpu: the programs were not built from a clean commit: {versions}")
 pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
 print(json.dumps({k: v for k, v in result.items() if k not in ("runs", "provenance")}, indent=2))
 PYTHON

@@ -2,17 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Measures what a user gets of the scans that a GPU traces: points on the device and on the host,
-# the same in Python, files in memory, a model from files to file, classes of points. Writes JSON.
+# Measures GPU scans as users receive them: points on the device and on the host, the same in Python,
+# files in memory; also a model from files to file, and classes of points. Writes JSON.
 # usage: bench/results_scans.sh BIN_DIR OUT.json [SEQUENCE]
-#   BIN_DIR   folder of the built programs (build/release/bin), of a clean commit
-#   SEQUENCE  kitti-0005/sequences/00; without it models and classes are left out
-# Python and classes need PyTorch, Python the module of that commit in PYTHONPATH; without them they
-# are left out. Needs about 8 GB in TMPDIR, which had better be memory.
+#   BIN_DIR   folder of the built programs (build/release/bin), from a clean commit
+#   SEQUENCE  kitti-0005/sequences/00; without it models and classes are omitted
+# Python and classes need PyTorch, Python also the module of that commit in PYTHONPATH; otherwise
+# they are omitted. Needs about 8 GB in TMPDIR, preferably in memory.
 set -euo pipefail
 
 [[ $# -ge 2 ]] || {
-  sed -n '6,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
+  sed -n '7,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
   exit 64
 }
 bin=$1
@@ -52,12 +52,12 @@ import json, pathlib, statistics, sys
 
 work, out, command = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 runs = {file.stem: json.loads(file.read_text()) for file in sorted(work.glob("*.json"))}
-told = runs["scans"]["provenance"]
+provenance = runs["scans"]["provenance"]
 versions = {(run["provenance"]["commit"], run["provenance"]["dirty"]) for run in runs.values()}
-if len(versions) != 1 or told["commit"] == "unknown" or told["dirty"]:
-    sys.exit(f"results_scans: the programs are of no clean commit: {sorted(map(str, versions))}")
-result = {"device": told["device"]["name"], "driver": told["device"]["kernel_driver"],
-          "commit": told["commit"], "command": command, "provenance": {**told, "command": command},
+if len(versions) != 1 or provenance["commit"] == "unknown" or provenance["dirty"]:
+    sys.exit(f"results_scans: the programs were not built from one clean commit: {sorted(map(str, versions))}")
+result = {"device": provenance["device"]["name"], "driver": provenance["device"]["kernel_driver"],
+          "commit": provenance["commit"], "command": command, "provenance": {**provenance, "command": command},
           "scans": {key: value for key, value in runs["scans"].items() if key != "provenance"}}
 
 

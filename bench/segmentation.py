@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well networks know labelled places: IoU of classes and groups, all points, pooled.
+"""Accuracy of networks on labelled scenes: pooled IoU of classes and groups over all points.
 
   bench/segmentation.py build/release/bin/adasplats OUT PLACES NAME:PLACE[,PLACE...]=NETWORK...
 
-PLACES: the folder `sequences` of a SemanticKITTI tree. Arguments of one NAME are pooled: the folds of
-a cross-validation are three of them. Writes OUT/segmentation.json (under `networks` by name: the report of `evaluate
-segmentation`, with the networks' SHA-256) and prints a Markdown table. Labels stay in OUT.
+PLACES: the folder `sequences` of a SemanticKITTI tree; PLACE: one of its sequences. Arguments with
+the same NAME are pooled, for example the three folds of a cross-validation. Writes
+OUT/segmentation.json (under `networks` by name: the report of `evaluate segmentation`, with the
+networks' SHA-256) and prints a Markdown table. The labels remain in OUT.
 """
 import argparse
 import collections
@@ -27,7 +28,7 @@ def run(*words):
 
 
 def label(program, place, network, tree):
-    """Labels of a place as sequences/NAME of `tree`; seconds of the segmentation."""
+    """Labels a scene as sequences/NAME of `tree`; returns the seconds of the segmentation."""
     made = tree / "one"
     report = tree / f"{place.name}.json"
     run(program, "segment", place, "-o", made, "--overwrite", "--network", network, "--report",

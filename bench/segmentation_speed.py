@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Seconds of `adasplats segment` beside the same network in PyTorch on the same machine.
+"""Seconds of `adasplats segment` and of the same network in PyTorch on the same machine.
 
   bench/segmentation_speed.py PROGRAM SEQUENCE --network FILE [--device auto] [--threads 0]
       [--repeats 3] [--json FILE]
 
-SEQUENCE: a SemanticKITTI sequence. Medians, points in memory. PyTorch runs as it comes (gathers and
-products; ADASPLATS_PLAIN_TRAINING) on a GPU where it sees one and --device is not cpu, in tiles of
-its own; its points stand where the poses put them, without the motion of a sweep, so that the numbers
-of cells differ a little.
+SEQUENCE: a SemanticKITTI sequence. Medians, with the points in memory. PyTorch runs without custom
+kernels (gathers and products; ADASPLATS_PLAIN_TRAINING), on a GPU if available unless --device is
+cpu, with its own tiles. It places points by the poses, without motion compensation, so the numbers
+of cells differ slightly.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ import sys
 import tempfile
 import time
 
-os.environ["ADASPLATS_PLAIN_TRAINING"] = "1"  # before what reads it
+os.environ["ADASPLATS_PLAIN_TRAINING"] = "1"  # before importing its readers
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools" / "segmentation"))
 
@@ -38,7 +38,7 @@ def matrix_of(text):
 
 
 def points_of(sequence):
-    """Positions around their middle (m) and intensities of all scans."""
+    """Positions relative to their median (m) and intensities of all scans."""
     calibration = dict(line.split(":", 1) for line in
                        (sequence / "calib.txt").read_text().splitlines() if ":" in line)
     camera_from_sensor = matrix_of(calibration["Tr"])
@@ -55,7 +55,7 @@ def points_of(sequence):
 
 
 def segmented(network, points, intensities):
-    """How many cells were looked at."""
+    """Segments the points; returns the number of processed cells."""
     cells = 0
     for indices, _ in tiles_of(points, 32.0, 12.0):
         means, _, values = means_by_cell(points[indices], network.shape["cell_m"],
@@ -78,7 +78,7 @@ def pytorch_seconds(options):
     points = torch.tensor(points_of(options.sequence), device=device)
     seconds = []
     with torch.no_grad():
-        for repeat in range(options.repeats + (device.type == "cuda")):  # the first one warms a GPU
+        for repeat in range(options.repeats + (device.type == "cuda")):  # the first one warms up a GPU
             start = time.perf_counter()
             cells = segmented(network, points[:, :3].contiguous(), points[:, 3].contiguous())
             if repeat > 0 or device.type != "cuda":

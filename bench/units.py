@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""For realism.py: models of real drives, calibrated sensors fitted in them, and scans that these
+"""For realism.py: models of real drives, calibrated sensors fitted to these drives, and scans that the
 sensors simulate at the poses of the real ones.
 
-REAL_DATA has kitti-0005, semantickitti-labelled and pandaset-002 as unpacked; what is missing is
-left out. A place of SemanticKITTI is never judged by a unit that was fitted to it.
+REAL_DATA: folder with kitti-0005, semantickitti-labelled and pandaset-002, unpacked; missing ones
+are skipped. No SemanticKITTI scene is tested with a sensor that was fitted to it.
 """
 import argparse
 import pathlib
@@ -17,21 +17,21 @@ from calibration import report_of
 from provenance import provenance_of
 
 KITTI_SENSOR = "velodyne-hdl-64e-kitti"
-# Of the Pandar64 in the vehicle's frame: what `info` of the drive finds.
+# Mount of the Pandar64 in the vehicle frame, as `info` estimates it for the drive.
 PANDA_MOUNT = "0.019,0.725,1.887"
-# Place of SemanticKITTI: the place that its unit is fitted in.
+# SemanticKITTI sequence: the sequence for fitting its sensor.
 UNIT_OF = {"00": "02", "01": "00", "02": "00", "03": "01", "05": "00", "07": "00", "09": "02"}
 NUMPY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "ushort": "<u2", "uint": "<u4",
                "char": "i1", "short": "<i2", "int": "<i4"}
 
 
 def fit_options(unit):
-    """What `fit-sensor` writes into the folder of a unit."""
+    """Output options of `fit-sensor` for the folder of a calibrated sensor."""
     return ["-o", unit / "unit.toml"]
 
 
 def unit_options(unit):
-    """What `simulate` takes to measure as the unit of a folder does."""
+    """Options of `simulate` for the calibrated sensor in a folder."""
     return ["--sensor", unit / "unit.toml", "--sensor-offsets"]
 
 
@@ -39,7 +39,7 @@ def unit_options(unit):
 
 @dataclass(frozen=True)
 class Drive:
-    """Measured scans, how the program reads them, and the drive whose model shows their place."""
+    """Measured scans, options for reading them, and the drive for the model of their scene."""
     name: str
     scans: pathlib.Path
     model_of: str               # name of a drive
@@ -47,20 +47,20 @@ class Drive:
     reading: tuple              # of `fit-sensor` and `evaluate`: how the scans are read
     fitting: tuple              # of `fit-sensor` alone
     driving: tuple              # of `simulate`: poses, motion and format, without the sensor
-    scan_folder: str            # of what `simulate` writes
+    scan_folder: str            # in the output of `simulate`
     plain_sensor: str           # the library's sensor of this kind
 
 
 @dataclass(frozen=True)
 class Row:
-    """Scans that are judged, and which others the unit that simulates them was fitted to."""
+    """Scans to test, and the scans for fitting the sensor that simulates them."""
     name: str
     drive: str
     fitted_drive: str
     fitted_scans: str           # FIRST:COUNT[:STRIDE], empty: all
-    judged_scans: str           # likewise
-    use: str = "test"           # or development: the method was chosen by these scans
-    held_out_scans: str = ""    # of those that are judged, where not all are
+    judged_scans: str           # empty: all
+    use: str = "test"           # or development: these scans influenced the method
+    held_out_scans: str = ""    # of the tested ones, if not all
 
     @property
     def key(self):
@@ -81,7 +81,7 @@ def kitti_drives(data):
 
 
 def labelled_drives(data):
-    """Parked cars stay, as the scans have them."""
+    """Drives of SemanticKITTI; parked cars remain in the models, since the scans contain them."""
     for place in sorted((data / "semantickitti-labelled/sequences").glob("*")):
         name = f"semantickitti {place.name}"
         yield Drive(name, place, name, ("--remove", "none"), (), (), (
@@ -103,19 +103,19 @@ def panda_drives(data, out):
 
 
 def drives_of(data, out):
-    """By name."""
+    """All drives by name."""
     found = [*kitti_drives(data), *labelled_drives(data), *panda_drives(data, out)]
     return {drive.name: drive for drive in found}
 
 
 def labelled_rows():
-    """Of every place of SemanticKITTI, all of its scans by the unit of another place."""
+    """Rows of SemanticKITTI: all scans of a sequence with the sensor of another sequence."""
     return [Row(f"semantickitti {place} by {by}", f"semantickitti {place}", f"semantickitti {by}", "",
                 "") for place, by in UNIT_OF.items()]
 
 
 def kitti_rows():
-    """Of the drive that the method was chosen by."""
+    """Rows of the drive that was used to develop the method."""
     whole, raw = "kitti-0005 00", "kitti-0005 01_raw"
     return [Row("kitti-0005 01_raw by its own even scans", raw, raw, "0:4:2", "", "development",
                 "1:4:2"),
@@ -134,7 +134,7 @@ def other_rows():
 
 
 def middle_time_s(file):
-    """Of the points of a binary PLY with a `time`."""
+    """Middle of the times of the points in a binary PLY file."""
     data = file.read_bytes()
     header, _, body = data.partition(b"end_header\n")
     lines = header.decode().split("\n")
@@ -146,8 +146,8 @@ def middle_time_s(file):
 
 
 def poses_at_middles(frames, trajectory, output):
-    """The vehicle's poses when its frames were half over, by interpolation (quaternions of poses
-    0.1 s apart: linearly, and made unit). A file that is there is of the same frames."""
+    """The vehicle's poses at the middle of its frames, interpolated (linearly for quaternions of poses
+    0.1 s apart, then normalised). An existing file is reused."""
     if output.exists():
         return output
     rows_of_file = np.loadtxt(trajectory, delimiter=",", skiprows=1)
@@ -160,11 +160,11 @@ def poses_at_middles(frames, trajectory, output):
     return output
 
 
-# ---- what is made of them ------------------------------------------------------------------
+# ---- models, sensors and scans -----------------------------------------------------------------
 
 class Workshop:
-    """Models, units and scans in a folder; what is newer than all that it was made of is not made
-    again. `commands` has what was asked for, with the names of folders instead of their paths."""
+    """Models, calibrated sensors and scans in a folder. Files that are newer than all their inputs are
+    reused. `commands` lists the commands, with names in place of the folders' paths."""
 
     def __init__(self, program, data, out):
         self.program, self.data, self.out = (path.absolute() for path in (program, data, out))
@@ -173,18 +173,18 @@ class Workshop:
         self.commands = []
 
     def report(self, words, name):
-        """What a command reports."""
+        """The report of a command."""
         words = [self.program, *words]
-        told = shlex.join(str(word) for word in words)
+        text = shlex.join(str(word) for word in words)
         for path, short in ((self.program, "adasplats"), (self.data, "REAL_DATA"),
                             (self.out, "OUT")):
-            told = told.replace(str(path), short)
-        if told not in self.commands:
-            self.commands.append(told)
+            text = text.replace(str(path), short)
+        if text not in self.commands:
+            self.commands.append(text)
         return report_of(words, self.out / f"{name}.json")
 
     def model(self, drive):
-        """The file of the model of a drive's place."""
+        """The model of a drive's scene."""
         of = self.drives[drive.model_of]
         name = of.name.replace(" ", "-")
         self.report(["model", of.scans, "-o", self.out / f"{name}.ply", *of.model_words],
@@ -192,7 +192,7 @@ class Workshop:
         return self.out / f"{name}.ply"
 
     def unit(self, row):
-        """The folder of the unit of a row, and what `fit-sensor` reports."""
+        """The folder of a row's calibrated sensor, and the report of `fit-sensor`."""
         drive = self.drives[row.fitted_drive]
         scans = f"-{row.fitted_scans.replace(':', '-')}" if row.fitted_scans else ""
         unit = self.out / ("unit-" + drive.name.replace(" ", "-") + scans)
@@ -203,8 +203,8 @@ class Workshop:
             unit.name)
         return unit, report
 
-    def foretold(self, row):
-        """What `evaluate unit` reports of held-out scans."""
+    def foretext(self, row):
+        """The report of `evaluate unit` for held-out scans."""
         unit, _ = self.unit(row)
         drive, scans = self.drives[row.drive], row.held_out_scans or row.judged_scans
         return self.report(["evaluate", "unit", self.model(drive), drive.scans, *drive.reading,
@@ -212,14 +212,14 @@ class Workshop:
                             *(["--scans", scans] if scans else [])], f"{row.key}-unit")
 
     def scans(self, row, name, more=()):
-        """The folder of scans that the unit of a row simulates at the poses of the real ones."""
+        """The folder of scans that a row's sensor simulates at the poses of the real ones."""
         drive, folder = self.drives[row.drive], self.out / name
         self.report(["simulate", self.model(drive), *drive.driving,
                      *unit_options(self.unit(row)[0]), *more, "-o", folder, "--overwrite"], name)
         return folder
 
-    def known(self, rows, only):
-        """Rows whose drives are there, and whose names have one of some texts."""
+    def available(self, rows, only):
+        """Rows with existing drives and with names that contain one of the texts."""
         for row in rows:
             if row.drive not in self.drives or row.fitted_drive not in self.drives:
                 continue
@@ -227,17 +227,17 @@ class Workshop:
                 yield row
 
     def provenance(self, options, script):
-        """Paths of data and output mean nothing elsewhere."""
+        """Provenance without paths of this machine."""
         only = " --only " + shlex.join(options.only) if options.only else ""
         command = f"{script} build/release/bin/adasplats REAL_DATA OUT{only}"
         return provenance_of(self.program) | {"command": command, "commands": self.commands}
 
 
 def options_parser(text):
-    """Of a script on all rows."""
+    """Argument parser of a script on all rows."""
     parser = argparse.ArgumentParser(description=text,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("program", "data", "out"):
         parser.add_argument(name, type=pathlib.Path)
-    parser.add_argument("--only", nargs="+", default=[], help="rows whose name has one of these")
+    parser.add_argument("--only", nargs="+", default=[], help="only rows with names that contain one of these")
     return parser

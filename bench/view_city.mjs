@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// One look at a running `adasplats view` with headless Chromium, for view_city.py: what happens
-// until the page shows its first picture and until all that is in sight has come. Prints JSON.
+// Opens a running `adasplats view` in headless Chromium, for view_city.py: measures the time until
+// the first picture and until everything visible has loaded. Prints JSON.
 //
 // Usage: view_city.mjs URL SERVER_PID [--page FOLDER] [--shots FOLDER] [--until first|all]
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -11,29 +11,29 @@ import { join } from 'node:path';
 import { openPage } from '../viewer/test/browser.mjs';
 import { kSize, sleep } from '../viewer/test/check.mjs';
 
-/** A picture of fewer disks shows nothing. */
-const kLeastDisks = 1000;
-/** Of fewer it shows no streets: the root of a large city is disks of many metres, one of which may
- *  be above the eye. */
-const kLeastOfStreets = 10_000;
+/** Minimum number of disks of the first picture. */
+const kMinDisks = 1000;
+/** Minimum number of disks of a picture with streets: the root of a large city has disks of many
+ *  metres, one of which may be above the camera. */
+const kMinStreetDisks = 10_000;
 const kPatienceMs = 120_000;
 const kFrames = 5;
-/** Clock ticks a second in /proc (sysconf(_SC_CLK_TCK) of every Linux on x86 and ARM). */
+/** Clock ticks per second in /proc (sysconf(_SC_CLK_TCK) of every Linux on x86 and ARM). */
 const kTicks = 100;
 
-/** In the page, before its own scripts: notes each picture of disks when it is finished. */
+/** Runs in the page before its own scripts: records each finished picture of disks. */
 function watchPictures(keepsFirst) {
   const seen = { pictures: [], disks: 0, began: 0 };
   window.seenPictures = seen.pictures;
   const gl = WebGL2RenderingContext.prototype;
   const { drawElementsInstanced, readPixels } = gl;
   gl.drawElementsInstanced = function (mode, count, type, offset, instances) {
-    // The page may draw one disk beforehand, to make drivers ready.
+    // The page may draw one disk in advance, to warm up the driver.
     if (seen.disks <= 1) seen.began = performance.now();
     seen.disks += instances;
     return drawElementsInstanced.call(this, mode, count, type, offset, instances);
   };
-  // Of a page that waits for the picture: that is when it is there.
+  // readPixels waits until the picture is complete.
   gl.readPixels = function (...words) {
     const result = readPixels.apply(this, words);
     const { began, disks } = seen;
@@ -45,7 +45,7 @@ function watchPictures(keepsFirst) {
   };
 }
 
-/** Time of a process and those that it waited for, seconds; 0 where it has ended. */
+/** CPU seconds of a process and its waited-for children; 0 if it has ended. */
 function cpuSeconds(pid) {
   try {
     const stat = readFileSync(`/proc/${pid}/stat`, 'utf8');
@@ -56,7 +56,7 @@ function cpuSeconds(pid) {
   }
 }
 
-/** All processes below one. */
+/** All descendants of a process. */
 function descendants(pid) {
   const parents = new Map();
   for (const name of readdirSync('/proc').filter((n) => /^\d+$/.test(n)))
@@ -64,7 +64,7 @@ function descendants(pid) {
       const stat = readFileSync(`/proc/${name}/stat`, 'utf8');
       parents.set(Number(name), Number(stat.slice(stat.lastIndexOf(')') + 2).split(' ')[1]));
     } catch {
-      // It has ended meanwhile.
+      // The process has ended.
     }
   const isBelow = (p) => p !== undefined && p > 1 && (p === pid || isBelow(parents.get(p)));
   return [...parents.keys()].filter((p) => p !== pid && isBelow(parents.get(p)));
@@ -73,7 +73,7 @@ function descendants(pid) {
 const browserSeconds = () =>
   descendants(process.pid).reduce((sum, pid) => sum + cpuSeconds(pid), 0);
 
-/** The most requests of which each began when the one before had ended. */
+/** Maximum number of requests that each began after the end of the previous one. */
 function longestChain(requests) {
   let [chain, ended] = [0, -1];
   for (const { ended_ms, began_ms } of [...requests].sort((a, b) => a.ended_ms - b.ended_ms)) {
@@ -107,7 +107,7 @@ async function heapBytes(page) {
   return usedSize + embedderHeapUsedSize + backingStorageSize;
 }
 
-/** Pictures as they are drawn while the eye moves, with what has come. */
+/** Median time of a picture with the loaded elements. */
 async function frames(page) {
   return page.evaluate((n) => {
     const { adasplats } = window;
@@ -127,7 +127,7 @@ async function settled(page) {
   const end = Date.now() + kPatienceMs;
   let calm = 0;
   while (calm < 5) {
-    if (Date.now() > end) throw new Error('not all that is in sight has come');
+    if (Date.now() > end) throw new Error('not everything visible has loaded');
     await sleep(100);
     const { loading, elements } = await page.evaluate(() => window.adasplats.state());
     calm = loading || elements === 0 ? 0 : calm + 1;
@@ -148,20 +148,20 @@ async function look(url, server, options) {
   });
   const { page } = seen;
   try {
-    const isShown = (least) => window.seenPictures.some((p) => p.disks >= least);
+    const isShown = (min) => window.seenPictures.some((p) => p.disks >= min);
     const waits = { polling: 20, timeout: kPatienceMs };
-    await page.waitForFunction(isShown, kLeastDisks, waits);
+    await page.waitForFunction(isShown, kMinDisks, waits);
     const cpu = { server: cpuSeconds(server), browser: browserSeconds() };
     const heap = await heapBytes(page);
     await page.waitForFunction(
-      (least) =>
-        window.seenPictures.some((p) => p.disks >= least) || !window.adasplats.state().loading,
-      kLeastOfStreets,
+      (min) =>
+        window.seenPictures.some((p) => p.disks >= min) || !window.adasplats.state().loading,
+      kMinStreetDisks,
       waits,
     );
     const pictures = await page.evaluate(() => window.seenPictures);
-    const shown = pictures.find((p) => p.disks >= kLeastDisks);
-    const streets = pictures.find((p) => p.disks >= kLeastOfStreets) ?? pictures.at(-1);
+    const shown = pictures.find((p) => p.disks >= kMinDisks);
+    const streets = pictures.find((p) => p.disks >= kMinStreetDisks) ?? pictures.at(-1);
     const origin = await page.evaluate(() => performance.timeOrigin);
     const requests = await requestsOf(page, shown.began_ms);
     const found = {

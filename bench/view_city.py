@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""How soon `adasplats view CITY` shows a picture, and what that takes: headless Chromium without a GPU.
+"""How soon `adasplats view CITY` shows a picture, and at what cost: headless Chromium without a GPU.
 
 usage: view_city.py PROGRAM CITY... [--runs N] [--other PROGRAM] [--page FOLDER] [--cold]
                     [--threads N] [--until first|all] [--shots FOLDER] [--json FILE]
 
 For each run and city starts the program, then the browser (view_city.mjs), and prints medians over
-the runs as JSON: `first_picture` is the first of 1,000 disks or more, `streets` the first of 10,000. --other: another program, each of whose runs follows one of the first. --page: a
-page (viewer/build.mjs) in place of the programs' own. --cold: the city's files are dropped from
-the system's cache before each run. Times depend on what else the machine does (`load`: of each run,
-before it); requests, bytes and CPU seconds hardly do. Needs Node.js, Chromium and `npm ci` in viewer/.
+the runs as JSON: `first_picture` is the first picture with 1,000 disks or more, `streets` the first
+with 10,000. --other: a second program; its runs alternate with those of the first. --page: a page
+(viewer/build.mjs) instead of the programs' own. --cold: drop the city's files from the system's
+cache before each run. Times depend on other load on the machine (`load`: before each run); requests,
+bytes and CPU seconds hardly do. Needs Node.js, Chromium and `npm ci` in viewer/.
 """
 import argparse
 import json
@@ -29,7 +30,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def drop_from_cache(city):
-    """So that reading them is reading the disk."""
+    """Drops a city's files from the cache, so that they are read from disk."""
     for path in (p for p in city.rglob("*") if p.is_file()):
         with path.open("rb") as file:
             os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
@@ -46,7 +47,7 @@ def cpu_seconds(pid):
 
 
 def look(program, city, given, shots):
-    """The figures of one start of server and browser."""
+    """Figures of one start of server and browser."""
     if given.cold:
         drop_from_cache(city)
     load = os.getloadavg()[0]
@@ -59,7 +60,7 @@ def look(program, city, given, shots):
                  "server_ready_cpu_s": cpu_seconds(server.pid),
                  "server_ready_bytes": memory_bytes(server.pid, "VmRSS")}
         if not url:
-            sys.exit(f"{program} view {city} ended")
+            sys.exit(f"{program} view {city} failed")
         words = ["node", HERE / "view_city.mjs", url, str(server.pid)]
         words += ["--page", given.page] if given.page else []
         words += ["--shots", shots] if shots else []
@@ -77,7 +78,7 @@ def look(program, city, given, shots):
 
 
 def medians(runs):
-    """Of every number; of the requests those of the last run."""
+    """Medians of all numbers, and the requests of the last run."""
     found = {"runs": len(runs)}
     for key, value in runs[-1].items():
         if isinstance(value, (int, float)):
@@ -105,19 +106,19 @@ def main():
     parser.add_argument("--cold", action="store_true")
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--until", choices=("first", "all"), default="all",
-                        help="the last thing to wait for: the first picture, or all that is in sight")
+                        help="when to stop: at the first picture, or when everything visible has loaded")
     parser.add_argument("--shots", type=pathlib.Path)
-    parser.add_argument("--json", type=pathlib.Path, help="also write the figures here")
+    parser.add_argument("--json", type=pathlib.Path, help="write the figures to a file, too")
     given = parser.parse_args()
     programs = {"program": given.program, **({"other": given.other} if given.other else {})}
     found = {(role, city): [] for role in programs for city in given.cities}
     for _ in range(given.runs):
         for (role, city), runs in found.items():
             runs.append(look(programs[role], city, given, None))
-    for role, city in found if given.shots else []:  # pictures take time, so of runs that do not count
+    for role, city in found if given.shots else []:  # in separate runs, since screenshots take time
         look(programs[role], city, given, folder_of_shots(given, role, city))
     facts = {}
-    # Of paths the last names: where they lay says nothing.
+    # Paths without their folders, which are meaningless on other machines.
     command = " ".join(["bench/view_city.py", *(word if word.startswith("-") else pathlib.Path(word).name
                                                 for word in sys.argv[1:])])
     for role, program in programs.items():

@@ -25,8 +25,7 @@ ENTRY = re.compile(r'\{"[\w-]+",\s*"[^"]*",\s*"([^"]*)"')
 # These never read files of other programs.
 NOT_FUZZED = {
     "city/passing_rays.cpp": "rays of tiles that our own unfinished run wrote",
-    "city/square_classes.cpp": "classes of points that our own unfinished run wrote",
-    "city/tile_points.cpp": "points of tiles that our own unfinished run wrote",
+    "city/tile_points.cpp": "points and classes of tiles that our own unfinished run wrote",
     "core/child_process.cpp": "/proc, and the output of our own programs",
     "evaluate/error_points.cpp": "uses the headers and tables of io/ply",
     "io/base/atomic_file.cpp": "returns whole files to its callers; also opens files that it wrote",

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""From a recording of each kind to a judged model, in one command line each.
+"""From a recording of each kind to an evaluated model, with one command line each.
 
   bench/input_kinds/drives.py PROGRAM REAL_DATA OUT [--only NAME...]
 
-The first scans of kitti-0005 (of pandaset-002 where the kind is PandaSet's or its points have times)
-as each kind of recording, by the writers of recordings.py; of each a model of every other scan and
-the held-out ones cast again in it: the command lines of docs/formats.md. The same scans as different
-kinds should give the same figures, but for labels, which only some kinds have (what moves is left out
-by them). Captures and KITTI's raw drive are of simulated scans.
+Writes the first scans of kitti-0005 (of pandaset-002 for PandaSet's own kind and for points with
+times) as each kind of recording with the writers of recordings.py, makes a model of every other scan
+and casts the held-out ones in it: the command lines of docs/formats.md. The same scans should give
+the same figures in every kind, except for labels, which only some kinds have (they remove moving
+objects). Captures and KITTI's raw drive are made of simulated scans.
 
-Writes OUT/drives.json (for bench/results) and prints a Markdown table. Needs what input_kinds.py needs.
+Writes OUT/drives.json (for bench/results) and prints a Markdown table. Requirements: as
+input_kinds.py.
 """
 import argparse
 import json
@@ -38,7 +39,7 @@ class Drives:
         self.panda = real / "pandaset-002"
 
     def table(self):
-        """(kind, of which scans, maker of the input, options of the reader)."""
+        """Yields (kind, source of the scans, writer of the input, reader options)."""
         kitti, out = self.kitti, self.out
         yield ("SemanticKITTI sequence", "KITTI",
                lambda: recordings.part_of(kitti, SCANS, out / "sequence"), [])
@@ -82,7 +83,7 @@ class Drives:
         return self.out / "panda"
 
     def timed(self):
-        """Two files, of the even and of the odd frames: points with times have no scans to choose."""
+        """Two files, of the even and the odd frames: --scans does not apply to points with times."""
         parts = [recordings.pandaset_frame(file) for file in self.frames()]
         begin_s, end_s = parts[0][1].min(), parts[-1][1].max()
         head, *rows = (self.panda / "vehicle_trajectory.csv").read_text(encoding="ascii").split()
@@ -93,15 +94,15 @@ class Drives:
             for first, name in enumerate(("even.las", "odd.las")))
 
     def stations(self):
-        """Every other scan as that of a station; the scans between are on the way (`--at`)."""
+        """Every other scan as a station; the scans between are simulated (`--at`)."""
         for k in range(0, SCANS, 2):
             recordings.write_station(self.kitti, k, self.out / f"station{k}.ptx")
-        judged = recordings.write_station(self.kitti, 5, self.out / "station5.ptx")
-        place = recordings.kitti_poses(self.kitti)[5][:3, 3]
-        return [self.out / f"station{k}.ptx" for k in range(0, SCANS, 2)], judged, place
+        held_out = recordings.write_station(self.kitti, 5, self.out / "station5.ptx")
+        position = recordings.kitti_poses(self.kitti)[5][:3, 3]
+        return [self.out / f"station{k}.ptx" for k in range(0, SCANS, 2)], held_out, position
 
-    def simulated(self, form, place):
-        """What an HDL-64E measures along a metre a scan of a model of the drive."""
+    def simulated(self, form, pattern):
+        """Scans of an HDL-64E every metre, simulated in a model of the drive."""
         model = self.out / "model.ply"
         if not model.exists():
             self.run(["model", self.kitti, "--scans", f"0:{SCANS}", "-o", model])
@@ -114,7 +115,7 @@ class Drives:
         sensor = "velodyne-hdl-64e-kitti" if form == "kitti-raw" else "velodyne-hdl-64e-s3"
         self.run(["simulate", model, "--trajectory", self.out / "poses.csv", "--rolling-shutter",
                   "--sensor", sensor, "--format", form, "-o", self.out / form])
-        found, = (self.out / form).glob(place)
+        found, = (self.out / form).glob(pattern)
         return found
 
     def run(self, words):
@@ -123,12 +124,12 @@ class Drives:
         if done.returncode:
             raise RuntimeError(done.stderr.strip().split("\n")[-1])
 
-    def judged(self, path, options):
-        """The command line, and what it says of the held-out scans."""
+    def evaluated(self, path, options):
+        """The command line, and its figures for the held-out scans."""
         model, report = self.out / "m.ply", self.out / "held_out.json"
         model.unlink(missing_ok=True)
         if isinstance(path, tuple):
-            return self.judged_by_simulation(path, options, model, report)
+            return self.evaluated_by_simulation(path, options, model, report)
         commands = [["model", path, *options, "--scans", f"0:{SCANS}:2", "-o", model],
                     ["evaluate", "resimulate", model, path, *options, "--scans", f"1:{SCANS}:2",
                      "--report", report]]
@@ -137,17 +138,17 @@ class Drives:
                 "median_m": found["range_error_m"]["median"],
                 "within_10cm": found["within"]["0.10"], "no_hit": found["no_hit"]}
 
-    def judged_by_simulation(self, paths, options, model, report):
-        """Points whose beams nobody can tell: scans that are simulated along the way, against the
-        other file's points."""
+    def evaluated_by_simulation(self, paths, options, model, report):
+        """Figures for points with unknown beams: scans simulated along the trajectory, compared with the
+        points of the other file."""
         scans = self.out / f"simulated{len(paths)}"
         if len(paths) == 3:  # stations
             inputs = paths[0]
-            way = ["--at", ",".join(f"{v:.3f}" for v in paths[2]), "--sensor",
-                   "velodyne-hdl-64e-kitti"]
+            source = ["--at", ",".join(f"{v:.3f}" for v in paths[2]), "--sensor",
+                      "velodyne-hdl-64e-kitti"]
         else:
-            inputs, way = [paths[0]], [*options, "--sensor", "hesai-pandar64"]
-        commands = [["model", *inputs, *options, "-o", model], ["simulate", model, *way, "-o", scans],
+            inputs, source = [paths[0]], [*options, "--sensor", "hesai-pandar64"]
+        commands = [["model", *inputs, *options, "-o", model], ["simulate", model, *source, "-o", scans],
                     ["evaluate", "c2c", scans / "sequences" / "00", paths[1], "--report", report]]
         line, found = self.measured(commands, report)
         return {"command": line, "c2c_m": found["c2c_m"]}
@@ -174,13 +175,13 @@ def main():
         if words.only and kind not in words.only:
             continue
         try:
-            row = drives.judged(make(), options)
+            row = drives.evaluated(make(), options)
             if "rays" in row:
                 print(f"| {kind} | {scans} | {row['rays']:,} | {100 * row['median_m']:.2f} cm | "
                       f"{row['within_10cm']:.1%} | {row['no_hit']:.1%} |", flush=True)
             else:
                 print(f"| {kind} | {scans} | C2C {100 * row['c2c_m']:.2f} cm |", flush=True)
-        except Exception as error:  # Every kind is tried; what failed is told in its row.
+        except Exception as error:  # Continue with the next kind; the row reports the error.
             row = {"error": f"{type(error).__name__}: {error}"}
             print(f"| {kind} | {scans} | {row['error']} |", flush=True)
         rows.append({"name": kind, "scans_of": scans, **row})

@@ -1,22 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which kinds of files are read, each held against a reader that shares no code with the project.
+"""Checks every input format against a reader that shares no code with the project.
 
   bench/input_kinds/input_kinds.py build/release REAL_DATA FORMATS OUT [--only NAME...]
 
-REAL_DATA holds the unpacked kitti-0005 and pandaset-002, FORMATS small files of other projects' tests.
-Files of each kind are made in OUT by writers that are not the project's (recordings.py), or are of
-FORMATS, and read by adasplats.read (by `Mesh.load` where it is a mesh) and by an independent reader
-(readers.py). Wanted are equal numbers of points (but for those that a file says are deleted) in the
-same order, and coordinates within 40 um and what float32 tells apart in a cloud of its size.
-Captures and KITTI's raw drive are written by the project (`simulate`), since no packaged program
-writes them: their other readers are after the manuals of the makers and the data set's devkit.
+REAL_DATA: folder with kitti-0005 and pandaset-002, unpacked; FORMATS: small files from the tests of
+other projects. Files of each kind are written to OUT by independent writers (recordings.py) or come
+from FORMATS, and are read by adasplats.read (meshes by `Mesh.load`) and by an independent reader
+(readers.py). Expected are equal numbers of points (except for points marked as deleted) in the same
+order, and coordinates within 40 um plus the resolution of float32 in a cloud of that size. Captures
+and KITTI's raw drive are written by the project (`simulate`), since no packaged program writes them;
+their independent readers follow the manufacturers' manuals and the data set's devkit.
 
-Writes OUT/input_kinds.json (for bench/results) and prints a Markdown table. Needs /usr/bin/python3 with
-NumPy, pandas, Open3D and rosbag (Debian: python3-pandas, python3-open3d, python3-rosbag,
-python3-sensor-msgs, python3-nav-msgs), node with the packages of package.json in the folder that
-ADASPLATS_NODE_MODULES names, lz4, and editcap (tshark). A kind whose reader is not there is an error.
+Writes OUT/input_kinds.json (for bench/results) and prints a Markdown table. Needs /usr/bin/python3
+with NumPy, pandas, Open3D and rosbag (Debian: python3-pandas, python3-open3d, python3-rosbag,
+python3-sensor-msgs, python3-nav-msgs), node with the packages of package.json in the folder
+ADASPLATS_NODE_MODULES, lz4, and editcap (tshark). A missing reader is an error.
 """
 import argparse
 import json
@@ -34,14 +34,14 @@ import recordings  # noqa: E402
 from provenance import provenance_of  # noqa: E402
 
 SCANS = 4
-# Clouds are float32 around an origin of their own; azimuths and poses are rounded before.
+# Clouds are float32 relative to their origin; azimuths and poses are rounded before.
 STEP_OF_FLOAT32 = 2.0**-23
 ROUNDING_M = 4e-5
 AS_THEY_STAND = {"sweep_points": "compensated"}
 
 
 class Kinds:
-    """Makers of (our points, their points) by the name of the kind."""
+    """Functions that return (our points, their points), by the name of the kind."""
 
     def __init__(self, build, real, formats, out):
         sys.path.insert(0, str(build / "python"))
@@ -57,18 +57,18 @@ class Kinds:
     def read(self, path, **options):
         return self.ours.read(path, **options).world_positions
 
-    def refusal(self, wanted, *paths, **options):
-        """What is not to be read: the error that says so, as text."""
+    def rejection(self, wanted, *paths, **options):
+        """The error for files that must be rejected, as text."""
         try:
             self.ours.read(paths, **options)
         except self.ours.Error as error:
             if wanted in str(error):
                 return str(error).replace(str(self.formats) + "/", "")
             raise
-        raise AssertionError("it was read")
+        raise AssertionError("the file was read, but an error was expected")
 
     def table(self):
-        """(kind, who wrote the file, who else reads it, how both read)."""
+        """Yields (kind, writer of the file, other reader, function that reads with both)."""
         yield from self.clouds()
         yield from self.survey()
         yield from self.scans_of_sensors()
@@ -141,11 +141,11 @@ class Kinds:
 
         def copc():
             path = self.of("*example.copc.laz")
-            # Nodes are told in another order there.
+            # The other reader returns nodes in another order.
             return tuple(p[np.lexsort(np.round(p, 4).T)]
                          for p in (self.read(path), readers.node_points("copc", path)))
         yield "COPC", "lasR", "copc.js", copc
-        yield "LAS 1.4, format 7, heights in feet", "others", "", lambda: self.refusal(
+        yield "LAS 1.4, format 7, heights in feet", "others", "", lambda: self.rejection(
             "its coordinates are not in metres", self.of("*autzen-bmx-2010.las"))
         e57 = (("E57, floats", "*tinyCartesianFloatRgb.e57"),
                ("E57, scaled integers, three scans with poses", "*las2e57_no_images_tag.e57"),
@@ -240,14 +240,14 @@ class Kinds:
         yield "LAS with GPS times and a trajectory", "NumPy", "NumPy", timed
 
     def simulate(self, out, form, *options, sensor="velodyne-hdl-64e-kitti"):
-        """Scans of the drive's own points, by the program."""
+        """Simulated scans of the drive's points."""
         program = self.build / "bin" / "adasplats"
         model = self.out / "model.ply"
         if not model.exists():
             self.run([program, "model", self.drive, "--scans", "0:2", "-o", model])
         poses = self.out / "poses.csv"
         lines = ["time,x,y,z,qw,qx,qy,qz"]
-        step = 0.0 if form == "pcap" else 0.5  # Packets are placed in the frame of a sensor at rest.
+        step = 0.0 if form == "pcap" else 0.5  # Packets are placed in the frame of a stationary sensor.
         for k in range(SCANS):
             lines.append(f"{0.1 * k},{step * k},0,0,1,0,0,0")
         poses.write_text("\n".join(lines) + "\n", encoding="ascii")
@@ -301,11 +301,11 @@ def compared(ours, theirs):
 
 
 def shown(row):
-    """Points and difference as text."""
+    """Number of points and difference as text."""
     if "points" not in row:
-        return "refused" if "refused" in row else row["error"], "-"
+        return "rejected" if "refused" in row else row["error"], "-"
     other = row["points_other_reader"]
-    there = "" if row["points"] == other else f" ({other:,} there)"
+    there = "" if row["points"] == other else f" ({other:,} in the other reader)"
     return f"{row['points']:,}{there}", row["shown"] or "-"
 
 
@@ -326,7 +326,7 @@ def main():
         try:
             found = both()
             row = {"equal": True, "refused": found} if isinstance(found, str) else compared(*found)
-        except Exception as error:  # Every kind is tried; what failed is told in its row.
+        except Exception as error:  # Continue with the next kind; the row reports the error.
             row = {"equal": False, "error": f"{type(error).__name__}: {error}"}
         rows.append({"name": name, "written_by": writer, "other_reader": reader, **row})
         print("| " + " | ".join((name, writer, reader, *shown(row))) + " |", flush=True)
@@ -335,8 +335,8 @@ def main():
     provenance["command"] = "input_kinds.py BUILD REAL_DATA FORMATS OUT"
     report = {"kinds": rows, "provenance": provenance}
     (words.out / "input_kinds.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
-    print(f"{good} of {len(rows)} kinds are read as their other readers read them, or refused as "
-          "wanted")
+    print(f"{good} of {len(rows)} kinds agree with their other readers, or are rejected as "
+          "expected")
     return 0 if good == len(rows) else 1
 
 

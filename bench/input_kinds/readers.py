@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Readers that share no code with the project: Open3D, Assimp, pandas, python3-rosbag, packages of npm
-(laz-perf, copc, loaders.gl, mcap), and NumPy after the specifications where no reader is packaged.
+"""Readers that share no code with the project: Open3D, Assimp, pandas, python3-rosbag, npm packages
+(laz-perf, copc, loaders.gl, mcap), and NumPy code from the specifications where no reader is
+packaged.
 
-Each gives points as an (N, 3) array of float64, metres, in the world, in the order of the file."""
+Each returns points as an (N, 3) array of float64, metres, in world coordinates, in file order.
+"""
 import json
 import pathlib
 import sqlite3
@@ -36,14 +38,14 @@ def open3d_triangles(path):
 
 
 def node_points(kind, path):
-    """By packages of npm that ADASPLATS_NODE_MODULES has: laz, copc or mcap."""
+    """Reads with npm packages from ADASPLATS_NODE_MODULES: laz, copc or mcap."""
     found = subprocess.run(["node", str(NODE), kind, str(path)], check=True, stdout=subprocess.PIPE,
                            stderr=subprocess.DEVNULL)
     return np.frombuffer(found.stdout, "<f8").reshape(-1, 3)
 
 
 def las_points(path):
-    """After the LAS specification 1.4 R15, tables 3, 7 and 14."""
+    """LAS points from the LAS specification 1.4 R15, tables 3, 7 and 14."""
     data = pathlib.Path(path).read_bytes()
     assert data[:4] == b"LASF"
     minor = data[25]
@@ -78,7 +80,7 @@ def _e57_field(node, data, count):
 
 
 def e57_points(path):
-    """After ASTM E2807: pages without their checksums, then the streams of every scan."""
+    """E57 points from ASTM E2807: pages without their checksums, then the streams of every scan."""
     whole = pathlib.Path(path).read_bytes()
     page, = struct.unpack_from("<Q", whole, 40)
     xml_at, xml_size = struct.unpack_from("<QQ", whole, 24)
@@ -172,7 +174,7 @@ def sequence_points(sequence):
 
 
 def kitti_raw_points(drive, calib):
-    """After the devkit of KITTI's raw data: Mercator's projection at the first latitude."""
+    """Points as in the devkit of KITTI's raw data: Mercator's projection at the first latitude."""
     def matrix(rotation, translation):
         out = np.eye(4)
         out[:3, :3], out[:3, 3] = rotation, translation
@@ -195,7 +197,7 @@ def kitti_raw_points(drive, calib):
                 @ np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]]))
         poses.append(matrix(turn, place))
     poses = [pose @ np.linalg.inv(velo_from_imu) for pose in poses]
-    start = poses[0][:3, 3].copy()  # Where the first scan was measured is the origin.
+    start = poses[0][:3, 3].copy()  # The position of the first scan is the origin.
     for pose in poses:
         pose[:3, 3] -= start
     files = sorted((drive / "velodyne_points" / "data").glob("*.bin"))
@@ -239,7 +241,7 @@ def cloud_values(message):
 
 
 def rosbag_points(path):
-    """Clouds placed by the odometry of the same stamp, both as python3-rosbag reads them."""
+    """Clouds placed by the odometry with the same stamp, both from python3-rosbag."""
     import rosbag
 
     with rosbag.Bag(str(path)) as bag:
@@ -256,7 +258,7 @@ def rosbag_points(path):
 
 
 def db3_points(path):
-    """The clouds of a ROS 2 bag by SQLite itself, given to npm's reader of its messages."""
+    """The clouds of a ROS 2 bag, read with SQLite and decoded by an npm package."""
     with sqlite3.connect(path) as base:
         topics = dict(base.execute("select id, name from topics"))
         rows = [[topics[t], bytes(d).hex()] for t, d in base.execute(
@@ -267,7 +269,7 @@ def db3_points(path):
 
 
 def vlp16_points(capture):
-    """In the frame of its ROS driver (x where azimuth 0 looks), VLP-16 manual 63-9243, figures 9-1 and
+    """In the frame of its ROS driver (x at azimuth 0), VLP-16 manual 63-9243, figures 9-1 and
     table 9-1 (the vertical correction in mm included)."""
     from packet_parser import VLP_16
 

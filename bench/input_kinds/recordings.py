@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Files of many kinds from scans of a sequence, by writers that share no code with the project."""
+"""Writes scans of a sequence as files of many kinds, with writers that share no code with the project."""
 import base64
 import json
 import os
@@ -24,7 +24,7 @@ def world_of(sequence, scans):
 
 
 def part_of(sequence, scans, out):
-    """The first scans as a sequence of their own."""
+    """Links the first scans as a new sequence."""
     for folder in ("velodyne", "labels"):
         (out / folder).mkdir(parents=True)
         for k in range(scans):
@@ -61,7 +61,7 @@ def write_csv(points, path):
 
 
 def write_ptx(points, path):
-    """Two stations with axes of their own, and a place without a return in each."""
+    """Two stations with different axes and one missing return each."""
     with open(path, "w", encoding="ascii") as file:
         for k, part in enumerate(np.array_split(points, 2)):
             turn, place = 0.3 + k, np.array([10.0 * k, 2.0, 1.5])
@@ -79,7 +79,7 @@ def write_ptx(points, path):
 
 
 def write_station(sequence, scan, path):
-    """A scan as what a scanner measured that stood at its pose."""
+    """A scan as the station of a scanner at its pose."""
     pose = kitti_poses(sequence)[scan]
     points = float_rows(sequence / "velodyne" / f"{scan:06d}.bin", 4)
     with open(path, "w", encoding="ascii") as file:
@@ -94,7 +94,7 @@ def write_station(sequence, scan, path):
 
 
 def write_mesh(points, path):
-    """A fan of triangles over the first points."""
+    """A triangle fan over the first points."""
     import open3d
 
     count = min(len(points) // 3, 5000)
@@ -106,7 +106,7 @@ def write_mesh(points, path):
 
 
 def quaternion(rotation):
-    """x, y, z, w by the largest of the four ways."""
+    """x, y, z, w of a rotation, computed from the largest component."""
     m = rotation
     four = np.array([[m[0, 0] - m[1, 1] - m[2, 2], 0, 0, 0],
                      [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], 0, 0],
@@ -116,7 +116,7 @@ def quaternion(rotation):
 
 
 def messages_of(sequence, scans):
-    """[topic, stamp in ns, message] of clouds and of the sensor's odometry."""
+    """[topic, stamp in ns, message] of the clouds and the sensor's odometry."""
     times = np.loadtxt(sequence / "times.txt")
     out = []
     for k, pose in enumerate(kitti_poses(sequence)[:scans]):
@@ -151,7 +151,7 @@ def write_mcap(sequence, scans, path, compression):
 
 
 def write_db3(sequence, scans, folder):
-    """As rosbag2's SQLite storage lays it."""
+    """Writes a bag in the layout of rosbag2's SQLite storage."""
     folder.mkdir()
     rows = json.loads(node(["write-cdr"], messages_of(sequence, scans)))
     topics = {}
@@ -216,7 +216,7 @@ def write_rosbag(sequence, scans, path, compression):
 
 
 def write_scans_and_trajectory(sequence, scans, out, form):
-    """PCD files in the sensor's frame with poses by time, as evo's TUM or as EuRoC's CSV."""
+    """PCD files in the sensor frame with timed poses in the TUM format (evo) or the CSV of EuRoC."""
     (out / "scans").mkdir(parents=True)
     times = np.loadtxt(sequence / "times.txt")
     lines = {"tum": ["# timestamp tx ty tz qx qy qz qw"],
@@ -254,7 +254,7 @@ def write_las_with_times(points, times, path):
 
 
 def pandaset_frame(path):
-    """Places and times of a frame as tests/make_data_trees.py reads it."""
+    """Positions and times of a frame, read by tests/make_data_trees.py."""
     sys.path.insert(0, str(TREES.parent))
     from make_data_trees import read_ply
 

@@ -79,7 +79,7 @@ TEST(ImlsField, EveryVoxelAgainstBruteForce) {
       found += known ? 1 : 0;
     }
   }
-  // A ball of 3 voxels holds 113 nodes on average: that none is missing.
+  // A ball of 3 voxels holds 113 nodes on average; none may be missing.
   EXPECT_GT(found, 60 * 100U);
   EXPECT_LT(found, 60 * 130U);
 }
@@ -112,7 +112,7 @@ TEST(Imls, OpenPlaneHasNoSheetsWhereTheBandEnds) {
   EXPECT_LT(area_m2(mesh), side_with(3) * side_with(3));
 }
 
-TEST(Imls, NormalsTurnedRoundTurnTheFaces) {
+TEST(Imls, FlippedNormalsFlipTheFaces) {
   SURFACE_OR_SKIP(mesh, square(1, 51, 0, -1));
   ASSERT_FALSE(mesh.triangles.empty());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -131,8 +131,8 @@ TEST(Imls, SphereIsRoundAndClosed) {
   EXPECT_NEAR(volume_m3(mesh), exact, 0.02 * exact);
 }
 
-// Oracle: the two planes. Between walls seen from both sides the function keeps one sign; farther
-// apart than two truncations nothing lies between them.
+// Oracle: the two planes. Between walls seen from both sides the function keeps one sign; walls
+// farther apart than two truncations have no surface between them.
 TEST(Imls, TwoParallelPlanesStayApart) {
   constexpr float kGap_m = 8 * 0.07F;
   for (const float sign : {1.0F, -1.0F}) {

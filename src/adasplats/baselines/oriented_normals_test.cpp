@@ -25,7 +25,7 @@ float worst(const std::vector<Vec3f>& normals, const OrientedPoints& points, flo
 }
 
 // Oracle of the next three: the sphere's normals.
-TEST(OrientedNormals, TurnedToTheSensor) {
+TEST(OrientedNormals, FaceTheSensor) {
   const OrientedPoints points = sphere({1, 2, 3}, 2, 5000);
   const std::vector<Vec3f> center(points.positions.size(), {1, 2, 3});
   const auto inside = oriented_normals(points.positions, center, {}, executor());
@@ -77,7 +77,7 @@ TEST(OrientedNormals, FewAndEqualPoints) {
 }
 
 // Oracle: nearest by hand.
-TEST(NearestClasses, OfTheCentroid) {
+TEST(NearestClasses, UsesTheCentroid) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {9, 9, 0}};
   mesh.triangles = {{0, 1, 2}, {1, 3, 2}};

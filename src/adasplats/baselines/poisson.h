@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
@@ -98,5 +99,18 @@ PoissonSurface poisson_surface(std::span<const Vec3f> points, std::span<const Ve
                                const PoissonOptions& options, const PoissonPrograms& programs,
                                const std::filesystem::path& folder, int threads,
                                ProgressSink& progress);
+
+/// Private to baselines/. Runs a program, with its output in `log`; returns its peak memory in
+/// bytes. OpenMP programs use `threads` threads, which sleep while they wait. The program is killed
+/// if `progress` throws to cancel or if this process is killed. Errors: unavailable (it does not
+/// start or fails; with the last line of its output).
+std::uint64_t run_program(const std::filesystem::path& program,
+                          const std::vector<std::string>& arguments, int threads,
+                          const std::filesystem::path& log, ProgressSink& progress);
+
+/// The part of a mesh where a value, linear between the vertices, is at least `min`; triangles
+/// across the bound are cut along it. Like PoissonRecon's SurfaceTrimmer, except that small holes
+/// and islands (0.1 % of the area) are not merged with their surroundings. Classes are dropped.
+TriangleMesh trimmed(const TriangleMesh& mesh, std::span<const float> values, float min);
 
 }  // namespace adasplats

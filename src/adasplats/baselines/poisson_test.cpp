@@ -12,9 +12,7 @@
 #include <optional>
 #include <utility>
 
-#include "adasplats/baselines/program.h"
 #include "adasplats/baselines/shapes_test.h"
-#include "adasplats/baselines/trim.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
@@ -53,7 +51,7 @@ TEST_P(Poisson, SphereIsRoundAndClosed) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-// Oracle: the square. Poisson closes what is open; trimming takes that away again.
+// Oracle: the square. Poisson closes open surfaces; trimming opens them again.
 TEST_P(Poisson, TrimmingOpensASquare) {
   const auto programs = programs_of(GetParam());
   if (!programs) GTEST_SKIP() << "the program is not here";
@@ -98,7 +96,7 @@ TEST(PoissonOptions, OutOfRange) {
   EXPECT_EQ(PoissonOptions{}.trim_depth(), 10);
 }
 
-TEST(Program, FailuresSayWhy) {
+TEST(Program, ReportsFailures) {
   const TemporaryFolder folder;
   ProgressSink progress;
   const fs::path log = folder.path() / "log";
@@ -113,7 +111,7 @@ TEST(Program, FailuresSayWhy) {
                [&] { run_program("/no/such", {}, 1, log, progress); });
 }
 
-/// Cancels, as the program's bar does on Ctrl-C, once a file is there.
+/// Cancels once a file exists, like the progress bar on Ctrl-C.
 class Cancelling final : public ProgressSink {
  public:
   struct Cancelled {};

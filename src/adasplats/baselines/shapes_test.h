@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// For tests only: points of known surfaces, and what meshes of them should measure.
+// For tests: points of known surfaces, and measures of meshes.
 
 #include <algorithm>
 #include <cmath>

@@ -14,12 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Splats whose intensities say what the bytes of all stand for.
+/// Maximum number of intensities that survey_levels() samples.
 constexpr std::size_t kSurveyedSplats = 8'000'000;
 
-Error of_other_tiles(const fs::path& folder) {
+Error wrong_tiles_error(const fs::path& folder) {
   return {ErrorKind::data, (folder / kTopLevelsFile).string() +
-                               ": levels of detail of other tiles than " + kCityFile + " names"};
+                               ": the levels of detail belong to other tiles than those of " +
+                               kCityFile};
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ CityLevels::CityLevels(const fs::path& folder, const CityManifest& city)
 CityLevels::CityLevels(fs::path folder, const CityManifest& city, LevelTable table)
     : folder_(std::move(folder)), table_(std::move(table)) {
   check_parts(city);
-  find_places();
+  find_elements();
 }
 
 void CityLevels::check_parts(const CityManifest& city) const {
@@ -80,41 +81,41 @@ void CityLevels::check_parts(const CityManifest& city) const {
     if (tile.splats == 0) continue;
     if (part == table_.parts.end() || part->file != levels_file_of(tile.key) ||
         part->made_of != tile.sha256)
-      throw of_other_tiles(folder_);
+      throw wrong_tiles_error(folder_);
     ++part;
   }
   if (part != table_.parts.end() || table_.facts.splats != city.splats())
-    throw of_other_tiles(folder_);
+    throw wrong_tiles_error(folder_);
 }
 
-void CityLevels::find_places() {
+void CityLevels::find_elements() {
   const std::vector<LevelNode>& nodes = table_.nodes;
   const auto here = static_cast<std::uint32_t>(table_.parts.size());
-  places_.assign(nodes.size(), {here, 0});
+  elements_.assign(nodes.size(), {here, 0});
   for (std::uint32_t p = 0; p < table_.parts.size(); ++p) {
     const LevelPart& part = table_.parts[p];
     const auto node_of = [&](std::size_t k) { return k == 0 ? part.root : part.first + k - 1; };
     std::uint64_t bytes = 0;
     for (std::size_t k = 0; k < part.nodes; ++k)
       bytes += nodes[node_of(k)].count * sizeof(LevelElement);
-    if (bytes > part.bytes) throw of_other_tiles(folder_);
-    // Elements are the last thing in a file.
+    if (bytes > part.bytes) throw wrong_tiles_error(folder_);
+    // Elements are at the end of a file.
     std::uint64_t offset = part.bytes - bytes;
     for (std::size_t k = 0; k < part.nodes; ++k) {
-      places_[node_of(k)] = {p, offset};
+      elements_[node_of(k)] = {p, offset};
       offset += nodes[node_of(k)].count * sizeof(LevelElement);
     }
   }
   top_bytes_ = table_.elements_at;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (places_[n].part != here) continue;
-    places_[n].offset = top_bytes_;
+    if (elements_[n].part != here) continue;
+    elements_[n].offset = top_bytes_;
     top_bytes_ += nodes[n].count * sizeof(LevelElement);
   }
 }
 
 std::string CityLevels::node_bytes(std::size_t n) const {
-  const auto [part, offset] = places_.at(n);
+  const auto [part, offset] = elements_.at(n);
   const std::size_t count = table_.nodes[n].count;
   if (part == table_.parts.size())
     return read_level_elements(folder_ / kTopLevelsFile, top_bytes_, offset, count);
@@ -122,19 +123,19 @@ std::string CityLevels::node_bytes(std::size_t n) const {
   return read_level_elements(folder_ / tile.file, tile.bytes, offset, count);
 }
 
-std::vector<Vec3f> CityLevels::samples(std::size_t most) const {
+std::vector<Vec3f> CityLevels::samples(std::size_t count) const {
   std::vector<std::size_t> splats(table_.parts.size(), 0);
   for (std::size_t n = 0; n < table_.nodes.size(); ++n)
-    if (places_[n].part < splats.size() && table_.nodes[n].child_count == 0)
-      splats[places_[n].part] += table_.nodes[n].count;
+    if (elements_[n].part < splats.size() && table_.nodes[n].child_count == 0)
+      splats[elements_[n].part] += table_.nodes[n].count;
   if (splats.empty()) return {};
   const auto fullest = std::ranges::max_element(splats);
-  const std::size_t every = 1 + *fullest / most;
-  std::vector<Vec3f> places;
+  const std::size_t every = 1 + *fullest / count;
+  std::vector<Vec3f> positions;
   std::size_t number = 0;
   for (std::size_t n = 0; n < table_.nodes.size(); ++n) {
     const LevelNode& node = table_.nodes[n];
-    if (places_[n].part != static_cast<std::size_t>(fullest - splats.begin()) ||
+    if (elements_[n].part != static_cast<std::size_t>(fullest - splats.begin()) ||
         node.child_count > 0)
       continue;
     const std::string bytes = node_bytes(n);
@@ -143,16 +144,17 @@ std::vector<Vec3f> CityLevels::samples(std::size_t most) const {
     LevelSplats there;
     add_splats(node, elements, table_.facts.intensity_range, there);
     for (const Disk& disk : there.disks)
-      if (number++ % every == 0) places.push_back(disk.center);
+      if (number++ % every == 0) positions.push_back(disk.center);
   }
-  return places;
+  return positions;
 }
 
 void CityLevels::verify() const {
   for (const LevelPart& part : table_.parts)
     if (sha256_of_file(folder_ / part.file) != part.sha256)
-      throw Error(ErrorKind::data, (folder_ / part.file).string() +
-                                       ": not the file that was written (its SHA-256 differs)");
+      throw Error(ErrorKind::data,
+                  (folder_ / part.file).string() +
+                      ": the file has changed since it was written (its SHA-256 differs)");
 }
 
 }  // namespace adasplats

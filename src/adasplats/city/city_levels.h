@@ -16,22 +16,22 @@
 
 namespace adasplats {
 
-/// The levels of detail of a city, below its folder: the table of all nodes, and the elements of
-/// those that stand above the tiles.
+/// Levels of detail of a city, relative to its folder: the table of all nodes, and the elements of
+/// the nodes above the tiles.
 inline constexpr const char* kTopLevelsFile = "levels/top.levels";
-/// The levels of detail of a tile.
+/// Levels of detail of a tile.
 std::string levels_file_of(TileKey tile);
 
-/// What the levels of all tiles have in common: reads all tiles. Intensities are those of every
-/// n-th splat, so that a city of any size is surveyed in bounded memory.
+/// Common facts for the levels of all tiles; reads all tiles. Uses the intensities of every n-th
+/// splat, so memory does not grow with the city.
 LevelFacts survey_levels(const std::filesystem::path& folder, const CityManifest& city);
 
-/// Writes levels_file_of() tile `k` of the city, which has splats. `facts`: survey_levels().
+/// Writes levels_file_of() for tile `k`, which must have splats. `facts`: from survey_levels().
 void write_tile_levels(const std::filesystem::path& folder, const CityManifest& city, std::size_t k,
                        const LevelFacts& facts, const Executor& executor);
 
-/// Writes kTopLevelsFile, of the files of all tiles. `sha256_of`: of such a file. Memory: about 100
-/// kB a tile.
+/// Writes kTopLevelsFile from the files of all tiles. `sha256_of` returns the hash of such a file.
+/// Memory: about 100 kB per tile.
 void write_top_levels(const std::filesystem::path& folder, const CityManifest& city,
                       const LevelFacts& facts,
                       FunctionRef<std::string(const std::string& file)> sha256_of,
@@ -40,39 +40,39 @@ void write_top_levels(const std::filesystem::path& folder, const CityManifest& c
 /// Whether a city has levels of detail.
 bool has_levels(const std::filesystem::path& folder);
 
-/// A city's levels of detail: one tree over all tiles, of which memory holds the table of its nodes
-/// alone (about 64 bytes for some thousand splats).
+/// A city's levels of detail: one tree over all tiles. Only the table of nodes is in memory (about
+/// 64 bytes per several thousand splats).
 class CityLevels {
  public:
-  /// Errors: those of read_levels; data (of other tiles than `city` names).
+  /// Errors: those of read_levels; data (the levels belong to other tiles than `city`).
   CityLevels(const std::filesystem::path& folder, const CityManifest& city);
-  /// The same with `table`, which read_levels() read of kTopLevelsFile.
+  /// The same with a `table` that read_levels() read from kTopLevelsFile.
   CityLevels(std::filesystem::path folder, const CityManifest& city, LevelTable table);
 
   const LevelFacts& facts() const { return table_.facts; }
   std::span<const LevelNode> nodes() const { return table_.nodes; }
-  /// The elements of node `n`, read from the disk, as the viewer's page is sent them. Errors: data
-  /// (the file of a tile is another one), no_input, io.
+  /// The elements of node `n` as sent to the viewer's page, read from disk. Errors: data (the file
+  /// of a tile has changed), no_input, io.
   std::string node_bytes(std::size_t n) const;
-  /// Places of splats of the tile with most of them, every n-th, `most` or a few more; relative to
-  /// the city's origin.
-  std::vector<Vec3f> samples(std::size_t most) const;
-  /// Errors: data (a file is not the one that was written: its SHA-256 differs).
+  /// Positions of every n-th splat of the tile with the most splats, about `count`; relative to the
+  /// city's origin.
+  std::vector<Vec3f> samples(std::size_t count) const;
+  /// Errors: data (a file has changed: its SHA-256 differs).
   void verify() const;
 
  private:
-  struct AnyModel {
-    std::uint32_t part;  ///< of the table; their number: in the top file itself
+  struct ElementsAt {
+    std::uint32_t part;  ///< index of the table's part; the number of parts: the top file
     std::uint64_t offset;
   };
 
   void check_parts(const CityManifest& city) const;
-  void find_places();
+  void find_elements();
 
   std::filesystem::path folder_;
   LevelTable table_;
   std::uint64_t top_bytes_ = 0;
-  std::vector<AnyModel> places_;  ///< of the elements of each node
+  std::vector<ElementsAt> elements_;  ///< file positions of each node's elements
 };
 
 }  // namespace adasplats

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using small_city::write_city_with_levels;
 
-TEST(CityLevels, LeavesHoldAllSplatsOfTheTiles) {
+TEST(CityLevels, LeavesHoldAllSplats) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);
@@ -40,7 +40,7 @@ TEST(CityLevels, LeavesHoldAllSplatsOfTheTiles) {
 }
 
 // Oracle: the tree of the tile in memory.
-TEST(CityLevels, NodesOfATileAreThoseOfItsTreeInMemory) {
+TEST(CityLevels, NodesOfATileEqualItsTreeInMemory) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);
@@ -74,9 +74,8 @@ LevelSplats splats_of(const CityLevels& levels, std::size_t n) {
   return splats;
 }
 
-// Oracle: a city's splats lie in its tiles; so what stands for all of them covers each tile's
-// middle.
-TEST(CityLevels, TheRootStandsForAllTiles) {
+// Oracle: splats are inside their tiles, so the root's splats cover the center of each tile.
+TEST(CityLevels, RootCoversAllTiles) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);
@@ -90,16 +89,16 @@ TEST(CityLevels, TheRootStandsForAllTiles) {
     });
     EXPECT_TRUE(covered) << name_of(tile.key);
   }
-  // The hole in the middle stays one.
+  // The gap in the middle remains.
   for (const Disk& disk : root.disks)
     EXPECT_FALSE(std::fabs(disk.center.x - 5) < 3 && std::fabs(disk.center.y - 5) < 3);
 }
 
-TEST(CityLevels, BoxesOfNodesHoldAllBelowThem) {
+TEST(CityLevels, BoxesOfNodesContainTheirSubtrees) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);
-  // What the page takes for the box of a node and all below it (viewer/src/picture/lod.ts).
+  // The page's box of a node and its subtree (viewer/src/picture/lod.ts).
   const auto margin_m = [](const LevelNode& node) {
     return node.largest_radius_m + 2 * node.spacing_m;
   };
@@ -115,7 +114,7 @@ TEST(CityLevels, BoxesOfNodesHoldAllBelowThem) {
   }
 }
 
-TEST(CityLevels, ACityOfOneTileIsItsTree) {
+TEST(CityLevels, CityOfOneTileEqualsItsTree) {
   const TemporaryFolder folder;
   CityManifest city = small_city::write_city(folder.path());
   city.tiles.resize(1);
@@ -129,7 +128,7 @@ TEST(CityLevels, ACityOfOneTileIsItsTree) {
   EXPECT_EQ(splats_of(levels, 0).disks.size(), city.tiles[0].splats);
 }
 
-TEST(CityLevels, OtherTilesThanTheCitysAreAnError) {
+TEST(CityLevels, RejectsLevelsOfOtherTiles) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   CityManifest other = city;
@@ -141,7 +140,7 @@ TEST(CityLevels, OtherTilesThanTheCitysAreAnError) {
   EXPECT_THROW(CityLevels(folder.path(), other), Error);
 }
 
-TEST(CityLevels, AFileOfATileThatChangedIsAnError) {
+TEST(CityLevels, RejectsAChangedTile) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);
@@ -164,7 +163,7 @@ TEST(CityLevels, AFileOfATileThatChangedIsAnError) {
   EXPECT_EQ(errors, 1U) << "the tile's one node";
 }
 
-TEST(CityLevels, SamplesAreOfTheFullestTile) {
+TEST(CityLevels, SamplesAreFromTheFullestTile) {
   const TemporaryFolder folder;
   const CityManifest city = write_city_with_levels(folder.path());
   const CityLevels levels(folder.path(), city);

@@ -36,12 +36,13 @@ void check_version(const Json& json, const fs::path& file) {
   if (json.at("format") != "adasplats city")
     throw Error(ErrorKind::data, file.string() + ": not the manifest of a city");
   if (json.at("version") != kCityVersion)
-    throw Error(ErrorKind::data, file.string() + ": a city of version " +
+    throw Error(ErrorKind::data, file.string() + ": the city has version " +
                                      json.at("version").dump() + "; this program reads version " +
                                      std::to_string(kCityVersion));
 }
 
-/// All but the tiles, which are added to `tiles`: a city has a hundred thousand of them.
+/// Parses all but the tiles, which are added to `tiles` instead: a city may have a hundred
+/// thousand.
 Json parsed_manifest(const std::string& text, std::vector<CityTile>& tiles, const fs::path& file) {
   try {
     Json json =
@@ -49,7 +50,7 @@ Json parsed_manifest(const std::string& text, std::vector<CityTile>& tiles, cons
     check_version(json, file);
     return json;
   } catch (const Json::exception&) {
-    // Tiles of another version may be other ones.
+    // Tiles may differ in other versions.
     check_version(Json::parse(text), file);
     throw;
   }
@@ -115,7 +116,7 @@ CityManifest load_city_manifest(const fs::path& folder) {
     city.halo_m = json.at("halo_m");
     city.origin = vector_of(json.at("origin_m"));
     if (!(city.grid.side_m > 0) || !std::ranges::is_sorted(city.tiles, {}, &CityTile::key))
-      throw Error(ErrorKind::data, file.string() + ": damaged: its tiles are not in order");
+      throw Error(ErrorKind::data, file.string() + ": damaged: the tiles are not sorted");
     return city;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
@@ -134,21 +135,21 @@ TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>&
   return own;
 }
 
-/// Throws data for splats beyond the box that the manifest says: who goes by the box would not see
-/// them.
+/// Throws data if splats are outside the manifest's box, since callers that rely on the box would
+/// miss them.
 void require_within(const CityTile& tile, const SplatModel& part, const fs::path& file) {
   if (part.size() == 0) return;
   const auto [low, high] = bounds(part);
   for (int axis = 0; axis < 3; ++axis) {
     const auto first = static_cast<double>(low[axis]), last = static_cast<double>(high[axis]);
-    // Places are floats, relative to one origin or another.
+    // Positions are floats, relative to different origins.
     const double rounded_m = 1e-3 + 0x1p-22 * std::max(std::fabs(first), std::fabs(last));
     const double from = part.origin[axis] + first, to = part.origin[axis] + last;
     if (from >= tile.low[axis] - rounded_m && to <= tile.high[axis] + rounded_m) continue;
     const std::string name(1, "xyz"[axis]);
-    throw Error(ErrorKind::data, file.string() + ": its splats have " + name + " from " +
+    throw Error(ErrorKind::data, file.string() + ": the splats have " + name + " from " +
                                      decimal_text(from) + " to " + decimal_text(to) +
-                                     "; the city's manifest says " + decimal_text(tile.low[axis]) +
+                                     "; the city's manifest has " + decimal_text(tile.low[axis]) +
                                      " to " + decimal_text(tile.high[axis]));
   }
 }
@@ -159,9 +160,9 @@ SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std:
   SplatModel part = load_model(file);
   if (part.size() != tile.splats)
     throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
-                                     " splats; the city's manifest says " +
+                                     " splats; the city's manifest has " +
                                      std::to_string(tile.splats));
-  // A file says world coordinates; what it is loaded with is an origin near by.
+  // The file's CRS header refers to world coordinates; the loaded model has a nearby origin.
   const Vec3d shift = part.origin - city.origin;
   for (Disk& disk : part.disks)
     disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
@@ -198,8 +199,9 @@ void verify_city(const fs::path& folder, const CityManifest& city) {
     if (tile.splats == 0) continue;
     const fs::path file = folder / model_file_of(tile.key);
     if (sha256_of_file(file) != tile.sha256)
-      throw Error(ErrorKind::data,
-                  file.string() + ": not the file that was written (its SHA-256 differs)");
+      throw Error(
+          ErrorKind::data,
+          file.string() + ": the file has changed since it was written (its SHA-256 differs)");
   }
 }
 

@@ -49,7 +49,7 @@ std::string error_of(const Work& work, ErrorKind kind) {
   return {};
 }
 
-TEST(TileGrid, NamesOfTilesAreRead) {
+TEST(TileGrid, ParsesTileNames) {
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
   for (const TileKey tile : {TileKey{0, 0}, TileKey{12, -3}, TileKey{kLeast, kMost}})
@@ -70,7 +70,7 @@ TEST(TileGrid, TilesCoverTheGroundOnce) {
   EXPECT_EQ(name_of({-2, 3}), "x-2_y3");
 }
 
-TEST(GroundBox, WaysCrossItOrNot) {
+TEST(GroundBox, SegmentsCrossItOrNot) {
   const GroundBox box = {0, 0, 10, 10};
   EXPECT_TRUE(box.is_crossed({-5, 5, 0}, {15, 5, 9}));     // through it
   EXPECT_TRUE(box.is_crossed({5, 5, 0}, {15, 5, 0}));      // out of it
@@ -78,10 +78,10 @@ TEST(GroundBox, WaysCrossItOrNot) {
   EXPECT_TRUE(box.is_crossed({5, 5, 0}, {5, 5, 3}));       // straight up
   EXPECT_FALSE(box.is_crossed({-5, 5, 0}, {-1, 5, 0}));    // ends before it
   EXPECT_FALSE(box.is_crossed({-5, 8, 0}, {3, 16, 0}));    // past a corner
-  EXPECT_FALSE(box.is_crossed({-5, 12, 0}, {15, 12, 0}));  // beside it
+  EXPECT_FALSE(box.is_crossed({-5, 12, 0}, {15, 12, 0}));  // misses it
 }
 
-TEST(TilePoints, ComeBackFromDiskTileByTile) {
+TEST(TilePoints, RoundTripTileByTile) {
   const TemporaryFolder folder;
   const TileGrid grid{30};
   const Executor executor(2);
@@ -90,7 +90,7 @@ TEST(TilePoints, ComeBackFromDiskTileByTile) {
   std::map<TileKey, std::size_t> expected;
   std::size_t all = 0;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    // The last one has another origin and is moved.
+    // The last cloud has another origin and is moved.
     PointCloud cloud = random_cloud(500, seed < 3 ? origin : Vec3d{1010, 2000, 0}, seed);
     cloud.empty_beams.push_back({{0, 0, 1}, {1, 0, 0}, 7});
     for (std::size_t i = 0; i < cloud.size(); ++i) ++expected[grid.tile_of(cloud.world(i))];
@@ -118,7 +118,7 @@ TEST(TilePoints, ComeBackFromDiskTileByTile) {
   EXPECT_EQ(beams, 3U);
 }
 
-TEST(TilePoints, TheirOrderAndOtherClassesCanBeKept) {
+TEST(TilePoints, OrderAndReplacementClasses) {
   const TemporaryFolder folder;
   const TileGrid grid{30};
   const Executor executor(2);
@@ -155,7 +155,7 @@ TEST(TilePoints, TheirOrderAndOtherClassesCanBeKept) {
   EXPECT_EQ(*numbers.rbegin(), all.size() - 1);
 }
 
-TEST(TilePoints, OnlyThoseThatAreWantedAreKept) {
+TEST(TilePoints, FiltersByPosition) {
   const TemporaryFolder folder;
   const Executor executor(2);
   TilePointsWriter writer(folder.path(), TileGrid{1000}, 100, executor);
@@ -169,7 +169,7 @@ TEST(TilePoints, OnlyThoseThatAreWantedAreKept) {
   EXPECT_TRUE(std::ranges::all_of(high.positions, [](Vec3f p) { return p.z > 4; }));
 }
 
-TEST(TilePoints, DamageAndOtherAttributesAreErrors) {
+TEST(TilePoints, RejectDamageAndOtherAttributes) {
   const TemporaryFolder folder;
   const Executor executor(2);
   TilePointsWriter writer(folder.path(), TileGrid{1000}, 1'000'000, executor);
@@ -189,8 +189,8 @@ TEST(TilePoints, DamageAndOtherAttributesAreErrors) {
   error_of([&] { read_tile_points(folder.path(), tile, read); }, ErrorKind::data);
 }
 
-// Oracle: every ray with every tile, by small steps along it.
-TEST(PassingRays, AreThoseThatCrossATileAndEndElsewhere) {
+// Oracle: every ray against every tile, in small steps along the ray.
+TEST(PassingRays, CrossATileAndEndElsewhere) {
   const PointCloud cloud = random_cloud(600, {5, 7, 0}, 4);
   TileSet tiles;
   tiles.grid = {20};
@@ -217,13 +217,13 @@ TEST(PassingRays, AreThoseThatCrossATileAndEndElsewhere) {
     rays += found.size();
     for (const std::size_t i : expected)
       ASSERT_TRUE(found.contains(i)) << name_of(tile) << " " << i;
-    doubtful += found.size() - expected.size();  // steps pass over what is cut off a corner
+    doubtful += found.size() - expected.size();  // steps miss clipped corners
   }
   EXPECT_GT(rays, 1000U);
   EXPECT_LT(doubtful, 10U);
 }
 
-TEST(RayFiles, GiveEachTileItsOwn) {
+TEST(RayFiles, ReturnTheRaysOfEachTile) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "rays");
   const TileKey a = {0, 0}, b = {1, -1}, c = {5, 5};
@@ -270,7 +270,7 @@ CityManifest write_city(const std::filesystem::path& folder) {
   return city;
 }
 
-TEST(City, IsOneModelOfItsTiles) {
+TEST(City, LoadsAsOneModel) {
   const TemporaryFolder folder;
   EXPECT_FALSE(is_city(folder.path()));
   write_city(folder.path());
@@ -285,7 +285,7 @@ TEST(City, IsOneModelOfItsTiles) {
   verify_city(folder.path(), city);
 }
 
-TEST(City, DamageIsSaid) {
+TEST(City, ReportsDamage) {
   const TemporaryFolder folder;
   const CityManifest city = write_city(folder.path());
   const auto tile = folder.path() / model_file_of({21, 0});
@@ -304,7 +304,7 @@ TEST(City, DamageIsSaid) {
   error_of([&] { load_city_manifest(folder.path()); }, ErrorKind::data);
 }
 
-TEST(City, SplatsBeyondTheBoxOfTheirTileAreAnError) {
+TEST(City, RejectsSplatsOutsideTheBoxOfTheirTile) {
   const TemporaryFolder folder;
   CityManifest city = write_city(folder.path());
   const auto k = static_cast<std::size_t>(
@@ -313,11 +313,11 @@ TEST(City, SplatsBeyondTheBoxOfTheirTileAreAnError) {
   city.tiles[k].high.y -= 0.01;
   const std::string why =
       error_of([&] { load_city_tile(folder.path(), city, k); }, ErrorKind::data);
-  EXPECT_NE(why.find("x21_y0.ply: its splats have y from"), std::string::npos) << why;
-  EXPECT_NE(why.find("the city's manifest says"), std::string::npos) << why;
+  EXPECT_NE(why.find("x21_y0.ply: the splats have y from"), std::string::npos) << why;
+  EXPECT_NE(why.find("the city's manifest has"), std::string::npos) << why;
 }
 
-TEST(City, SplatsBesideAllTilesBelongToANeighbor) {
+TEST(City, SplatsOutsideAllTilesBelongToANeighbor) {
   const TileGrid grid{50};
   const std::vector<CityTile> tiles = {{.key = {0, 0}}, {.key = {1, 0}}};
   EXPECT_EQ(owner_of({60, 10, 0}, grid, tiles), (TileKey{1, 0}));

@@ -55,7 +55,7 @@ LayerFacts load_facts(const fs::path& file) {
       return tile.second.points > 0 && (rays.low_x > rays.high_x || rays.low_y > rays.high_y);
     };
     if (!is_finite(facts.origin) || std::ranges::any_of(facts.tiles, is_faulty))
-      throw Error(ErrorKind::data, file.string() + ": damaged: places that cannot be");
+      throw Error(ErrorKind::data, file.string() + ": damaged: invalid coordinates");
     return facts;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());

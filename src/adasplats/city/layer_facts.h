@@ -13,28 +13,28 @@
 
 namespace adasplats {
 
-/// What is known of a tile's points when all are written.
+/// Figures of a tile's points after all have been written.
 struct TileCount {
   std::size_t points = 0;
   std::size_t empty_beams = 0;
-  /// Holds the points and where they were measured from: what their rays can cross.
+  /// Contains the points and their sensor positions, and so everything that their rays can cross.
   GroundBox rays = kNoGround;
 };
 
-/// What is known of the points of a city that were read at one time: a layer of them.
+/// Figures of a layer: the points of a city that were read together.
 struct LayerFacts {
   Vec3d origin;  ///< of all clouds and models of the city's tiles, world coordinates
   CurveBox box;
   std::size_t points_read = 0;
-  /// Measured ones that stay. Where a network gives the points classes it is 0 in the file, and
-  /// comes from that of the classes.
+  /// Measured rays of the remaining points. If a network classifies the points, it is 0 in this
+  /// file and taken from the file of the classes.
   std::size_t rays = 0;
   float empty_reach_m = 0;
-  std::string attributes;  ///< as TilePointsWriter::attributes() says
+  std::string attributes;  ///< see TilePointsWriter::attributes()
   std::map<TileKey, TileCount> tiles;
 };
 
-/// As a file of JSON has it.
+/// JSON text.
 std::string text_of(const LayerFacts& facts);
 /// Errors: no_input, data (damaged).
 LayerFacts load_facts(const std::filesystem::path& file);

@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kRaysHead = "adasplats rays 1";
+constexpr std::string_view kRaysHeader = "adasplats rays 1";
 
 void add(PointCloud& rays, Vec3f sensor, Vec3f end) {
   rays.sensor_positions.push_back(sensor);
   rays.positions.push_back(end);
 }
 
-/// Calls visit(chunk's rays, i) for the rays of a cloud, and puts the chunks together in order.
+/// Calls visit(chunk's rays, i) for each ray of a cloud, and joins the chunks in order.
 template <class Visit>
 RaysByTile by_tile(std::size_t count, const Executor& executor, const Visit& visit) {
   constexpr std::size_t kChunk = std::size_t{1} << 16;
@@ -88,10 +88,10 @@ std::string rays_file_of(TileKey from, RaySort sort) {
   return "rays/" + name_of(from) + (sort == RaySort::passing ? ".passing" : ".empty");
 }
 
-/// A line "adasplats rays 1 TILES", a line "X Y COUNT" a tile, then of each tile the ends and the
-/// sensor positions.
+/// Format: a line "adasplats rays 1 TILES", a line "X Y COUNT" per tile, then for each tile the
+/// ends and the sensor positions.
 void write_rays(const fs::path& file, const RaysByTile& rays) {
-  std::string text = std::string(kRaysHead) + " " + std::to_string(rays.size()) + "\n";
+  std::string text = std::string(kRaysHeader) + " " + std::to_string(rays.size()) + "\n";
   for (const auto& [tile, own] : rays)
     text += std::to_string(tile.x) + " " + std::to_string(tile.y) + " " +
             std::to_string(own.size()) + "\n";
@@ -110,55 +110,55 @@ RayFiles::RayFiles(const fs::path& folder, const std::set<TileKey>& tiles, RaySo
       throw Error(ErrorKind::data, file.string() + ": damaged: " + what);
     };
     std::string line;
-    if (!std::getline(in, line) || !line.starts_with(kRaysHead)) fail("no rays of a city");
+    if (!std::getline(in, line) || !line.starts_with(kRaysHeader)) fail("not a file of rays");
     std::size_t count = 0;
-    std::istringstream(line.substr(kRaysHead.size())) >> count;
+    std::istringstream(line.substr(kRaysHeader.size())) >> count;
     std::vector<std::pair<TileKey, std::size_t>> heads;
     for (std::size_t k = 0; k < count; ++k) {
       TileKey tile;
       std::size_t rays = 0;
       if (!std::getline(in, line) || !(std::istringstream(line) >> tile.x >> tile.y >> rays))
-        fail("it ends within its head");
+        fail("the file ends within its header");
       heads.emplace_back(tile, rays);
     }
     auto at = static_cast<std::size_t>(in.tellg());
     const std::size_t size = fs::file_size(file);
     for (const auto& [tile, rays] : heads) {
-      if (rays > (size - at) / (2 * sizeof(Vec3f))) fail("it ends within its rays");
-      places_[tile].push_back({from, file, at, rays});
+      if (rays > (size - at) / (2 * sizeof(Vec3f))) fail("the file ends within its rays");
+      blocks_[tile].push_back({from, file, at, rays});
       at += 2 * rays * sizeof(Vec3f);
     }
-    if (at != size) fail("something follows its rays");
+    if (at != size) fail("data follow the rays");
   }
 }
 
 std::vector<TileKey> RayFiles::sources(TileKey tile) const {
   std::vector<TileKey> tiles;
-  const auto found = places_.find(tile);
-  if (found != places_.end())
-    for (const Place& place : found->second) tiles.push_back(place.from);
+  const auto found = blocks_.find(tile);
+  if (found != blocks_.end())
+    for (const Block& block : found->second) tiles.push_back(block.from);
   return tiles;
 }
 
 std::vector<TileKey> RayFiles::targets() const {
   std::vector<TileKey> tiles;
-  for (const auto& [tile, places] : places_) tiles.push_back(tile);
+  for (const auto& [tile, blocks] : blocks_) tiles.push_back(tile);
   return tiles;
 }
 
 PointCloud RayFiles::read(TileKey tile) const {
   PointCloud all;
-  const auto found = places_.find(tile);
-  if (found == places_.end()) return all;
-  for (const Place& place : found->second) {
-    std::ifstream in(place.file, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(place.at));
+  const auto found = blocks_.find(tile);
+  if (found == blocks_.end()) return all;
+  for (const Block& block : found->second) {
+    std::ifstream in(block.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(block.at));
     for (auto* values : {&all.positions, &all.sensor_positions}) {
       const std::size_t before = values->size();
-      values->resize(before + place.rays);
+      values->resize(before + block.rays);
       if (!in.read(reinterpret_cast<char*>(values->data() + before),
-                   static_cast<std::streamsize>(place.rays * sizeof(Vec3f))))
-        throw Error(ErrorKind::io, place.file.string() + ": cannot be read");
+                   static_cast<std::streamsize>(block.rays * sizeof(Vec3f))))
+        throw Error(ErrorKind::io, block.file.string() + ": cannot be read");
     }
   }
   return all;

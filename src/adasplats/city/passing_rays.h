@@ -15,56 +15,56 @@
 
 namespace adasplats {
 
-/// Ends and sensor positions of rays, by the tile that they are for.
+/// Ends and sensor positions of rays, by the tile that uses them.
 using RaysByTile = std::map<TileKey, PointCloud>;
 
-/// Which tiles there are, and how far a tile looks beyond its borders.
+/// The tiles of a city, with the margin that each tile uses.
 struct TileSet {
   TileGrid grid;
   double halo_m = 0;
   std::set<TileKey> tiles;
 
-  /// The ground that a tile is modelled on.
+  /// Ground area for modelling a tile.
   GroundBox reach_of(TileKey tile) const { return grid.box_of(tile).grown(halo_m); }
-  /// Those that a piece of the ground touches, in order.
+  /// Tiles that touch a ground area, in order.
   std::vector<TileKey> touched(const GroundBox& ground) const;
-  /// Those whose reach a straight way has a part in.
+  /// Tiles with an area that the segment from `from` to `to` crosses.
   std::set<TileKey> crossed(Vec3d from, Vec3d to) const;
 };
 
-/// The measured rays of points with a beam, by the tiles whose reach they cross and in whose reach
-/// they do not end: to these they say what is free. `cloud.empty_beams` are left alone.
+/// Measured rays of points with a beam, by the tiles with an area that the rays cross without
+/// ending in it: they are free-space evidence there. Ignores `cloud.empty_beams`.
 RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double min_range_m,
                         const Executor& executor);
-/// Rays that end nowhere, as ends_of() makes them, by all tiles whose reach they cross.
+/// Rays without an end, from ends_of(), by all tiles with an area that they cross.
 RaysByTile crossing_rays(const PointCloud& ends, const TileSet& tiles, const Executor& executor);
 
-/// The rays that begin in one tile, for others, in a file: "rays/NAME.passing" or ".empty" below
-/// the folder of a city, with a head that says where those of each tile are.
+/// The rays that begin in one tile and are used by others: file "rays/NAME.passing" or ".empty" in
+/// the folder of a city, with a header that lists the rays of each tile.
 enum class RaySort : std::uint8_t { passing, empty };
 std::string rays_file_of(TileKey from, RaySort sort);
 void write_rays(const std::filesystem::path& file, const RaysByTile& rays);
 
-/// Reads the rays for tiles from the files of all.
+/// Reads the rays for a tile from the files of all tiles.
 class RayFiles {
  public:
-  /// Reads the heads. Files that are not there have none. Errors: data (damaged).
+  /// Reads the headers; a missing file has no rays. Errors: data (damaged).
   RayFiles(const std::filesystem::path& folder, const std::set<TileKey>& tiles, RaySort sort);
-  /// Those for one tile, with ends and sensor positions.
+  /// The rays for one tile, with ends and sensor positions.
   PointCloud read(TileKey tile) const;
-  /// The tiles whose files have rays for one.
+  /// The tiles with rays for `tile` in their files.
   std::vector<TileKey> sources(TileKey tile) const;
-  /// The tiles that there are rays for.
+  /// The tiles for which rays exist.
   std::vector<TileKey> targets() const;
 
  private:
-  struct Place {
+  struct Block {
     TileKey from;
     std::filesystem::path file;
     std::size_t at = 0;  ///< bytes
     std::size_t rays = 0;
   };
-  std::map<TileKey, std::vector<Place>> places_;
+  std::map<TileKey, std::vector<Block>> blocks_;
 };
 
 }  // namespace adasplats

@@ -15,15 +15,15 @@ namespace adasplats::small_city {
 
 inline constexpr double kSide_m = 10;
 
-/// A floor of 0.2 m a splat with a wall at the end, as splats of one tile.
+/// One tile of splats: a floor with a spacing of 0.2 m and a wall at its end.
 inline SplatModel tile_of(TileKey key, Vec3d origin) {
   SplatModel tile;
   tile.origin = origin;
   tile.method = "consistent";
   tile.label_scheme = "semantickitti";
-  const auto add = [&](Vec3d place, Vec3f normal, std::uint16_t class_id) {
+  const auto add = [&](Vec3d position, Vec3f normal, std::uint16_t class_id) {
     Random random(5, static_cast<std::uint64_t>(100 * key.x + key.y), tile.size());
-    tile.disks.push_back({vec_cast<float>(place - origin), 0.18F, normal});
+    tile.disks.push_back({vec_cast<float>(position - origin), 0.18F, normal});
     tile.classes.push_back(class_id);
     tile.intensities.push_back(static_cast<float>(random.uniform(0.1, 0.9)));
   };
@@ -35,7 +35,7 @@ inline SplatModel tile_of(TileKey key, Vec3d origin) {
   return tile;
 }
 
-/// Writes a city of 3 x 3 tiles without its middle, and one tile without splats.
+/// Writes a city of 3 x 3 tiles without the middle one, and one tile without splats.
 inline CityManifest write_city(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   fs::create_directories(folder / "tiles");

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// Cuts [first, last], shares of a way, to where one coordinate is between low and high.
+/// Clips [first, last], shares of a segment, to where one coordinate is between low and high.
 bool cut(double from, double to, double low, double high, double& first, double& last) {
   const double way = to - from;
   if (way == 0) return from >= low && from <= high;
@@ -34,7 +34,7 @@ std::optional<TileKey> tile_named(std::string_view name) {
       !std::string_view(column_end, 2).starts_with("_y"))
     return std::nullopt;
   const auto [row_end, bad_row] = std::from_chars(column_end + 2, end, tile.y);
-  // One name a tile: not "x01_y2".
+  // One name per tile: rejects "x01_y2".
   if (bad_row != std::errc() || row_end != end || name_of(tile) != name) return std::nullopt;
   return tile;
 }

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// A tile of a city by its column and row: x and y of world coordinates in whole sides.
+/// Column and row of a tile: x and y of world coordinates in units of the tile's side.
 struct TileKey {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -23,12 +23,12 @@ struct TileKey {
   auto operator<=>(const TileKey&) const = default;
 };
 
-/// "x12_y-3": what files of a tile are named by.
+/// "x12_y-3", the base name of a tile's files.
 std::string name_of(TileKey tile);
-/// The tile of such a name; nothing where it is none.
+/// The tile with this name; nullopt for other names.
 std::optional<TileKey> tile_named(std::string_view name);
 
-/// A rectangle of the ground in world coordinates, m: low sides belong to it, high ones do not.
+/// A ground rectangle in world coordinates, m: includes its low sides but not its high ones.
 struct GroundBox {
   double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
 
@@ -39,26 +39,26 @@ struct GroundBox {
   GroundBox grown(double by_m) const {
     return {low_x - by_m, low_y - by_m, high_x + by_m, high_y + by_m};
   }
-  /// The smallest that holds both.
+  /// The smallest box that contains both.
   GroundBox with(const GroundBox& other) const {
     return {std::min(low_x, other.low_x), std::min(low_y, other.low_y),
             std::max(high_x, other.high_x), std::max(high_y, other.high_y)};
   }
-  /// Whether they have a place in common, be it on their edges.
+  /// Whether the closed boxes intersect.
   bool touches(const GroundBox& other) const {
     return low_x <= other.high_x && other.low_x <= high_x && low_y <= other.high_y &&
            other.low_y <= high_y;
   }
-  /// Whether a straight way from one place to another has a part in it, seen from above.
+  /// Whether the segment from `from` to `to` crosses the box, seen from above.
   bool is_crossed(Vec3d from, Vec3d to) const;
 };
 
-/// Holds nothing: with() gives the other box.
+/// Empty; with() returns the other box.
 inline constexpr GroundBox kNoGround = {
     std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
     -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
-/// Square tiles that cover the ground, counted from the world's zero.
+/// Square tiles that cover the ground, counted from the origin of world coordinates.
 struct TileGrid {
   double side_m = 64;
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -18,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPointsHead = "adasplats points 1 ";
+constexpr std::string_view kPointsHeader = "adasplats points 1 ";
 
-/// The names of the attributes that a cloud has, each with a space before it.
+/// The names of a cloud's attributes, each preceded by a space.
 std::string attributes_of(const PointCloud& cloud) {
   std::string names;
   for_each_attribute([&](const auto& attribute) {
@@ -29,8 +30,8 @@ std::string attributes_of(const PointCloud& cloud) {
   return names;
 }
 
-/// The attributes that all clouds of a city have or none: without those whose lack says as much as
-/// a value does (even_out()).
+/// The attributes that every cloud of a city must have or lack: all but those with a default
+/// (even_out()).
 std::string needed_attributes_of(const PointCloud& cloud) {
   PointCloud some;
   const auto take = [&](auto& to, const auto& from) { to.resize(from.empty() ? 0 : 1); };
@@ -40,8 +41,8 @@ std::string needed_attributes_of(const PointCloud& cloud) {
   return attributes_of(some);
 }
 
-/// Gives two clouds that are to be one what one of them has and the other need not say: that its
-/// points are of no instance, and that all of their beams were measured.
+/// Gives both clouds attributes that only one of them has and that have a default: no instance,
+/// measured beams.
 void even_out(PointCloud& a, PointCloud& b) {
   if (a.empty() || b.empty()) return;
   for (PointCloud* const cloud : {&a, &b}) {
@@ -52,7 +53,7 @@ void even_out(PointCloud& a, PointCloud& b) {
   }
 }
 
-/// The points alone, without what gather() keeps of their cloud.
+/// The points alone, without the cloud's metadata, which gather() keeps.
 PointCloud points_at(const PointCloud& cloud, const std::vector<std::uint32_t>& indices) {
   PointCloud part;
   const auto pick = [&](const auto& from, auto& to) {
@@ -72,7 +73,7 @@ void put(std::ofstream& out, const std::vector<T>& values) {
             static_cast<std::streamsize>(values.size() * sizeof(T)));
 }
 
-/// Adds what `write` puts into the stream to the end of a file.
+/// Appends the output of `write` to a file.
 template <class Write>
 void extend(const fs::path& file, const Write& write) {
   std::ofstream out(file, std::ios::binary | std::ios::app);
@@ -81,7 +82,7 @@ void extend(const fs::path& file, const Write& write) {
   if (!out) throw Error(ErrorKind::io, file.string() + ": cannot be written; is the disk full?");
 }
 
-/// All values of a file that holds nothing else.
+/// All values of a file of one type.
 template <class T>
 std::vector<T> values_of(const fs::path& file) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -89,7 +90,7 @@ std::vector<T> values_of(const fs::path& file) {
   const auto bytes = fs::file_size(file, none);
   if (none) throw Error(ErrorKind::no_input, file.string() + ": no such file");
   if (bytes % sizeof(T) != 0)
-    throw Error(ErrorKind::data, file.string() + ": damaged: it ends within a value");
+    throw Error(ErrorKind::data, file.string() + ": damaged: the file ends within a value");
   std::vector<T> values(bytes / sizeof(T));
   std::ifstream in(file, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes)))
@@ -97,7 +98,7 @@ std::vector<T> values_of(const fs::path& file) {
   return values;
 }
 
-/// The points of a cloud that stand in one tile, ascending.
+/// Ascending indices of a cloud's points in one tile.
 struct TilePart {
   TileKey tile;
   std::vector<std::uint32_t> points;
@@ -111,7 +112,7 @@ std::vector<TilePart> parts_of(const PointCloud& cloud, const TileGrid& grid,
   });
   std::vector<TilePart> parts;
   std::map<TileKey, std::size_t> part_of;
-  std::size_t last = 0;  // points stand beside each other for long
+  std::size_t last = 0;  // consecutive points are mostly in the same tile
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
     if (parts.empty() || parts[last].tile != tiles[i]) {
       const auto [found, is_new] = part_of.try_emplace(tiles[i], parts.size());
@@ -123,33 +124,33 @@ std::vector<TilePart> parts_of(const PointCloud& cloud, const TileGrid& grid,
   return parts;
 }
 
-/// Reads the pieces of one file.
-class PieceReader {
+/// Reads the blocks of one file.
+class BlockReader {
  public:
-  explicit PieceReader(fs::path file) : file_(std::move(file)), in_(file_, std::ios::binary) {
+  explicit BlockReader(fs::path file) : file_(std::move(file)), in_(file_, std::ios::binary) {
     if (!in_) throw Error(ErrorKind::no_input, file_.string() + ": no such file");
   }
 
-  /// The next piece; false at the end of the file.
-  bool read(PointCloud& piece) {
+  /// Reads the next block; false at the end of the file.
+  bool read(PointCloud& block) {
     std::string head;
     if (!std::getline(in_, head)) return false;
-    if (!head.starts_with(kPointsHead)) fail("not points of a city of this version");
-    std::istringstream words(head.substr(kPointsHead.size()));
+    if (!head.starts_with(kPointsHeader)) fail("not a file of points, or from another version");
+    std::istringstream words(head.substr(kPointsHeader.size()));
     std::size_t count = 0;
-    if (!(words >> count)) fail("no number of points");
+    if (!(words >> count)) fail("the number of points is missing");
     std::vector<std::string> names;
     for (std::string name; words >> name;) names.push_back(name);
-    if (count > left() / sizeof(Vec3f)) fail("it ends within its points");
-    piece = {};
-    get(piece.positions, count);
+    if (count > left() / sizeof(Vec3f)) fail("the file ends within its points");
+    block = {};
+    get(block.positions, count);
     std::size_t known = 0;
     for_each_attribute([&](const auto& attribute) {
       if (known >= names.size() || names[known] != attribute.name) return;
       ++known;
-      get(attribute.of(piece), count);
+      get(attribute.of(block), count);
     });
-    if (known != names.size()) fail("it has an attribute '" + names[known] + "'");
+    if (known != names.size()) fail("unknown attribute '" + names[known] + "'");
     return true;
   }
 
@@ -170,7 +171,8 @@ class PieceReader {
   void get(std::vector<T>& values, std::size_t count) {
     values.resize(count);
     const auto bytes = static_cast<std::streamsize>(count * sizeof(T));
-    if (!in_.read(reinterpret_cast<char*>(values.data()), bytes)) fail("it ends within its points");
+    if (!in_.read(reinterpret_cast<char*>(values.data()), bytes))
+      fail("the file ends within its points");
   }
 
   fs::path file_;
@@ -203,15 +205,15 @@ void TilePointsWriter::add(const PointCloud& cloud) {
     const std::string attributes = needed_attributes_of(cloud);
     if (!attributes_) attributes_ = attributes;
     if (attributes != *attributes_)
-      throw Error(ErrorKind::data, "the points come with different attributes:" + *attributes_ +
-                                       " at first, then" + attributes +
-                                       "; model such inputs one by one");
+      throw Error(ErrorKind::data, "the inputs have different attributes:" + *attributes_ +
+                                       " in the first ones, then" + attributes +
+                                       "; model them separately");
   }
   const Vec3d shift = cloud.origin - *origin_;
   const bool is_moved = !(shift == Vec3d{});
   const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
   const std::vector<TilePart> parts = parts_of(cloud, grid_, executor_);
-  std::vector<Waiting*> to;  // a place for each tile before threads fill them
+  std::vector<Waiting*> to;  // inserted before threads fill them
   to.reserve(parts.size());
   for (const TilePart& part : parts) to.push_back(&waiting_[part.tile]);
   executor_.for_chunks(parts.size(), 1, [&](std::size_t k, std::size_t) {
@@ -238,7 +240,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
 void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
   if (!waiting.points.empty())
     extend(folder_ / points_file_of(tile), [&](std::ofstream& out) {
-      out << kPointsHead << waiting.points.size() << attributes_of(waiting.points) << '\n';
+      out << kPointsHeader << waiting.points.size() << attributes_of(waiting.points) << '\n';
       put(out, waiting.points.positions);
       for_each_attribute([&](const auto& attribute) { put(out, attribute.of(waiting.points)); });
     });
@@ -250,8 +252,8 @@ void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
 
 GroundBox TilePointsWriter::box_of_rays(const PointCloud& points) const {
   GroundBox box = kNoGround;
-  for (const auto* places : {&points.positions, &points.sensor_positions})
-    for (const Vec3f p : *places) {
+  for (const auto* positions : {&points.positions, &points.sensor_positions})
+    for (const Vec3f p : *positions) {
       const double x = origin().x + static_cast<double>(p.x);
       const double y = origin().y + static_cast<double>(p.y);
       box = box.with({x, y, x, y});
@@ -285,9 +287,9 @@ std::map<TileKey, TileCount> TilePointsWriter::finish() {
 }
 
 void read_tile_pieces(const fs::path& folder, TileKey tile,
-                      FunctionRef<void(PointCloud& piece)> take) {
-  PieceReader reader(folder / points_file_of(tile));
-  for (PointCloud piece; reader.read(piece);) take(piece);
+                      FunctionRef<void(PointCloud& block)> take) {
+  BlockReader reader(folder / points_file_of(tile));
+  for (PointCloud block; reader.read(block);) take(block);
 }
 
 void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
@@ -295,26 +297,27 @@ void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
                       std::span<const std::uint16_t> classes) {
   std::size_t read = 0;
   const auto fail = [&] {
-    throw Error(ErrorKind::data, (folder / classes_file_of(tile)).string() +
-                                     ": damaged: not a class for every point");
+    throw Error(ErrorKind::data,
+                (folder / classes_file_of(tile)).string() +
+                    ": damaged: the number of classes differs from that of points");
   };
-  read_tile_pieces(folder, tile, [&](PointCloud& piece) {
+  read_tile_pieces(folder, tile, [&](PointCloud& block) {
     if (!classes.empty()) {
-      if (piece.size() > classes.size() - read) fail();
-      const auto own = classes.subspan(read, piece.size());
-      piece.classes.assign(own.begin(), own.end());
+      if (block.size() > classes.size() - read) fail();
+      const auto own = classes.subspan(read, block.size());
+      block.classes.assign(own.begin(), own.end());
     }
-    read += piece.size();
+    read += block.size();
     if (wanted) {
       std::vector<std::uint32_t> chosen;
-      for (std::uint32_t i = 0; i < piece.size(); ++i)
-        if (wanted(piece.positions[i])) chosen.push_back(i);
-      if (chosen.size() < piece.size()) piece = gather(piece, chosen);
+      for (std::uint32_t i = 0; i < block.size(); ++i)
+        if (wanted(block.positions[i])) chosen.push_back(i);
+      if (chosen.size() < block.size()) block = gather(block, chosen);
     }
-    piece.origin = cloud.origin;
-    if (piece.empty()) return;
-    even_out(cloud, piece);
-    append(cloud, std::move(piece));
+    block.origin = cloud.origin;
+    if (block.empty()) return;
+    even_out(cloud, block);
+    append(cloud, std::move(block));
   });
   if (!classes.empty() && read != classes.size()) fail();
 }
@@ -338,6 +341,60 @@ std::vector<EmptyBeam> read_tile_beams(const fs::path& folder, TileKey tile) {
   std::error_code none;
   if (!fs::exists(file, none)) return {};
   return values_of<EmptyBeam>(file);
+}
+
+namespace {
+
+constexpr std::string_view kClassesHeader = "adasplats classes 1 ";
+
+}  // namespace
+
+std::string squares_file_of(TileKey tile) { return "points/" + name_of(tile) + ".squares"; }
+
+/// Format: a line "adasplats classes 1 SQUARES CELLS TILES", a line "X Y COUNT" per tile, then the
+/// classes tile by tile.
+void write_square_classes(const std::filesystem::path& file, const SquareClasses& classes) {
+  std::ostringstream head;
+  head << kClassesHeader << classes.squares << ' ' << classes.cells << ' ' << classes.of_tile.size()
+       << '\n';
+  for (const auto& [tile, own] : classes.of_tile)
+    head << tile.x << ' ' << tile.y << ' ' << own.size() << '\n';
+  std::string text = std::move(head).str();
+  for (const auto& [tile, own] : classes.of_tile)
+    text.append(reinterpret_cast<const char*>(own.data()), own.size() * sizeof(std::uint16_t));
+  write_file_in_place(file, text);
+}
+
+SquareClasses read_square_classes(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  const auto fail = [&](const char* what) {
+    throw Error(ErrorKind::data, file.string() + ": damaged: " + what);
+  };
+  if (!text.starts_with(kClassesHeader)) fail("not a file of classes");
+  std::istringstream in(text);
+  in.seekg(static_cast<std::streamoff>(kClassesHeader.size()));
+  SquareClasses classes;
+  std::size_t tiles = 0;
+  if (!(in >> classes.squares >> classes.cells >> tiles)) fail("the file ends within its header");
+  std::vector<std::pair<TileKey, std::size_t>> heads;
+  for (std::size_t k = 0; k < tiles; ++k) {
+    TileKey tile;
+    std::size_t points = 0;
+    if (!(in >> tile.x >> tile.y >> points)) fail("the file ends within its header");
+    heads.emplace_back(tile, points);
+  }
+  if (in.get() != '\n') fail("the file ends within its header");
+  auto at = static_cast<std::size_t>(in.tellg());
+  for (const auto& [tile, points] : heads) {
+    if (points > (text.size() - at) / sizeof(std::uint16_t))
+      fail("the file ends within its classes");
+    std::vector<std::uint16_t>& own = classes.of_tile[tile];
+    own.resize(points);
+    if (points > 0) std::memcpy(own.data(), text.data() + at, points * sizeof(std::uint16_t));
+    at += points * sizeof(std::uint16_t);
+  }
+  if (at != text.size()) fail("data follow the classes");
+  return classes;
 }
 
 }  // namespace adasplats

@@ -20,40 +20,39 @@
 
 namespace adasplats {
 
-// The points of a city on disk, a file a tile: more of them than memory holds. Files of points hold
-// pieces one behind another: a line "adasplats points 1 COUNT NAME..." with the attributes that
-// there are (PointAttribute::name), then the positions (three floats a point, relative to the
-// city's origin) and the attributes' values, one array behind another, as this machine has them
-// (little-endian). Files of beams without return: EmptyBeam after EmptyBeam. Of the order of
-// points: a number of 64 bits a point, how many came before it in all tiles. Of classes that points
-// did not come with: a number of 16 bits a point.
+// The points of a city on disk, one file per tile, for more points than fit in memory. A file of
+// points is a sequence of blocks: a line "adasplats points 1 COUNT NAME..." with the names of the
+// attributes (PointAttribute::name), then the positions (three floats per point, relative to the
+// city's origin) and the values of the attributes, one array after another, in little-endian byte
+// order. Other files: beams without return, an array of EmptyBeam; the order of points, a 64-bit
+// number per point: how many points came before it in all tiles; classes that replace those of the
+// points, a 16-bit number per point.
 
-/// Where the points of a tile, their order, their classes and the empty beams are, below the folder
-/// of a city.
+/// Files of a tile's points, order, classes and empty beams, relative to the folder of a city.
 std::string points_file_of(TileKey tile);
 std::string order_file_of(TileKey tile);
 std::string classes_file_of(TileKey tile);
 std::string beams_file_of(TileKey tile);
 
-/// Puts points into the files of their tiles.
+/// Appends points to the files of their tiles.
 class TilePointsWriter {
  public:
-  /// `folder`: of the city, with the folders "points" and "beams" (made where they are not there).
-  /// At most `buffered` points wait in memory. `keeps_order`: writes files of the order, too.
-  /// `executor` must outlive it; files are the same for any number of threads. `origin`: the
-  /// city's, where it is known; else that of the first cloud.
+  /// `folder`: of the city; its folder "points" is created if missing. At most `buffered` points
+  /// wait in memory. `keeps_order`: also write files of the order. `executor` must outlive the
+  /// writer; files are the same for any number of threads. `origin`: of the city; default: that of
+  /// the first cloud.
   TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered,
                    const Executor& executor, bool keeps_order = false,
                    std::optional<Vec3d> origin = std::nullopt);
 
-  /// Clouds are moved to the city's origin. Empty beams go to the tile in
-  /// which they begin. Errors: data (a cloud with other attributes than the first; instances and
-  /// kinds of origins may be missing), io.
+  /// Clouds are moved to the city's origin. Empty beams go to the tile in which they begin. Errors:
+  /// data (a cloud with other attributes than the first; instances and origin kinds may be
+  /// missing), io.
   void add(const PointCloud& cloud);
-  /// Writes what waits. Call once, last.
+  /// Writes the remaining points. Call once, at the end.
   std::map<TileKey, TileCount> finish();
   Vec3d origin() const { return origin_.value_or(Vec3d{}); }
-  /// The names of those that all points have, each with a space before it.
+  /// The names of the attributes that all points have, each preceded by a space.
   std::string attributes() const { return attributes_.value_or(""); }
 
  private:
@@ -79,13 +78,12 @@ class TilePointsWriter {
   std::map<TileKey, TileCount> counts_;
 };
 
-/// Gives a tile's points to `take`, piece by piece. Errors: data (the file is damaged: with its
-/// name), those of files.
+/// Passes a tile's points to `take`, block by block. Errors: data (the file is damaged), no_input.
 void read_tile_pieces(const std::filesystem::path& folder, TileKey tile,
-                      FunctionRef<void(PointCloud& piece)> take);
-/// Adds those of a tile's points to `cloud` for which `wanted` (of a position) holds; all without.
-/// `classes`, where given: of all the tile's points, in place of those that they came with. Errors:
-/// as above, and data (there are not as many classes as points).
+                      FunctionRef<void(PointCloud& block)> take);
+/// Appends the points of a tile for which `wanted` (of a position) is true; all if it is empty.
+/// `classes`, if not empty, replaces the classes of all the tile's points. Errors: as above, and
+/// data (the number of classes differs from the number of points).
 void read_tile_points(const std::filesystem::path& folder, TileKey tile, PointCloud& cloud,
                       const std::function<bool(Vec3f)>& wanted = {},
                       std::span<const std::uint16_t> classes = {});
@@ -93,7 +91,20 @@ std::vector<std::uint64_t> read_tile_order(const std::filesystem::path& folder, 
 std::vector<std::uint16_t> read_tile_classes(const std::filesystem::path& folder, TileKey tile);
 void write_tile_classes(const std::filesystem::path& folder, TileKey tile,
                         std::span<const std::uint16_t> classes);
-/// None where there is no file.
+/// Empty if the file does not exist.
 std::vector<EmptyBeam> read_tile_beams(const std::filesystem::path& folder, TileKey tile);
+
+/// Classes from a network for the points of some squares, which differ from the tiles.
+struct SquareClasses {
+  std::size_t squares = 0, cells = 0;  ///< processed by the network
+  /// By the tile that contains the points, in the order of its file of points.
+  std::map<TileKey, std::vector<std::uint16_t>> of_tile;
+};
+
+/// "points/NAME.squares" in the folder of a city, for the squares with their center in a tile.
+std::string squares_file_of(TileKey tile);
+void write_square_classes(const std::filesystem::path& file, const SquareClasses& classes);
+/// Errors: no_input, data (damaged).
+SquareClasses read_square_classes(const std::filesystem::path& file);
 
 }  // namespace adasplats

@@ -18,7 +18,7 @@
 namespace adasplats {
 namespace {
 
-/// Scans that are waited for at once: fewer would be cast in too small pieces.
+/// Scans to wait for at once; fewer would make batches too small.
 constexpr std::size_t kAtOnce = 32;
 
 }  // namespace
@@ -36,13 +36,13 @@ struct TileStream::Impl {
   CityManifest city;
   TileHolder& holder;
   std::size_t budget_bytes;
-  Executor executor;  ///< of the loading thread alone
+  Executor executor;  ///< of the loading thread
 
   mutable std::mutex mutex;
   std::condition_variable work, done;
-  std::deque<std::size_t> queue;  ///< tiles to load, the most urgent first
+  std::deque<std::size_t> queue;  ///< tiles to load, most urgent first
   std::vector<State> states;
-  std::size_t bytes = 0;  ///< of what is loaded or being loaded
+  std::size_t bytes = 0;  ///< of loaded tiles and the one being loaded
   std::exception_ptr error;
   bool ends = false;
   TileStreamCounts counts;
@@ -102,12 +102,13 @@ struct TileStream::Impl {
     }
   }
 
-  // ---- the thread that casts
+  // ---- the casting thread
 
-  /// Which tiles scans need, the first ones first; of the first scans those that are waited for.
+  /// The tiles that scans need, in order of need; the first `at_once` must be loaded before
+  /// casting.
   struct Needs {
     std::vector<std::size_t> tiles;
-    std::size_t at_once = 0;  ///< of them, that must be there
+    std::size_t at_once = 0;  ///< number of tiles to wait for
   };
 
   Needs needs_of(std::span<const SeenFrom> scans) const {
@@ -126,14 +127,13 @@ struct TileStream::Impl {
       sum += more_bytes;
       for (const std::size_t tile : more) known[tile] = true;
       needs.tiles.insert(needs.tiles.end(), more.begin(), more.end());
-      // A later scan waits for tiles only where half of the budget is left to load others
-      // meanwhile.
+      // Later scans wait for tiles only if half of the budget remains for loading others meanwhile.
       if (k == 0 || (k < kAtOnce && sum <= budget_bytes / 2)) needs.at_once = needs.tiles.size();
     }
     return needs;
   }
 
-  /// Drops tiles that are not needed as far as the needed ones want their room.
+  /// Drops unneeded tiles until the needed ones fit.
   void make_room(const Needs& needs) {
     std::vector<bool> needed(states.size(), false);
     std::size_t sum = 0;
@@ -156,7 +156,7 @@ struct TileStream::Impl {
     const Needs needs = needs_of(scans);
     std::unique_lock lock(mutex);
     queue.clear();
-    show({}, lock);  // what is shown cannot be dropped
+    show({}, lock);  // shown tiles cannot be dropped
     make_room(needs);
     const Stopwatch watch;
     for (const std::size_t tile : needs.tiles)
@@ -202,7 +202,7 @@ TileStream::~TileStream() = default;
 std::size_t TileStream::prefetch(std::span<const SeenFrom> scans) {
   if (scans.empty()) return 0;
   const std::size_t ready = impl_->prefetch(scans);
-  if (ready == 0) throw std::logic_error("TileStream: what was waited for is not shown");
+  if (ready == 0) throw std::logic_error("TileStream: no scan is ready after waiting");
   return ready;
 }
 

@@ -14,56 +14,55 @@
 
 namespace adasplats {
 
-/// Where a sensor is during a scan, and how far it sees: the box of its places in world
-/// coordinates.
+/// Box of a sensor's positions during a scan, in world coordinates, and its range.
 struct SeenFrom {
   Vec3d low, high;
   double range_m = 0;
 
-  /// Whether something of the tile may be in reach.
+  /// Whether any splat of the tile may be within range.
   bool reaches(const CityTile& tile) const;
 };
 
-/// Who holds the tiles that are loaded, by their numbers in CityManifest::tiles.
+/// Owner of the loaded tiles; tiles are indices into CityManifest::tiles.
 class TileHolder {
  public:
   virtual ~TileHolder() = default;
 
-  /// About how much memory a splat takes, bytes.
+  /// Approximate memory per splat, bytes.
   virtual std::size_t bytes_a_splat() const = 0;
-  /// Takes a tile; on another thread than the rest, and while others are used.
+  /// Receives a loaded tile. Called on the loading thread while other tiles are in use.
   virtual void load(std::size_t tile, SplatModel&& model, const Executor& executor) = 0;
-  /// Gives back what a tile took. Nothing is used meanwhile, nor while this is called:
+  /// Releases a tile. Like show(), never called while scans are cast.
   virtual void drop(std::size_t tile) = 0;
-  /// Which tiles are used from now on, ascending.
+  /// Sets the tiles to use from now on, ascending.
   virtual void show(std::span<const std::size_t> tiles) = 0;
 };
 
-/// What was done so far.
+/// Figures of a stream.
 struct TileStreamCounts {
-  std::size_t loaded = 0;     ///< tiles, each as often as it was
-  std::size_t max_bytes = 0;  ///< that tiles took at the same time, as bytes_a_splat() says
-  double waited_s = 0;        ///< for tiles
+  std::size_t loaded = 0;     ///< loaded tiles, counting repeated loads
+  std::size_t max_bytes = 0;  ///< maximum memory of tiles, from bytes_a_splat()
+  double waited_s = 0;        ///< time spent waiting for tiles
 };
 
-/// Tiles of a city that come and go ahead of a sensor. A thread of its own loads them in the order
-/// in which they will be needed, while scans are cast in those that are there. Used by one thread.
+/// Loads the tiles of a city ahead of a sensor. A separate thread loads them in the order of need
+/// while scans are cast against the loaded ones. Use from one thread.
 class TileStream {
  public:
-  /// Scans ahead whose tiles are looked for.
+  /// Number of scans ahead for which tiles are loaded.
   static constexpr std::size_t kHorizon = 2048;
 
-  /// `folder`: of the city. `budget_bytes`: that tiles may take; what one scan needs is there in
-  /// any case. `holder` must outlive it.
+  /// `folder`: of the city. `budget_bytes`: maximum memory of tiles, except that the tiles of one
+  /// scan are always loaded. `holder` must outlive the stream.
   TileStream(std::filesystem::path folder, const CityManifest& city, TileHolder& holder,
              std::size_t budget_bytes, int threads);
   ~TileStream();
   TileStream(const TileStream&) = delete;
   TileStream& operator=(const TileStream&) = delete;
 
-  /// Shows all that the first of some scans need, which are those of a drive from now on, and gives
-  /// how many (at least one of them). Tiles of the next ones are loaded meanwhile. Nothing is cast
-  /// while it is called. Errors: those of load_city_tile().
+  /// Shows all tiles that the next scans of a drive need, and returns the number of scans that can
+  /// be cast (at least one). Tiles of later scans load meanwhile. No scan may be cast during the
+  /// call. Errors: those of load_city_tile().
   std::size_t prefetch(std::span<const SeenFrom> scans);
   TileStreamCounts counts() const;
 

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kTiles = 40;
 constexpr double kSide_m = 50;
 constexpr std::size_t kBytesASplat = 1000;
-constexpr std::size_t kSplats = 100;  // of a tile
+constexpr std::size_t kSplats = 100;  // per tile
 
 /// A row of tiles along x.
 CityManifest write_row(const std::filesystem::path& folder) {
@@ -42,8 +42,8 @@ CityManifest write_row(const std::filesystem::path& folder) {
   return city;
 }
 
-/// Notes what it is told and what it is told wrong.
-class NotingHolder final : public TileHolder {
+/// Records its calls and checks their arguments.
+class CheckingHolder final : public TileHolder {
  public:
   std::size_t bytes_a_splat() const override { return kBytesASplat; }
   void load(std::size_t tile, SplatModel&& model, const Executor&) override {
@@ -51,7 +51,7 @@ class NotingHolder final : public TileHolder {
     EXPECT_TRUE(loaded.insert(tile).second);
     EXPECT_EQ(model.size(), kSplats);
     EXPECT_FLOAT_EQ(model.disks[0].center.x, 50.0F * static_cast<float>(tile));
-    most = std::max(most, loaded.size());
+    max_loaded = std::max(max_loaded, loaded.size());
   }
   void drop(std::size_t tile) override {
     const std::lock_guard lock(mutex_);
@@ -67,13 +67,13 @@ class NotingHolder final : public TileHolder {
 
   std::set<std::size_t> loaded;
   std::vector<std::size_t> shown;
-  std::size_t most = 0;
+  std::size_t max_loaded = 0;
 
  private:
   std::mutex mutex_;
 };
 
-/// There and back again, a scan a metre.
+/// Back and forth, one scan per metre.
 std::vector<SeenFrom> drive() {
   std::vector<SeenFrom> scans;
   for (int turn = 0; turn < 2; ++turn) {
@@ -85,8 +85,8 @@ std::vector<SeenFrom> drive() {
   return scans;
 }
 
-/// Drives through the row; gives how many times tiles were made ready.
-std::size_t drive_through(TileStream& stream, const CityManifest& city, NotingHolder& holder) {
+/// Drives through the row; returns the number of prefetch() calls.
+std::size_t drive_through(TileStream& stream, const CityManifest& city, CheckingHolder& holder) {
   const std::vector<SeenFrom> scans = drive();
   std::size_t spans = 0;
   for (std::size_t first = 0; first < scans.size(); ++spans) {
@@ -102,45 +102,45 @@ std::size_t drive_through(TileStream& stream, const CityManifest& city, NotingHo
   return spans;
 }
 
-TEST(TileStream, ShowsWhatScansReachWithinItsBudget) {
+TEST(TileStream, ShowsTilesInRangeWithinItsBudget) {
   const TemporaryFolder folder;
   const CityManifest city = write_row(folder.path());
-  NotingHolder holder;
+  CheckingHolder holder;
   TileStream stream(folder.path(), city, holder, 9 * kSplats * kBytesASplat, 2);
   EXPECT_EQ(stream.prefetch({}), 0U);
   const std::size_t spans = drive_through(stream, city, holder);
-  EXPECT_LT(spans, 200U);  // of 4,000 scans
-  EXPECT_LE(holder.most, 9U);
+  EXPECT_LT(spans, 200U);  // for 4,000 scans
+  EXPECT_LE(holder.max_loaded, 9U);
   EXPECT_LE(stream.counts().max_bytes, 9 * kSplats * kBytesASplat);
-  // Each is loaded once on each way, but for those around the turn and what little is kept.
+  // Each tile is loaded once per direction, except those near the turn and those still in memory.
   EXPECT_GE(stream.counts().loaded, kTiles);
   EXPECT_LE(stream.counts().loaded, 2 * kTiles);
 }
 
-TEST(TileStream, KeepsAllWhereThereIsRoom) {
+TEST(TileStream, KeepsAllTilesThatFit) {
   const TemporaryFolder folder;
   const CityManifest city = write_row(folder.path());
-  NotingHolder holder;
+  CheckingHolder holder;
   TileStream stream(folder.path(), city, holder, kTiles * kSplats * kBytesASplat, 1);
   drive_through(stream, city, holder);
   EXPECT_EQ(stream.counts().loaded, kTiles);
 }
 
-TEST(TileStream, WhatAScanNeedsIsThereWhateverTheBudget) {
+TEST(TileStream, TilesOfOneScanLoadWhateverTheBudget) {
   const TemporaryFolder folder;
   const CityManifest city = write_row(folder.path());
-  NotingHolder holder;
+  CheckingHolder holder;
   TileStream stream(folder.path(), city, holder, 1, 1);
   drive_through(stream, city, holder);
-  EXPECT_LE(holder.most, 5U);
+  EXPECT_LE(holder.max_loaded, 5U);
 }
 
-TEST(TileStream, ATileThatCannotBeLoadedIsAnError) {
+TEST(TileStream, ReportsATileThatCannotBeLoaded) {
   const TemporaryFolder folder;
   const CityManifest city = write_row(folder.path());
   const std::filesystem::path file = folder.path() / model_file_of(city.tiles[10].key);
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 5);
-  NotingHolder holder;
+  CheckingHolder holder;
   TileStream stream(folder.path(), city, holder, 9 * kSplats * kBytesASplat, 1);
   try {
     drive_through(stream, city, holder);
@@ -159,7 +159,7 @@ TEST(SeenFrom, ReachesTilesAroundIt) {
   EXPECT_TRUE((SeenFrom{{5, 5, 2}, {5, 5, 2}, 1}.reaches(tile)));
   EXPECT_TRUE((SeenFrom{{-3, -4, 0}, {-3, -4, 0}, 5}.reaches(tile)));
   EXPECT_FALSE((SeenFrom{{-3.1, -4, 0}, {-3.1, -4, 0}, 5}.reaches(tile)));
-  EXPECT_TRUE((SeenFrom{{-30, 2, 0}, {-4, 4, 0}, 5}.reaches(tile)));  // it moves
+  EXPECT_TRUE((SeenFrom{{-30, 2, 0}, {-4, 4, 0}, 5}.reaches(tile)));  // a moving sensor
   tile.splats = 0;
   EXPECT_FALSE((SeenFrom{{5, 5, 2}, {5, 5, 2}, 1}.reaches(tile)));
 }

@@ -13,15 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A tile, or what stands for several.
+/// A tile, or a node above several tiles.
 struct Branch {
-  TileKey square;                     ///< of the grid of its level, counted from the lowest tile
-  std::optional<std::size_t> part;    ///< a tile
-  LevelPiece piece;                   ///< else
-  std::vector<std::size_t> children;  ///< likewise
+  TileKey square;                     ///< in the grid of its level, counted from the lowest tile
+  std::optional<std::size_t> part;    ///< index of a tile
+  LevelPiece piece;                   ///< of a node above tiles
+  std::vector<std::size_t> children;  ///< of a node above tiles
 };
 
-/// Builds the tree over the tiles from below: four squares of the grid are one of the next.
+/// Builds the tree above the tiles bottom-up: four squares of a level form one of the next.
 class TopTree {
  public:
   TopTree(const fs::path& folder, const CityManifest& city, const LevelFacts& facts,
@@ -110,9 +110,9 @@ class TopTree {
     add_splats(root, elements, range, splats);
   }
 
-  /// Branches first, breadth first, then tile after tile what is below its root: in the order of
-  /// the tree, so that what is near by stands near by in the table, too, of which the page asks for
-  /// parts.
+  /// Numbers the nodes: first the branches, breadth first, then the nodes below each tile's root,
+  /// tile by tile in the order of the tree, so that near nodes are close in the table, which the
+  /// page requests in parts.
   void number() {
     order_ = {root_};
     table_.nodes.resize(1);
@@ -154,7 +154,7 @@ class TopTree {
   const fs::path& folder_;
   const Executor& executor_;
   LevelTable table_;
-  std::vector<LevelTable> tiles_;  ///< of each part
+  std::vector<LevelTable> tiles_;  ///< one per part
   std::vector<Branch> branches_;
   std::size_t root_ = 0;
   std::vector<std::size_t> order_;  ///< of the branches, breadth first

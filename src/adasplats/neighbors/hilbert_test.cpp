@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-TEST(HilbertKey, ByTurnsIsThatOfTheTable) {
+TEST(HilbertKey, TurnsEqualTheTable) {
   for (std::uint64_t i = 0; i < 100'000; ++i) {
     Random random(17, 0, i);
     const auto cell = [&] { return static_cast<std::uint32_t>(random.next_bits() & 0x1fffff); };

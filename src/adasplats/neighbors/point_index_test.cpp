@@ -271,7 +271,7 @@ std::uint64_t skilling_key(std::array<std::uint32_t, 3> axes) {
   return key;
 }
 
-TEST(HilbertOrder, KeysAreSkillings) {
+TEST(HilbertOrder, KeysEqualSkillings) {
   constexpr std::uint32_t kLast = (1U << 21) - 1;
   EXPECT_EQ(hilbert_key(kLast, kLast, kLast), skilling_key({kLast, kLast, kLast}));
   for (std::uint64_t i = 0; i < 20'000; ++i) {

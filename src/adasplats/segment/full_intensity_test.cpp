@@ -26,7 +26,7 @@ float searched(const std::vector<float>& intensities) {
 }
 
 // Oracle: the sorted values.
-TEST(FullIntensity, IsTheSameWholeAndInParts) {
+TEST(FullIntensity, DoesNotDependOnTheParts) {
   for (const std::size_t count : {1, 2, 99, 100, 101, 5000}) {
     for (const double low : {0.0, -3.0}) {
       std::vector<float> values;

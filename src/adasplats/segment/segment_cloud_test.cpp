@@ -56,7 +56,7 @@ TEST(SegmentCloud, ClassifiesByHeight) {
   EXPECT_EQ(tiled.classes, whole.classes);
 }
 
-TEST(SegmentCloud, ProbabilitiesAreThoseOfAllClasses) {
+TEST(SegmentCloud, ReturnsProbabilitiesOfAllClasses) {
   if (!has_products()) GTEST_SKIP() << "built without OpenBLAS";
   const Network network = parse_network(pole_network().text(), "n");
   const PointCloud cloud = ground_and_pole();
@@ -95,7 +95,7 @@ TEST(SegmentCloud, ContextHelpsAndGetsNoClasses) {
 }
 
 /// Half precision holds 65504: three layers of it are beyond floats.
-TEST(SegmentCloud, LogitsBeyondFloatsAreSoundLabels) {
+TEST(SegmentCloud, OverflowingLogitsGiveValidLabels) {
   if (!has_products()) GTEST_SKIP() << "built without OpenBLAS";
   NetworkText text;
   const std::size_t weight = text.weights(2, {65504, 65504, 65504, 65504}),
@@ -129,7 +129,7 @@ TEST(SegmentCloud, RejectsPositionsOutOfRange) {
   }
 }
 
-TEST(SegmentCloud, TakesAnyCloud) {
+TEST(SegmentCloud, AcceptsAnyCloud) {
   if (!has_products()) GTEST_SKIP() << "built without OpenBLAS";
   const Network network = default_network();
   const Executor executor(1);
@@ -139,7 +139,7 @@ TEST(SegmentCloud, TakesAnyCloud) {
   EXPECT_EQ(segment_cloud(cloud, network, {}, executor).classes.size(), 1U);
   cloud.intensities = {std::numeric_limits<float>::quiet_NaN()};
   EXPECT_LT(segment_cloud(cloud, network, {}, executor).classes[0], 19);
-  cloud.positions.assign(1000, {7, 7, 7});  // all at one place
+  cloud.positions.assign(1000, {7, 7, 7});  // all equal
   cloud.intensities.clear();
   const std::vector<std::uint8_t> classes = segment_cloud(cloud, network, {}, executor).classes;
   EXPECT_EQ(classes, std::vector<std::uint8_t>(1000, classes[0]));

@@ -150,7 +150,7 @@ TEST(AdaptivePlanes, SpacingIsTheDistanceToTheSeventhCell) {
   EXPECT_EQ(inside, 18 * 18);
 }
 
-TEST(AdaptivePlanes, PlaneThroughCellsIsThePlaneThroughTheirPoints) {
+TEST(AdaptivePlanes, PlaneThroughCellsEqualsPlaneThroughPoints) {
   // Oracle: PCA of the points. Those of a cell are equal, so that fusing them loses nothing.
   std::vector<Vec3f> points;
   for (int i = 0; i < 9; ++i) {
@@ -217,7 +217,7 @@ TEST(AdaptivePlanes, TrimmingNeverLeavesTooFewCellsForAPlane) {
   EXPECT_EQ(seen, 2);
 }
 
-TEST(AdaptivePlanes, FewPointsAndLinesHaveSoundNormals) {
+TEST(AdaptivePlanes, FewPointsAndLinesHaveValidNormals) {
   EXPECT_TRUE(fit({}).planes.empty());
   for (const std::size_t n : {1, 2, 3, 7, 8, 9, 10, 11}) {
     std::vector<Vec3f> points;

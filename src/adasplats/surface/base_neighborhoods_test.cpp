@@ -87,7 +87,7 @@ TEST(BaseNeighborhoods, EqualBruteForce) {
   EXPECT_GT(*std::max_element(found.votes.begin(), found.votes.end()), 0U);
 }
 
-TEST(BaseNeighborhoods, NormalsOfAPlaneAreItsNormal) {
+TEST(BaseNeighborhoods, NormalsOfAPlane) {
   const Executor executor(2);
   const std::vector<Vec3f> points = in_curve_order(noisy_plane(3000, 0), executor);
   const PointIndex index = PointIndex::from_sorted(points, executor);
@@ -136,7 +136,7 @@ TEST(BaseNeighborhoods, OnePointAndEqualPoints) {
   }
 }
 
-TEST(LocalShape, OrientationTurnsNormalsToTheSensor) {
+TEST(LocalShape, OrientedNormalsFaceTheSensor) {
   EXPECT_TRUE(oriented({0, 0, 1}, {0, 0, -5}) == (Vec3f{0, 0, -1}));
   EXPECT_TRUE(oriented({0, 0, 1}, {3, 0, 5}) == (Vec3f{0, 0, 1}));
   EXPECT_TRUE(with_canonical_sign({0.6F, 0, -0.8F}) == (Vec3f{-0.6F, 0, 0.8F}));

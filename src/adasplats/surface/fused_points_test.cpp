@@ -129,7 +129,7 @@ void expect_same(const FusedPoints& a, const FusedPoints& b) {
   EXPECT_EQ(a.members, b.members);
 }
 
-/// Nearly every third cell.
+/// Flags nearly every third cell.
 std::vector<std::uint8_t> some_flags(std::size_t cells) {
   std::vector<std::uint8_t> split(cells);
   for (std::size_t cell = 0; cell < cells; ++cell)

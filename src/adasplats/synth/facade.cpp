@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/facade.h"
+#include "adasplats/synth/street_parts.h"
 
 namespace adasplats {
 namespace {
@@ -30,7 +30,7 @@ void add_reveal(MeshBuilder& builder, const WallFrame& wall, const WallRect& hol
   side(hole.a0, hole.z1, hole.a0, hole.z0);
 }
 
-/// Frame bars in front of the pane: the border, `mullions` upright ones and one level transom.
+/// Window frame in front of the pane: border, `mullions` vertical bars and one transom.
 void add_frame(MeshBuilder& builder, const WallFrame& wall, const WallRect& hole, int mullions,
                double transom) {
   constexpr double kBar = 0.06;
@@ -58,7 +58,7 @@ void add_shutters(MeshBuilder& builder, const WallFrame& wall, const WallRect& h
                kShutter);
 }
 
-/// A sloping awning over a shop.
+/// A sloping awning above a shop.
 void add_awning(MeshBuilder& builder, const WallFrame& wall, const WallRect& hole) {
   constexpr Material kCloth = {label::kBuilding, 0.4F};
   const double z = hole.z1 + 0.1;

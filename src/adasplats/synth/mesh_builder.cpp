@@ -9,14 +9,14 @@
 namespace adasplats {
 namespace {
 
-constexpr double kSmallestArea = 1e-8;  // m2
+constexpr double kMinArea_m2 = 1e-8;  // m2
 constexpr double kCircle = 2 * std::numbers::pi;
 
 double area(Vec3f a, Vec3f b, Vec3f c) {
   return 0.5 * length(vec_cast<double>(cross(b - a, c - a)));
 }
 
-/// A unit vector across `axis` that is level, or +x where the axis is upright.
+/// A horizontal unit vector perpendicular to `axis`, or +x for a vertical axis.
 Vec3d level_side(Vec3d axis) {
   const Vec3d side = cross(axis, Vec3d{0, 0, 1});
   return length(side) < 1e-6 * length(axis) ? Vec3d{1, 0, 0} : normalized(side);
@@ -33,7 +33,7 @@ std::vector<Vec3d> ring_about(Vec3d center, Vec3d u, Vec3d v, int sides) {
 
 }  // namespace
 
-void MeshBuilder::stand_at(const RigidTransform& world_from_shape, Vec3d scale) {
+void MeshBuilder::set_frame(const RigidTransform& world_from_shape, Vec3d scale) {
   stand_ = {world_from_shape, scale};
 }
 
@@ -60,8 +60,8 @@ void MeshBuilder::polygon(std::span<const Vec3d> corners, const Material& materi
   bool any = false;
   for (std::uint32_t k = 1; k + 1 < corners.size(); ++k) {
     const std::array<std::uint32_t, 3> t = {first, first + k, first + k + 1};
-    // The rounded corners count: far from zero a sliver may lose its area.
-    if (!(area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > kSmallestArea))
+    // Tested after rounding to float: far from zero a sliver may lose its area.
+    if (!(area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > kMinArea_m2))
       continue;
     any = true;
     mesh.triangles.push_back(t);

@@ -33,7 +33,7 @@ TEST(MeshBuilder, BoxHasSixSides) {
   for (const float r : built.reflectances) EXPECT_EQ(r, 0.5F);
 }
 
-// Oracle: a box turned by 30 degrees keeps its area and its corners' distance from the centre.
+// Oracle: a box turned by 30 degrees keeps its area and its corners' distances from the center.
 TEST(MeshBuilder, TurnedBoxKeepsItsSize) {
   const double c = std::cos(0.5236);
   const double s = std::sin(0.5236);
@@ -65,7 +65,7 @@ TEST(MeshBuilder, BeamHasFourSidesWhereverItPoints) {
   }
 }
 
-// Oracle: the analytic area of a sphere, from below.
+// Oracle: the analytic area of a sphere, approached from below.
 TEST(MeshBuilder, FineEllipsoidIsASphere) {
   MeshBuilder builder;
   builder.ellipsoid({5, 5, 5}, {2, 2, 2}, 60, 120, {});
@@ -74,7 +74,7 @@ TEST(MeshBuilder, FineEllipsoidIsASphere) {
   EXPECT_GT(area, 4 * std::numbers::pi * 4 * 0.998);
 }
 
-TEST(MeshBuilder, DegenerateTrianglesAreLeftOut) {
+TEST(MeshBuilder, DropsDegenerateTriangles) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   MeshBuilder builder;
   builder.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {});

@@ -6,20 +6,19 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/synth/street.h"
-#include "adasplats/synth/street_caster.h"
-#include "adasplats/synth/vehicle_path.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kFewestPoints = 1000;
-/// Of the noise of driving scans; mapping scans take the numbers from zero.
+constexpr std::size_t kMinPoints = 1000;
+/// Random stream of the driving scans' noise; mapping scans are numbered from zero.
 constexpr std::uint64_t kDrivingScans = std::uint64_t{1} << 32;
 
-/// How the wish for so many points becomes revolutions.
+/// Revolutions and columns for the requested number of points.
 struct MappingPlan {
   std::size_t revolutions = 1;  ///< of one pass
-  LidarModel sensor;            ///< with fewer columns than the paper's where points are few
+  LidarModel sensor;  ///< fewer columns than the paper's sensor if few points are requested
 };
 
 void check(bool good, const std::string& message) {
@@ -31,9 +30,8 @@ void check_options(const StreetScanOptions& options) {
     check(std::isfinite(value) && value >= 0,
           std::string(name) + " is " + std::to_string(value) + "; expected 0 or more");
   };
-  check(options.points >= kFewestPoints, "points is " + std::to_string(options.points) +
-                                             "; expected " + std::to_string(kFewestPoints) +
-                                             " or more");
+  check(options.points >= kMinPoints, "points is " + std::to_string(options.points) +
+                                          "; expected " + std::to_string(kMinPoints) + " or more");
   check(options.passes >= 1,
         "passes is " + std::to_string(options.passes) + "; expected 1 or more");
   at_least_zero(options.range_noise_m, "range noise");
@@ -44,25 +42,25 @@ void check_options(const StreetScanOptions& options) {
         "speed is " + std::to_string(options.speed_m_per_s) + "; expected more than 0");
 }
 
-/// Mean share of rays that return, from a few thin revolutions along every pass's way.
+/// Mean share of rays with a return, estimated from a few sparse revolutions along each pass.
 double return_share(const StreetCaster& caster, const Street& street,
                     const StreetScanOptions& options) {
-  constexpr std::size_t kPlaces = 24;
+  constexpr std::size_t kPoses = 24;
   LidarModel thin = hdl_32_paper();
   thin.columns = 120;
   const std::vector<Firing> firings = firings_of(thin);
   double sum = 0;
   for (int pass = 0; pass < std::min(options.passes, 2); ++pass)
     for (const RecordedPose& pose :
-         poses_of_pass(street, options, pass, kPlaces, vehicle_from_mapping_sensor()))
+         poses_of_pass(street, options, pass, kPoses, vehicle_from_mapping_sensor()))
       sum += caster.fixed_share(thin, firings, pose.truth);
-  return sum / (static_cast<double>(kPlaces) * std::min(options.passes, 2));
+  return sum / (static_cast<double>(kPoses) * std::min(options.passes, 2));
 }
 
-/// Columns a metre are what the points ask for. The full sensor at 10 Hz and 8 m/s gives 1800
-/// columns every 0.8 m; from there down both get coarser: columns with the 0.7th power, so that
-/// 300,000 points on 60 m are a revolution every 1.9 m with steps of 1.6 degrees, about the 1.33
-/// degrees between beams.
+/// Derives columns per metre from the number of points. The full sensor at 10 Hz and 8 m/s gives
+/// 1800 columns every 0.8 m. Below that, both the revolutions and the columns get coarser: columns
+/// with the 0.7th power. So 300,000 points on 60 m give a revolution every 1.9 m with steps of 1.6
+/// degrees, close to the 1.33 degrees between beams.
 MappingPlan plan_mapping(const StreetScanOptions& options, double way_m, double share) {
   MappingPlan plan;
   plan.sensor = hdl_32_paper();
@@ -72,10 +70,10 @@ MappingPlan plan_mapping(const StreetScanOptions& options, double way_m, double 
   const double columns_per_pass =
       static_cast<double>(options.points) / points_per_column / options.passes;
   const double density = columns_per_pass / way_m;
-  const double wish =
+  const double columns =
       std::clamp(full_columns * std::pow(density / full_density, 0.7), 16.0, full_columns);
   plan.revolutions =
-      static_cast<std::size_t>(std::max(1L, std::lround(std::ceil(columns_per_pass / wish))));
+      static_cast<std::size_t>(std::max(1L, std::lround(std::ceil(columns_per_pass / columns))));
   plan.sensor.columns = static_cast<std::uint32_t>(
       std::max(1L, std::lround(columns_per_pass / static_cast<double>(plan.revolutions))));
   return plan;

@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/street.h"
-#include "adasplats/synth/street_caster.h"
 #include "adasplats/synth/street_plan.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
@@ -33,8 +33,8 @@ StreetRecording scan(const Street& street, const StreetScanOptions& options, int
       street, options, [](std::size_t, const Scan&) {}, executor, progress);
 }
 
-/// Distance from a point to a triangle in double: the plane's foot where it is inside, else the
-/// nearest of the three edges.
+/// Distance from a point to a triangle in double: to the plane if its foot is inside, else to the
+/// nearest edge.
 double distance(Vec3d p, const Triangle& triangle) {
   const Vec3d corners[3] = {vec_cast<double>(triangle.a), vec_cast<double>(triangle.b),
                             vec_cast<double>(triangle.c)};
@@ -63,14 +63,14 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-// Oracle: brute-force distance to the triangles of the point's own class, movers where they were.
-TEST(ScanStreet, ExactPointsLieOnTheSurfaceOfTheirClass) {
+// Oracle: brute-force distance to the triangles of the point's class, with movers at their poses.
+TEST(ScanStreet, ExactPointsAreOnTheSurfaceOfTheirClass) {
   const Street street = make_street(kShortStreet);
   const StreetRecording recording = scan(street, exact_scan(20'000));
   const PointCloud& cloud = recording.mapping;
   ASSERT_EQ(recording.mapping_trajectory.size(), recording.true_mapping_trajectory.size());
   std::size_t checked_moving = 0;
-  // Every 101st point and, as they are few, every 5th of the movers.
+  // Every 101st point, and every 5th point of the few movers.
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const bool moving = cloud.classes[i] > 250;
     if (i % (moving ? 5 : 101) != 0) continue;
@@ -84,15 +84,15 @@ TEST(ScanStreet, ExactPointsLieOnTheSurfaceOfTheirClass) {
   EXPECT_GT(checked_moving, 3U);
 }
 
-TEST(ScanStreet, CloudHasAboutTheWishedNumberOfPointsAndEveryAttribute) {
+TEST(ScanStreet, CloudHasTheTargetNumberOfPointsAndEveryAttribute) {
   for (const auto& [points, passes] :
        {std::pair<std::size_t, int>{5'000, 1}, {50'000, 2}, {100'000, 3}, {300'000, 2}}) {
     const Street street = make_street({1, street_length_for(points)});
     StreetScanOptions options = exact_scan(points);
     options.passes = passes;
     const PointCloud cloud = scan(street, options).mapping;
-    const auto wish = static_cast<double>(points);
-    EXPECT_NEAR(static_cast<double>(cloud.size()), wish, 0.1 * wish);
+    const auto wanted = static_cast<double>(points);
+    EXPECT_NEAR(static_cast<double>(cloud.size()), wanted, 0.1 * wanted);
     EXPECT_EQ(cloud.sensor_positions.size(), cloud.size());
     EXPECT_EQ(cloud.intensities.size(), cloud.size());
     EXPECT_EQ(cloud.classes.size(), cloud.size());
@@ -136,30 +136,30 @@ TEST(ScanStreet, SameBytesForEveryNumberOfThreads) {
   }
 }
 
-// Oracle: each mover's own trajectory. Its points, brought into its frame, lie in its bounding box,
-// while in the world they do not stay in one place.
-TEST(ScanStreet, MovingObjectsAreWhereTheirTrajectoryIs) {
+// Oracle: each mover's trajectory. Its points, in its own frame, are inside its bounding box, and
+// they move in the world.
+TEST(ScanStreet, MovingObjectsFollowTheirTrajectory) {
   const Street street = make_street({1, 60});
   const StreetRecording recording = scan(street, exact_scan(60'000));
   const PointCloud& cloud = recording.mapping;
   std::map<std::uint16_t, const MovingObject*> movers;
   for (const MovingObject& object : street.moving) movers[object.instance] = &object;
 
-  std::map<std::uint16_t, std::map<std::uint32_t, Vec3d>> places;  // by instance and scan
+  std::map<std::uint16_t, std::map<std::uint32_t, Vec3d>> positions;  // by instance and scan
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.classes[i] < 250) continue;
     ASSERT_TRUE(movers.contains(cloud.instances[i]));
     const MovingObject& object = *movers[cloud.instances[i]];
     const double time_s = recording.true_mapping_trajectory[cloud.scan_indices[i]].time_s;
-    const RigidTransform place =
+    const RigidTransform world_from_object =
         interpolate(object.world_from_object, std::fmod(time_s, street.traffic_period_s));
-    const Vec3d p = place.inverse() * cloud.world(i);
+    const Vec3d p = world_from_object.inverse() * cloud.world(i);
     EXPECT_LT(std::fabs(p.x), 2.6);
     EXPECT_LT(std::fabs(p.y), 1.3);
-    places[cloud.instances[i]][cloud.scan_indices[i]] = place.translation;
+    positions[cloud.instances[i]][cloud.scan_indices[i]] = world_from_object.translation;
   }
   std::size_t moved = 0;
-  for (const auto& [instance, by_scan] : places) {
+  for (const auto& [instance, by_scan] : positions) {
     if (by_scan.size() < 2) continue;
     const Vec3d way = by_scan.rbegin()->second - by_scan.begin()->second;
     moved += length(way) > 0.1 ? 1U : 0U;
@@ -167,7 +167,7 @@ TEST(ScanStreet, MovingObjectsAreWhereTheirTrajectoryIs) {
   EXPECT_GE(moved, 5U);
 }
 
-// Oracle: the same rays without noise; the difference has the wished mean and deviation.
+// Oracle: the same rays without noise; the differences have the requested mean and deviation.
 TEST(ScanStreet, RangeNoiseIsWhite) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(20'000);
@@ -188,8 +188,8 @@ TEST(ScanStreet, RangeNoiseIsWhite) {
   EXPECT_NEAR(std::sqrt(square / n), 0.03, 4 * 0.03 / std::sqrt(2 * n));
 }
 
-// Oracle: recorded points are the exact ones moved by one rigid transform a pass.
-TEST(ScanStreet, PoseErrorMovesEachPassAsAWhole) {
+// Oracle: recorded points are the exact ones moved by one rigid transform per pass.
+TEST(ScanStreet, PoseErrorIsOneRigidTransformPerPass) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(20'000);
   const StreetRecording exact = scan(street, options);
@@ -233,7 +233,7 @@ TEST(ScanStreet, MappingSensorIsPitchedAndDrivingSensorLevel) {
     EXPECT_NEAR(t.rotation.rows[2].x, std::sin(0.7854), 0.01);  // its x axis points up in front
     EXPECT_NEAR(t.translation.z - road_height(t.translation.x, t.translation.y), 2.0, 0.03);
   }
-  ASSERT_EQ(scans.size(), 9U);  // 46 m driven, every 5
+  ASSERT_EQ(scans.size(), 9U);  // 46 m driven, one every 5 m
   ASSERT_EQ(recording.driving_trajectory.size(), scans.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
     const RigidTransform& t = scans[s].world_from_sensor;
@@ -257,7 +257,7 @@ TEST(ScanStreet, MappingSensorIsPitchedAndDrivingSensorLevel) {
 }
 
 // Oracle: analytic. The second pass is the first one seen from the other end.
-TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
+TEST(ScanStreet, PassesWithTurnsStartInTheCrossStreet) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);
   options.turns = true;
@@ -283,10 +283,10 @@ TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
     EXPECT_NEAR(b.translation.z - road_height(b.translation.x, b.translation.y), 1.73, 0.01);
   }
   EXPECT_NEAR(longest_m, 1, 0.05);
-  EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // of a radius of 6 m
+  EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // a turning radius of 6 m
 }
 
-TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
+TEST(ScanStreet, MaxDrivingScansLimitsTheirNumber) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);
   options.driving_spacing_m = 1;
@@ -296,17 +296,12 @@ TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
   EXPECT_TRUE(scan(street, options).driving_trajectory.empty());
 }
 
-TEST(ScanStreet, RefusesOptionsOutOfRange) {
+TEST(ScanStreet, RejectsOptionsOutOfRange) {
   const Street street = make_street(kShortStreet);
   const auto expect_usage = [&](auto change) {
     StreetScanOptions options = exact_scan(2'000);
     change(options);
-    try {
-      scan(street, options);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
-    }
+    expect_error(ErrorKind::usage, {}, [&] { scan(street, options); });
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expect_usage([](StreetScanOptions& o) { o.points = 999; });

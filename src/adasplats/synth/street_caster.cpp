@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/street_caster.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "adasplats/core/maths/random.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kBumper_m = 5;  // ahead of and behind a mover
-constexpr double kDoor_m = 0.6;  // beside it
+constexpr double kBumper_m = 5;  // clearance ahead of and behind a mover
+constexpr double kDoor_m = 0.6;  // clearance at its sides
 
-/// A mesh with what its triangles carry, wherever it is kept.
+/// A view of a mesh with reflectances and instances.
 struct Surfaces {
   const TriangleMesh& mesh;
   std::span<const std::uint16_t> instances;
@@ -29,10 +28,10 @@ bool in_the_way(const MovingObject& object, const RigidTransform& world_from_obj
     low = min(low, vertex);
     high = max(high, vertex);
   }
-  return meets_vehicle(low, high, world_from_object.inverse() * vehicle);
+  return collides(low, high, world_from_object.inverse() * vehicle);
 }
 
-/// -1..1, constant in cells of 20 cm: stones, plaster, dirt.
+/// Texture, -1..1, constant in cells of 20 cm: stones, plaster, dirt.
 double texture_at(Vec3f p) {
   const auto cell = [](float v) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * 5.0F)));
@@ -69,7 +68,7 @@ float street_intensity(const Triangle& triangle, float reflectance, const Ray& r
       std::clamp(reflectance * incidence * texture / (1 + far * far), 0.0, 1.0));
 }
 
-bool meets_vehicle(Vec3f low, Vec3f high, Vec3d vehicle) {
+bool collides(Vec3f low, Vec3f high, Vec3d vehicle) {
   return vehicle.x > low.x - kBumper_m && vehicle.x < high.x + kBumper_m &&
          vehicle.y > low.y - kDoor_m && vehicle.y < high.y + kDoor_m;
 }
@@ -79,10 +78,10 @@ BuiltMesh movers_at(const Street& street, double time_s, Vec3d vehicle) {
   const double now_s =
       street.traffic_period_s > 0 ? std::fmod(time_s, street.traffic_period_s) : time_s;
   for (const MovingObject& object : street.moving) {
-    const Trajectory& way = object.world_from_object;
-    if (way.empty() || object.mesh.triangles.empty()) continue;
-    if (now_s < way.front().time_s || now_s > way.back().time_s) continue;
-    const RigidTransform world_from_object = interpolate(way, now_s);
+    const Trajectory& trajectory = object.world_from_object;
+    if (trajectory.empty() || object.mesh.triangles.empty()) continue;
+    if (now_s < trajectory.front().time_s || now_s > trajectory.back().time_s) continue;
+    const RigidTransform world_from_object = interpolate(trajectory, now_s);
     if (in_the_way(object, world_from_object, vehicle)) continue;
     TriangleMesh& mesh = placed.mesh;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -115,7 +114,7 @@ std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
   if (!movers.mesh.triangles.empty())
     make_cpu_tracer(SceneView{{}, &movers.mesh}, executor_)->nearest(rays, moving_hits, executor_);
 
-  const Surfaces standing = {street_.fixed, street_.instances, street_.reflectances};
+  const Surfaces fixed = {street_.fixed, street_.instances, street_.reflectances};
   const Surfaces moving = {movers.mesh, movers.instances, movers.reflectances};
   constexpr std::uint32_t kMiss = 0xffffffffU;
   std::vector<StreetEcho> echoes(rays.size());
@@ -125,7 +124,7 @@ std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
       const Hit hit = mover ? moving_hits[i] : fixed_hits[i];
       echoes[i].ray = kMiss;
       if (!hit.valid()) continue;
-      const Surfaces& surfaces = mover ? moving : standing;
+      const Surfaces& surfaces = mover ? moving : fixed;
       Random random(seed, scan, i);
       const double noise = range_noise_m_ > 0 ? range_noise_m_ * random.normal() : 0.0;
       const float intensity =

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adasplats/synth/facade.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {
@@ -11,11 +10,11 @@ namespace {
 
 constexpr double kFloorHeight = 3.05;
 constexpr double kGroundFloorHeight = 3.7;
-constexpr double kBelowGround = 0.5;  // walls reach down through the uneven ground
+constexpr double kBelowGround = 0.5;  // walls extend below the uneven ground
 
 enum class Roof : std::uint8_t { flat, mansard };
 
-/// How one apartment building looks.
+/// Appearance of one apartment building.
 struct Building {
   double width = 12;
   double depth = kBuildingDepth;
@@ -24,8 +23,8 @@ struct Building {
   float reflectance = 0.5F;
   OpeningKind windows = OpeningKind::window;
   bool shops = false;
-  int balcony_floor = 2;          ///< with one long balcony; 0: none
-  bool single_balconies = false;  ///< one a second bay on the other floors
+  int balcony_floor = 2;          ///< floor with one long balcony; 0: none
+  bool single_balconies = false;  ///< at every second bay of the other floors
   Roof roof = Roof::mansard;
 
   double floor_z(int floor) const {  ///< floor 1 is the first above the ground floor
@@ -106,14 +105,14 @@ void add_dormers(MeshBuilder& builder, const WallFrame& wall, const Building& bu
   }
 }
 
-/// Roof, and the walls at the sides and the back.
+/// Roof, side walls and back wall.
 void add_shell(MeshBuilder& builder, const WallFrame& wall, const Building& building) {
   const Material stone = {label::kBuilding, building.reflectance * 0.85F};
   const Material slate = {label::kBuilding, 0.18F};
   const double top = building.wall_height();
   const bool mansard = building.roof == Roof::mansard;
   const double ridge = mansard ? top + 2.5 : top;
-  const double step = mansard ? 1.3 : 0;  // of the roof's foot to its flat top
+  const double step = mansard ? 1.3 : 0;  // from the foot of the roof to its flat top
   const double back = -building.depth;
   for (const double a : {0.0, building.width}) {
     builder.quad(wall(a, 0, -kBelowGround), wall(a, back, -kBelowGround), wall(a, back, top),
@@ -182,7 +181,7 @@ void add_facades(const StreetPlan& plan, MeshBuilder& builder) {
       building.depth = kSidewalkEdge + kBuildingDepth - front;
       add_building(builder, wall, building, sidewalk_height(plot.center(), front));
     } else if (plot.kind == PlotKind::side_street) {
-      // A house closes the view; walls line the way behind the corner buildings.
+      // A row of buildings closes the view; walls line the side street behind the corner buildings.
       const WallFrame end = {{plot.x0 - 6, side * kSideStreetEnd, 0}, {1, 0, 0}, {0, -side, 0}};
       add_row(plan, builder, end, plot.width() + 12, 5000 + plot.number);
       for (const double x : {plot.x0, plot.x1}) {

@@ -32,7 +32,8 @@ void add_garden_edge(MeshBuilder& builder, const Plot& plot, double x0, double x
   }
 }
 
-/// Fence or low wall before the garden, open at the driveway and the path; a gate across the path.
+/// Fence or low wall in front of the garden, open at the driveway and the path; a gate across the
+/// path.
 void add_garden(MeshBuilder& builder, const Plot& plot) {
   const double gate0 = plot.center() - 0.6;
   const double gate1 = plot.center() + 0.6;
@@ -63,7 +64,7 @@ void add_boundary_wall(const StreetPlan& plan, MeshBuilder& builder, const Plot&
               {0, 0, 0.04}, stone);  // coping
 }
 
-/// A pedestrian barrier at the kerb: frames of tube, each with bars.
+/// A pedestrian barrier at the kerb: tube frames with bars.
 void add_barrier(MeshBuilder& builder, const Item& item) {
   const double y = item.side * (kRoadHalfWidth + 0.35);
   const int frames = std::max(1, static_cast<int>(std::lround(item.length / 1.5)));

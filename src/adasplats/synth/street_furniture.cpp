@@ -13,19 +13,19 @@ namespace {
 
 constexpr Material kGalvanised = {label::kPole, 0.45F};
 constexpr Material kDarkPaint = {label::kPole, 0.2F};
-constexpr Material kSignFace = {label::kTrafficSign, 0.92F};  // retroreflecting sheet
+constexpr Material kSignFace = {label::kTrafficSign, 0.92F};  // retroreflective sheeting
 constexpr Material kWood = {label::kOtherObject, 0.35F};
 constexpr Material kSteel = {label::kOtherObject, 0.28F};
-constexpr double kSunk = 0.1;  // feet stand in the ground
+constexpr double kFootDepth = 0.1;  // feet are below the ground
 
 Vec3d foot_of(const Item& item, double line) {
   const double y = item.side * line;
   return {item.x, y, sidewalk_height(item.x, y)};
 }
 
-/// The direction that drivers on this side look at a sign from: its plate faces them.
+/// The normal of a sign that faces the drivers on this side.
 Vec3d facing_traffic(int side, double yaw) {
-  // On the right (y < 0) cars come from -x.
+  // On the right (y < 0) cars drive towards +x.
   const double x = side > 0 ? 1.0 : -1.0;
   return {x * std::cos(yaw), std::sin(yaw), 0};
 }
@@ -70,7 +70,7 @@ void add_sign_pole(const StreetPlan& plan, MeshBuilder& builder, const Item& ite
   const Vec3d foot = foot_of(item, kFurnitureLine);
   const double height = random.uniform(2.7, 3.2);
   const double radius = random.uniform(0.03, 0.042);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, height}, radius, radius, 12,
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, height}, radius, radius, 12,
                kGalvanised);
   const Vec3d normal = facing_traffic(item.side, random.uniform(-0.15, 0.15));
   const auto shape = static_cast<SignShape>(static_cast<int>(random.uniform(0, 2.99)));
@@ -81,7 +81,8 @@ void add_sign_pole(const StreetPlan& plan, MeshBuilder& builder, const Item& ite
 
 void add_crossing_sign(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kFurnitureLine);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 2.9}, 0.038, 0.038, 12, kGalvanised);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 2.9}, 0.038, 0.038, 12,
+               kGalvanised);
   add_sign(builder, foot, 0.038, 2.45, facing_traffic(item.side, 0), SignShape::square);
 }
 
@@ -89,7 +90,8 @@ void add_pole(const StreetPlan& plan, MeshBuilder& builder, const Item& item) {
   Random random = random_of(plan, Purpose::furniture, item.number);
   const Vec3d foot = foot_of(item, kFurnitureLine);
   const double height = random.uniform(5.5, 7.5);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, height}, 0.1, 0.06, 12, kGalvanised);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, height}, 0.1, 0.06, 12,
+               kGalvanised);
   builder.box(foot + Vec3d{0, 0, 3.2}, {0.12, 0, 0}, {0, 0.1, 0}, {0, 0, 0.22}, kGalvanised);
 }
 
@@ -97,9 +99,9 @@ void add_lamp(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kFurnitureLine);
   const double to_road = -item.side;
   const double height = 7.2;
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 1.2}, 0.11, 0.1, 12, kDarkPaint);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 1.2}, 0.11, 0.1, 12, kDarkPaint);
   builder.tube(foot + Vec3d{0, 0, 1.2}, foot + Vec3d{0, 0, height}, 0.075, 0.05, 12, kDarkPaint);
-  // The arm: a quarter arc, then straight.
+  // The arm: a quarter arc, then a straight part.
   Vec3d from = foot + Vec3d{0, 0, height};
   for (int k = 1; k <= 4; ++k) {
     const double angle = 0.5 * std::numbers::pi * k / 4;
@@ -116,7 +118,8 @@ void add_lamp(MeshBuilder& builder, const Item& item) {
 void add_traffic_light(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kFurnitureLine);
   const Vec3d normal = facing_traffic(item.side, 0);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 3.3}, 0.06, 0.055, 12, kDarkPaint);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 3.3}, 0.06, 0.055, 12,
+               kDarkPaint);
   const Vec3d head = foot + Vec3d{0, 0, 2.8} + normal * 0.2;
   builder.box(head, {0.1, 0, 0}, {0, 0.15, 0}, {0, 0, 0.45}, kSteel);
   for (int k = -1; k <= 1; ++k) {  // hoods over the lamps
@@ -145,7 +148,7 @@ void add_bench(MeshBuilder& builder, const Item& item) {
 
 void add_bin(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kFurnitureLine);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 1.05}, 0.03, 0.03, 8, kSteel);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 1.05}, 0.03, 0.03, 8, kSteel);
   const Vec3d bag = foot + Vec3d{0, item.side * 0.25, 0};
   builder.tube(bag + Vec3d{0, 0, 0.25}, bag + Vec3d{0, 0, 0.95}, 0.19, 0.23, 14, kSteel);
 }
@@ -153,13 +156,13 @@ void add_bin(MeshBuilder& builder, const Item& item) {
 void add_advertising_column(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kTreeLine);
   constexpr Material kPoster = {label::kOtherObject, 0.5F};
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 0.35}, 0.72, 0.72, 24, kSteel);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 0.35}, 0.72, 0.72, 24, kSteel);
   builder.tube(foot + Vec3d{0, 0, 0.35}, foot + Vec3d{0, 0, 3.0}, 0.62, 0.62, 24, kPoster);
   builder.tube(foot + Vec3d{0, 0, 3.0}, foot + Vec3d{0, 0, 3.15}, 0.8, 0.75, 24, kSteel);
   builder.ellipsoid(foot + Vec3d{0, 0, 3.1}, {0.65, 0.65, 0.6}, 8, 24, kSteel);
 }
 
-/// Roof on four posts, glass at the back and one end, a bench inside.
+/// Roof on four posts, glass at the back and at one end, a bench inside.
 void add_bus_shelter(MeshBuilder& builder, const Item& item) {
   constexpr Material kShelter = {label::kOtherStructure, 0.4F};
   constexpr Material kPane = {label::kOtherStructure, 0.12F};
@@ -172,7 +175,7 @@ void add_bus_shelter(MeshBuilder& builder, const Item& item) {
   builder.box({item.x - 0.2, low - 0.2, z + 2.45}, {x1 + 0.2, high + 0.2, z + 2.57}, kShelter);
   for (const double x : {item.x, x1})
     for (const double y : {front, back})
-      builder.beam({x, y, z - kSunk}, {x, y, z + 2.45}, 0.04, 0.04, kShelter);
+      builder.beam({x, y, z - kFootDepth}, {x, y, z + 2.45}, 0.04, 0.04, kShelter);
   builder.box({item.x + 0.05, back - 0.005, z + 0.2}, {x1 - 0.05, back + 0.005, z + 2.3}, kPane);
   builder.box({x1 - 0.005, low + 0.05, z + 0.2}, {x1 + 0.005, high - 0.05, z + 2.3}, kPane);
   const double seat = back - item.side * 0.35;
@@ -188,7 +191,8 @@ void add_cabinet(MeshBuilder& builder, const Item& item) {
 
 void add_bollard(MeshBuilder& builder, const Item& item) {
   const Vec3d foot = foot_of(item, kRoadHalfWidth + 0.4);
-  builder.tube(foot - Vec3d{0, 0, kSunk}, foot + Vec3d{0, 0, 0.95}, 0.055, 0.055, 12, kDarkPaint);
+  builder.tube(foot - Vec3d{0, 0, kFootDepth}, foot + Vec3d{0, 0, 0.95}, 0.055, 0.055, 12,
+               kDarkPaint);
   builder.ellipsoid(foot + Vec3d{0, 0, 0.98}, {0.07, 0.07, 0.07}, 6, 12, kDarkPaint);
 }
 

@@ -9,14 +9,14 @@
 
 #include "adasplats/synth/street_parts.h"
 
-// The ground is a grid of rectangles whose cuts follow the plan; each cell has a class and a step
-// above the road's surface, and where neighbours differ in height the step gets a face. So kerbs,
-// driveways, tree pits and side streets need no case of their own.
+// The ground is a grid of rectangles with cuts at the features of the plan. Each cell has a class
+// and a height above the road's surface; a vertical face closes the step between neighbours of
+// different heights. Kerbs, driveways, tree pits and side streets need no special cases.
 
 namespace adasplats {
 namespace {
 
-constexpr double kSmallestCell = 0.06;
+constexpr double kMinCell_m = 0.06;
 constexpr double kTerrainRoughness = 0.035;
 
 struct Cell {
@@ -85,7 +85,7 @@ std::optional<Cell> plot_cell(const Plot& plot, double x, double from_axis) {
 
 std::optional<Cell> cell_at(const StreetPlan& plan, double x, double y) {
   const double from_axis = std::fabs(y);
-  const double beyond = std::max(-x, x - plan.length);  // of the street's end
+  const double beyond = std::max(-x, x - plan.length);  // the street's end
   if (beyond > 0) {
     if (from_axis > kCrossHalfLength) return std::nullopt;
     if (beyond < kCrossRoad) return kAsphalt;
@@ -104,7 +104,7 @@ std::optional<Cell> cell_at(const StreetPlan& plan, double x, double y) {
                                    : plot_cell(*plot, x, from_axis);
 }
 
-/// Feature cuts as they are, and regular ones at `step` where no feature cut is near.
+/// Feature cuts unchanged, plus regular cuts at `step` where no feature cut is near.
 std::vector<double> merged_cuts(std::vector<double> features, double low, double high,
                                 double step) {
   std::ranges::sort(features);
@@ -116,8 +116,8 @@ std::vector<double> merged_cuts(std::vector<double> features, double low, double
     const double cut = low + k * step;
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(fixed);
     const auto above = std::lower_bound(cuts.begin(), end, cut);
-    const bool near_above = above != end && *above - cut < kSmallestCell;
-    const bool near_below = above != cuts.begin() && cut - *(above - 1) < kSmallestCell;
+    const bool near_above = above != end && *above - cut < kMinCell_m;
+    const bool near_below = above != cuts.begin() && cut - *(above - 1) < kMinCell_m;
     if (!near_above && !near_below) cuts.push_back(cut);
   }
   std::ranges::sort(cuts);
@@ -175,8 +175,8 @@ std::vector<double> cuts_across() {
   return cuts;
 }
 
-/// The ground's height in a cell at one of its corners. Soil is rough by a draw that belongs to
-/// the corner, so cells that share a corner agree.
+/// Height of a cell's corner. The roughness of soil is drawn by corner, so cells that share a
+/// corner agree.
 double corner_height(const StreetPlan& plan, const Cell& cell, double x, double y) {
   double rough = 0;
   if (cell.rough) {

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/facade.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {
@@ -8,7 +7,7 @@ namespace {
 
 constexpr double kHouseBelowGround = 0.5;
 constexpr double kSideMargin = 0.9;     // between a house and its neighbours
-constexpr double kDrivewayWidth = 2.6;  // left free beside the house
+constexpr double kDrivewayWidth = 2.6;  // kept free at the side of the house
 constexpr double kHouseDepth = 6.2;
 
 /// Two floors of openings; the door in the middle of the ground floor.
@@ -37,7 +36,7 @@ void add_house_front(MeshBuilder& builder, const WallFrame& wall, double width, 
   }
 }
 
-/// Gable walls, back and a ridge roof along the street with eaves that stand out.
+/// Gable walls, back wall and a ridge roof along the street with overhanging eaves.
 void add_house_shell(MeshBuilder& builder, const WallFrame& wall, double width, double eaves,
                      float reflectance) {
   const Material stone = {label::kBuilding, reflectance};

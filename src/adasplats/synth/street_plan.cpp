@@ -17,16 +17,16 @@ constexpr std::uint64_t kPlotStream = 1;
 constexpr std::uint64_t kItemStream = 2;
 constexpr std::uint64_t kParkingStream = 3;
 constexpr double kSideStreetEvery = 130;
-constexpr double kModule = 17.5;  // of the furniture of a sidewalk
+constexpr double kModule = 17.5;  // of sidewalk furniture
 
 /// The first plots are fixed so that the shortest street has one of each kind.
-PlotKind kind_of_plot(int side, std::size_t place, double since_side_street, Random& random) {
+PlotKind kind_of_plot(int side, std::size_t index, double since_side_street, Random& random) {
   constexpr std::array kLeft = {PlotKind::apartment, PlotKind::house, PlotKind::apartment,
                                 PlotKind::wall};
   constexpr std::array kRight = {PlotKind::apartment, PlotKind::side_street, PlotKind::apartment,
                                  PlotKind::house};
   const double draw = random.uniform();
-  if (place < 4) return side > 0 ? kLeft[place] : kRight[place];
+  if (index < 4) return side > 0 ? kLeft[index] : kRight[index];
   if (since_side_street > kSideStreetEvery) return PlotKind::side_street;
   if (draw < 0.58) return PlotKind::apartment;
   return draw < 0.9 ? PlotKind::house : PlotKind::wall;
@@ -46,12 +46,12 @@ void add_plots(StreetPlan& plan, int side) {
   const double squeeze = std::min(1.0, plan.length / 70);
   double x = 0;
   double last_side_street = side > 0 ? -0.4 * kSideStreetEvery : 0;
-  for (std::size_t place = 0; x < plan.length; ++place) {
+  for (std::size_t index = 0; x < plan.length; ++index) {
     Plot plot;
     plot.side = side;
     plot.number = plan.plots.size();
     Random random = plan.random(kPlotStream, plot.number);
-    plot.kind = kind_of_plot(side, place, x - last_side_street, random);
+    plot.kind = kind_of_plot(side, index, x - last_side_street, random);
     const bool side_street = plot.kind == PlotKind::side_street;
     plot.x0 = x;
     plot.x1 = x + width_of_plot(plot.kind, random) * (side_street ? 1.0 : squeeze);
@@ -62,7 +62,7 @@ void add_plots(StreetPlan& plan, int side) {
     plot.edge = edge < 0.6   ? GardenEdge::fence
                 : edge < 0.8 ? GardenEdge::hedge
                              : GardenEdge::wall_with_fence;
-    if (place < 4) plot.edge = side > 0 ? GardenEdge::fence : GardenEdge::hedge;
+    if (index < 4) plot.edge = side > 0 ? GardenEdge::fence : GardenEdge::hedge;
     x = plot.x1;
     plan.plots.push_back(plot);
   }
@@ -78,7 +78,7 @@ bool is_free(const StreetPlan& plan, int side, double x0, double x1) {
   });
 }
 
-/// Half of what an item takes of the furniture line, besides its length.
+/// Half of the space that an item needs on the furniture line, besides its length.
 double half_room(ItemKind kind) {
   switch (kind) {
     case ItemKind::bench: return 0.95;
@@ -89,20 +89,20 @@ double half_room(ItemKind kind) {
   }
 }
 
-/// Puts an item where nothing is in its way, else leaves it out.
+/// Adds an item unless the space is occupied.
 void put_item(StreetPlan& plan, ItemKind kind, int side, double x, double length) {
   const double x0 = x - half_room(kind);
   const double x1 = x + length + half_room(kind);
   if (!is_free(plan, side, x0, x1)) return;
-  const bool taken = std::ranges::any_of(plan.items, [&](const Item& item) {
+  const bool occupied = std::ranges::any_of(plan.items, [&](const Item& item) {
     return item.side == side && x1 > item.x - half_room(item.kind) &&
            x0 < item.x + item.length + half_room(item.kind);
   });
-  if (!taken) plan.items.push_back({kind, side, x, length, plan.items.size()});
+  if (!occupied) plan.items.push_back({kind, side, x, length, plan.items.size()});
 }
 
-/// One module of furniture of a sidewalk: 17.5 m with two trees, one pole and, every other
-/// time, a lamp, a barrier, or bollards.
+/// One furniture module of a sidewalk: 17.5 m with two trees, one pole and, in every second one, a
+/// lamp, a barrier or bollards.
 void add_module(StreetPlan& plan, int side, double x, int module) {
   Random random =
       plan.random(kItemStream, static_cast<std::uint64_t>(module) * 2 + (side > 0 ? 1 : 0));
@@ -140,11 +140,11 @@ void add_crossing_items(StreetPlan& plan) {
 }
 
 void add_parked_cars(StreetPlan& plan, int side) {
-  constexpr double kRoom = 5.4;  // of one car and the gap to the next
+  constexpr double kRoom = 5.4;  // length of one car with a gap
   Random random = plan.random(kParkingStream, side > 0 ? 1 : 0);
   for (double x = 7; x < plan.length - 7;) {
     const bool near_crossing = std::fabs(x - plan.crossing) < 5.5;
-    const bool taken = random.uniform() < 0.72;
+    const bool occupied = random.uniform() < 0.72;
     const Plot* plot = plan.plot_at(side, x);
     const auto opens = [&](double at) {
       const Plot* there = plan.plot_at(side, at);
@@ -153,14 +153,14 @@ void add_parked_cars(StreetPlan& plan, int side) {
     const bool before_side_street = plot == nullptr || opens(x) || opens(x - 3.5) || opens(x + 3.5);
     const bool before_driveway =
         plot != nullptr && plot->kind == PlotKind::house && std::fabs(x - plot->x0 - 2.0) < 3.4;
-    if (taken && !near_crossing && !before_side_street && !before_driveway)
+    if (occupied && !near_crossing && !before_side_street && !before_driveway)
       plan.items.push_back({ItemKind::parked_car, side, x, 4.3, plan.items.size()});
     x += kRoom + random.uniform(-0.2, 0.4);
   }
 }
 
-double place_of_crossing(const StreetPlan& plan) {
-  // In the middle, but not before the mouth of a side street.
+double position_of_crossing(const StreetPlan& plan) {
+  // Near the middle, but clear of side streets.
   for (double x = 0.55 * plan.length; x < plan.length - 8; x += 1) {
     const bool blocked = std::ranges::any_of(plan.plots, [&](const Plot& plot) {
       return plot.kind == PlotKind::side_street && x > plot.x0 - 5 && x < plot.x1 + 5;
@@ -188,16 +188,16 @@ double road_height(double x, double y) {
 }
 
 StreetPlan make_street_plan(const StreetOptions& options) {
-  if (!(options.length_m >= kShortestStreet_m && options.length_m <= kLongestStreet_m))
+  if (!(options.length_m >= kMinStreetLength_m && options.length_m <= kMaxStreetLength_m))
     throw Error(ErrorKind::usage, "street length of " + std::to_string(options.length_m) +
-                                      " m; expected " + std::to_string(kShortestStreet_m) + " to " +
-                                      std::to_string(kLongestStreet_m) + " m");
+                                      " m; expected " + std::to_string(kMinStreetLength_m) +
+                                      " to " + std::to_string(kMaxStreetLength_m) + " m");
   StreetPlan plan;
   plan.seed = options.seed;
   plan.length = options.length_m;
   add_plots(plan, 1);
   add_plots(plan, -1);
-  plan.crossing = place_of_crossing(plan);
+  plan.crossing = position_of_crossing(plan);
   for (const int side : {1, -1}) {
     int module = 0;
     for (double x = side > 0 ? 0 : 4; x < plan.length; x += kModule, ++module)

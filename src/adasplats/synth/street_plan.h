@@ -9,8 +9,8 @@
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/synth/street.h"
 
-// Inside synth/: what stands where, before anything is built. Every number of the geometry that
-// two builders share is here.
+// Private to synth/: the layout of a street before its geometry is built, with all dimensions that
+// several builders share.
 
 namespace adasplats {
 
@@ -36,7 +36,7 @@ inline constexpr double kGardenDepth = 4.5;
 inline constexpr double kBuildingDepth = 11.0;
 inline constexpr double kSideStreetHalfRoad = 3.0;
 inline constexpr double kSideStreetEnd = 36.0;
-/// The streets across both ends: road, then a sidewalk, then facades.
+/// The cross streets at both ends: road, then sidewalk, then facades.
 inline constexpr double kCrossRoad = 7.5;
 inline constexpr double kCrossEnd = 10.0;
 inline constexpr double kCrossHalfLength = 22.0;
@@ -44,13 +44,13 @@ inline constexpr double kCrossHalfLength = 22.0;
 enum class PlotKind : std::uint8_t { apartment, house, wall, side_street };
 enum class GardenEdge : std::uint8_t { fence, hedge, wall_with_fence };
 
-/// A piece of one side of the street, [x0, x1] along it.
+/// A plot on one side of the street, [x0, x1] along it.
 struct Plot {
   PlotKind kind = PlotKind::apartment;
   int side = 1;  ///< +1: y > 0 (left of +x), -1: right
   double x0 = 0, x1 = 0;
   GardenEdge edge = GardenEdge::fence;  ///< of a house
-  std::uint64_t number = 0;             ///< unique in the street: names its random numbers
+  std::uint64_t number = 0;             ///< unique in the street; key of its random numbers
   double width() const { return x1 - x0; }
   double center() const { return 0.5 * (x0 + x1); }
 };
@@ -72,12 +72,12 @@ enum class ItemKind : std::uint8_t {
   parked_car,
 };
 
-/// Something that stands along the street.
+/// An object along the street.
 struct Item {
   ItemKind kind = ItemKind::tree;
   int side = 1;
   double x = 0;
-  double length = 0;  ///< along the street, of barriers
+  double length = 0;  ///< along the street, for barriers
   std::uint64_t number = 0;
 };
 
@@ -89,7 +89,7 @@ struct StreetPlan {
   std::vector<Item> items;
 
   const Plot* plot_at(int side, double x) const;  ///< nullptr outside [0, length]
-  /// Random numbers of one thing: `purpose` separates the builders.
+  /// Random numbers of one object; `purpose` separates the builders.
   Random random(std::uint64_t purpose, std::uint64_t number) const {
     return {seed, purpose, number};
   }
@@ -99,11 +99,11 @@ inline constexpr double kZebraHalfLength = 1.5;
 
 StreetPlan make_street_plan(const StreetOptions& options);
 
-/// Height of the road's surface, carried on under sidewalks and gardens: long waves along, 2 %
-/// crossfall to the kerbs and 2 % back up behind them.
+/// Height of the road's surface, continued under sidewalks and gardens: long waves along the road,
+/// a crossfall of 2 % down to the kerbs and 2 % up behind them.
 double road_height(double x, double y);
 
-/// Height of the paving where people, poles and buildings stand: road_height and the kerb.
+/// Height of the sidewalk's paving: road_height() plus the kerb.
 inline double sidewalk_height(double x, double y) { return road_height(x, y) + kKerbHeight; }
 
 }  // namespace adasplats

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/street_plan.h"
 
 namespace adasplats {
@@ -44,7 +44,7 @@ void expect_well_formed(const TriangleMesh& mesh, std::span<const float> reflect
 
 class StreetOf : public testing::TestWithParam<std::pair<std::uint64_t, double>> {};
 
-TEST_P(StreetOf, IsWellFormedAndHasEveryPromisedClass) {
+TEST_P(StreetOf, IsWellFormedAndHasEveryDocumentedClass) {
   const auto [seed, length_m] = GetParam();
   const Street street = make_street({seed, length_m});
   EXPECT_EQ(street.length_m, length_m);
@@ -61,7 +61,7 @@ TEST_P(StreetOf, IsWellFormedAndHasEveryPromisedClass) {
   EXPECT_EQ(moving, (std::set<std::uint16_t>{252, 254}));
 }
 
-TEST_P(StreetOf, GivesEachCarAndEachMoverItsOwnInstance) {
+TEST_P(StreetOf, EachCarAndMoverHasItsOwnInstance) {
   const auto [seed, length_m] = GetParam();
   const Street street = make_street({seed, length_m});
   std::set<std::uint16_t> parked;
@@ -110,7 +110,7 @@ TEST(Street, RoadHasCrossfallToTheKerbs) {
   }
 }
 
-TEST(Street, DependsOnItsOptionsAlone) {
+TEST(Street, DependsOnlyOnItsOptions) {
   const Street one = make_street({7, 60});
   const Street again = make_street({7, 60});
   const Street other = make_street({8, 60});
@@ -121,22 +121,17 @@ TEST(Street, DependsOnItsOptionsAlone) {
   EXPECT_NE(one.fixed.vertices, other.fixed.vertices);
 }
 
-TEST(Street, RefusesLengthsOutOfRange) {
+TEST(Street, RejectsLengthsOutOfRange) {
   for (const double length_m : {0.0, -5.0, 49.0, 2001.0, std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::quiet_NaN()}) {
-    try {
-      make_street({1, length_m});
-      ADD_FAILURE() << length_m;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { make_street({1, length_m}); });
   }
 }
 
 TEST(Street, LengthGrowsWithThePoints) {
   EXPECT_NEAR(street_length_for(300'000), 60, 1e-9);
   EXPECT_NEAR(street_length_for(12'300'000), 265, 0.5);
-  EXPECT_EQ(street_length_for(0), kShortestStreet_m);
+  EXPECT_EQ(street_length_for(0), kMinStreetLength_m);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 namespace adasplats {
 namespace {
 
-constexpr double kCarEvery_s = 13;    // in each lane
-constexpr double kPersonEvery_m = 9;  // of each sidewalk
+constexpr double kCarEvery_s = 13;    // per lane
+constexpr double kPersonEvery_m = 9;  // per sidewalk
 constexpr double kWaypointEvery_m = 4;
 
 }  // namespace
@@ -46,8 +46,8 @@ MovingObject finished(MeshBuilder& builder, std::uint16_t instance, Trajectory t
   return {std::move(built.mesh), std::move(built.reflectances), instance, std::move(trajectory)};
 }
 
-RigidTransform pose_at(Vec3d place, double yaw) {
-  return {rotation_from_yaw_pitch_roll(yaw, 0, 0), place};
+RigidTransform pose_at(Vec3d position, double yaw) {
+  return {rotation_from_yaw_pitch_roll(yaw, 0, 0), position};
 }
 
 /// Straight from one end of the street to the other.
@@ -55,27 +55,27 @@ Trajectory drive_through(const StreetPlan& plan, int direction, double start_s, 
   Trajectory trajectory;
   const double y = -direction * kLaneCenter;
   const double from = -3;
-  const double way = plan.length + 6;
-  const int steps = static_cast<int>(std::ceil(way / kWaypointEvery_m));
+  const double way_m = plan.length + 6;
+  const int steps = static_cast<int>(std::ceil(way_m / kWaypointEvery_m));
   const double yaw = direction > 0 ? 0 : std::numbers::pi;
   for (int k = 0; k <= steps; ++k) {
-    const double travelled = way * k / steps;
-    const double x = direction > 0 ? from + travelled : from + way - travelled;
+    const double travelled = way_m * k / steps;
+    const double x = direction > 0 ? from + travelled : from + way_m - travelled;
     const double time_s = start_s + travelled / speed;
     trajectory.push_back({time_s, pose_at({x, y, road_height(x, y)}, yaw)});
   }
   return trajectory;
 }
 
-/// Up and down a stretch of sidewalk for the whole period.
+/// Up and down a stretch of sidewalk for the entire period.
 Trajectory walk(const StreetPlan& plan, int side, double x0, double x1, double speed,
                 double first_share) {
   Trajectory trajectory;
-  const double way = x1 - x0;
+  const double way_m = x1 - x0;
   for (double time_s = 0; time_s <= kTrafficPeriod_s; time_s += 1.0) {
-    const double phase = std::fmod(first_share + speed * time_s / (2 * way), 1.0);
+    const double phase = std::fmod(first_share + speed * time_s / (2 * way_m), 1.0);
     const bool forth = phase < 0.5;
-    const double x = x0 + way * (forth ? 2 * phase : 2 - 2 * phase);
+    const double x = x0 + way_m * (forth ? 2 * phase : 2 - 2 * phase);
     const double y = side * (kWalkLine + (forth ? 0.3 : -0.3));
     trajectory.push_back(
         {time_s, pose_at({std::min(std::max(x, 0.5), plan.length - 0.5), y, sidewalk_height(x, y)},
@@ -129,7 +129,7 @@ std::vector<MovingObject> make_traffic(const StreetPlan& plan, std::uint16_t fir
 
   for (const int direction : {1, -1}) {
     Random random = random_of(plan, Purpose::traffic, direction > 0 ? 1 : 0);
-    // One speed a lane: nobody drives into the car in front.
+    // One speed per lane, so that cars do not collide.
     const double speed = random.uniform(8.5, 10.5);
     const double crossing_s = (plan.length + 6) / speed;
     for (double start = -crossing_s; start < kTrafficPeriod_s; start += kCarEvery_s) {

@@ -60,7 +60,7 @@ struct TreeShape {
   int leaves = 2400;
 };
 
-/// Ends of the branches, about which the leaves grow.
+/// Ends of the branches, around which leaves grow.
 std::vector<Vec3d> add_wood(MeshBuilder& builder, Vec3d foot, const TreeShape& tree,
                             Random& random) {
   const Vec3d lean = {random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), 0};
@@ -111,7 +111,7 @@ void add_tree(MeshBuilder& builder, Vec3d foot, const TreeShape& tree, Random& r
   }
 }
 
-/// Leaves in a box, denser towards its skin as in a cut hedge.
+/// Leaves in a box, denser near its surface, as in a cut hedge.
 void add_hedge(MeshBuilder& builder, Vec3d low, Vec3d high, Random& random) {
   const Vec3d size = high - low;
   const double skin = 2 * (size.x * size.z + size.y * size.z) + size.x * size.y;
@@ -151,7 +151,7 @@ void add_bush(MeshBuilder& builder, Vec3d foot, double radius, Random& random) {
   }
 }
 
-/// What grows on a house's plot: the hedge at the front where it has one, bushes, a small tree.
+/// Plants of a house's plot: front hedge if it has one, bushes, a small tree.
 void add_garden_plants(const StreetPlan& plan, MeshBuilder& builder, const Plot& plot) {
   Random random = random_of(plan, Purpose::hedge, plot.number);
   if (plot.edge == GardenEdge::hedge) {

@@ -11,12 +11,12 @@
 namespace adasplats {
 namespace {
 
-/// A section across a body: where it is along the car, its height and its width.
+/// A cross-section of a body: position along the car, heights and half width.
 struct Station {
   double x, bottom, top, half_width;
 };
 
-/// Side view of a car: stations of the body up to the windows, then the cabin's roof line.
+/// Side view of a car: stations of the body up to the windows, then the outline of the cabin.
 struct CarShape {
   std::vector<Station> body;
   double cabin_rear_low, cabin_rear_high, cabin_front_high, cabin_front_low;  // x
@@ -119,7 +119,7 @@ CarShape shape_of(int number) {
 }
 
 void add_body(MeshBuilder& builder, const CarShape& car, const Material& paint,
-              const RigidTransform& place) {
+              const RigidTransform& world_from_car) {
   std::vector<std::vector<Vec3d>> rings;
   for (const Station& s : car.body) {
     const double shoulder = s.bottom + 0.62 * (s.top - s.bottom);
@@ -131,26 +131,27 @@ void add_body(MeshBuilder& builder, const CarShape& car, const Material& paint,
                                                         {0.8 * s.half_width, s.top}}};
     std::vector<Vec3d> ring;
     ring.reserve(2 * half.size());
-    for (const auto& [y, z] : half) ring.push_back(place * Vec3d{s.x, y, z});
+    for (const auto& [y, z] : half) ring.push_back(world_from_car * Vec3d{s.x, y, z});
     for (std::size_t k = half.size(); k-- > 0;)
-      ring.push_back(place * Vec3d{s.x, -half[k][0], half[k][1]});
+      ring.push_back(world_from_car * Vec3d{s.x, -half[k][0], half[k][1]});
     rings.push_back(ring);
   }
   builder.loft(rings, paint);
 }
 
-/// Glass from the belt to the roof, and the roof, in three levels so that the sides curve in.
+/// Glass from the belt to the roof, and the roof, in three levels so that the sides curve inwards.
 void add_cabin(MeshBuilder& builder, const CarShape& car, const Material& paint,
-               const RigidTransform& place) {
+               const RigidTransform& world_from_car) {
   Material glass = paint;
   glass.reflectance = 0.1F;
   const auto ring = [&](double share, double z) {
     const double rear = car.cabin_rear_low + share * (car.cabin_rear_high - car.cabin_rear_low);
     const double front = car.cabin_front_low + share * (car.cabin_front_high - car.cabin_front_low);
     const double half = car.cabin_half_width * (1 - 0.2 * share);
-    return std::vector<Vec3d>{place * Vec3d{rear, half, z},      place * Vec3d{front, half, z},
-                              place * Vec3d{front + 0.06, 0, z}, place * Vec3d{front, -half, z},
-                              place * Vec3d{rear, -half, z},     place * Vec3d{rear - 0.06, 0, z}};
+    return std::vector<Vec3d>{
+        world_from_car * Vec3d{rear, half, z},      world_from_car * Vec3d{front, half, z},
+        world_from_car * Vec3d{front + 0.06, 0, z}, world_from_car * Vec3d{front, -half, z},
+        world_from_car * Vec3d{rear, -half, z},     world_from_car * Vec3d{rear - 0.06, 0, z}};
   };
   const double glass_top = car.roof - 0.1;
   const std::array<std::vector<Vec3d>, 2> windows = {ring(0, car.belt - 0.04),
@@ -162,15 +163,16 @@ void add_cabin(MeshBuilder& builder, const CarShape& car, const Material& paint,
 }
 
 void add_wheels(MeshBuilder& builder, const CarShape& car, const Material& paint,
-                const RigidTransform& place) {
+                const RigidTransform& world_from_car) {
   Material tyre = paint;
   tyre.reflectance = 0.08F;
   const double out = car.body[3].half_width - 0.02;
   for (const double x : {car.front_axle, car.rear_axle}) {
     for (const double side : {-1.0, 1.0}) {
       const double z = car.wheel_radius;
-      builder.tube(place * Vec3d{x, side * (out - 0.2), z}, place * Vec3d{x, side * out, z},
-                   car.wheel_radius, car.wheel_radius * 0.96, 18, tyre);
+      builder.tube(world_from_car * Vec3d{x, side * (out - 0.2), z},
+                   world_from_car * Vec3d{x, side * out, z}, car.wheel_radius,
+                   car.wheel_radius * 0.96, 18, tyre);
     }
   }
 }
@@ -200,11 +202,11 @@ std::uint16_t add_parked_cars(const StreetPlan& plan, MeshBuilder& builder) {
     const double y = item.side * (kParkingCenter + random.uniform(-0.1, 0.1));
     const bool backwards = random.uniform() < 0.1;
     const double yaw = (item.side > 0) != backwards ? std::numbers::pi : 0.0;
-    const RigidTransform place = {
+    const RigidTransform world_from_car = {
         rotation_from_yaw_pitch_roll(yaw + random.uniform(-0.02, 0.02), 0, 0),
         {item.x, y, road_height(item.x, y)}};
     const Material paint = {label::kCar, static_cast<float>(random.uniform(0.12, 0.7)), instance};
-    add_car(builder, static_cast<int>(random.uniform(0, 3.99)), paint, place);
+    add_car(builder, static_cast<int>(random.uniform(0, 3.99)), paint, world_from_car);
     ++instance;
   }
   return instance;

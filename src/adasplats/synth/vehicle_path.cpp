@@ -1,19 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/vehicle_path.h"
-
 #include <cmath>
 #include <numbers>
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/synth/street_plan.h"
+#include "adasplats/synth/street_scan.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kMargin_m = 2;      // not driven at both ends
+constexpr double kMargin_m = 2;      // left out at both ends
 constexpr double kTurnRound_s = 15;  // between passes
-constexpr double kWander_m = 0.12;   // nobody drives dead straight
+constexpr double kWander_m = 0.12;   // lateral drift of the vehicle
 constexpr double kWanderLength_m = 9;
 constexpr std::uint64_t kPoseErrorStream = 0x706f7365;
 
@@ -21,8 +20,9 @@ double vehicle_y(int direction, int pass, double x) {
   return -direction * kLaneCenter + kWander_m * std::sin(x / kWanderLength_m + pass);
 }
 
-/// Of a pass that turns, forth: up the street across the beginning, round the corner, along the
-/// street, round the corner and up the street across the end; arcs of a quarter between straights.
+/// Forward path of a pass with turns: up the cross street at the begin, around the corner, along
+/// the street, around the corner and up the cross street at the end; quarter arcs between straight
+/// lines.
 constexpr double kApproach_m = 10, kTurnRadius_m = 6;
 constexpr double kArc_m = 0.5 * std::numbers::pi * kTurnRadius_m;
 
@@ -30,8 +30,8 @@ double straight_between_turns(const Street& street) {
   return street.length_m + kCrossRoad - 2 * kTurnRadius_m;
 }
 
-/// The place after `travelled` metres of it; z is 0.
-Vec3d place_on_turning_way(const Street& street, double travelled) {
+/// Position after `travelled` metres; z is 0.
+Vec3d position_on_turning_path(const Street& street, double travelled) {
   const double r = kTurnRadius_m;
   const Vec3d right = {-0.5 * kCrossRoad + r, -kLaneCenter - r, 0};  // centers of the turns
   const double straight_m = straight_between_turns(street);
@@ -48,7 +48,7 @@ Vec3d place_on_turning_way(const Street& street, double travelled) {
   return left + Vec3d{r, travelled - kArc_m, 0};
 }
 
-/// The vehicle at a place of the road, along the slope to one ahead, level across.
+/// Pose of the vehicle on the road, pitched towards a position ahead, without roll.
 RigidTransform vehicle_between(Vec3d here, Vec3d further) {
   const Vec3d ahead = further - here;
   const double yaw = std::atan2(ahead.y, ahead.x);
@@ -56,21 +56,21 @@ RigidTransform vehicle_between(Vec3d here, Vec3d further) {
   return {rotation_from_yaw_pitch_roll(yaw, -climb, 0), here};
 }
 
-/// The vehicle on the road after `travelled` metres of a pass.
+/// Pose of the vehicle after `travelled` metres of a pass.
 RigidTransform world_from_vehicle(const Street& street, bool turns, int pass, double travelled) {
   const int direction = pass % 2 == 0 ? 1 : -1;
   const auto on_road = [](double x, double y) { return Vec3d{x, y, road_height(x, y)}; };
   if (turns) {
-    const auto place = [&](double at) {
-      const Vec3d forth = place_on_turning_way(street, at);
+    const auto position = [&](double at) {
+      const Vec3d forth = position_on_turning_path(street, at);
       return direction > 0 ? on_road(forth.x, forth.y)
                            : on_road(street.length_m - forth.x, -forth.y);
     };
-    return vehicle_between(place(travelled), place(travelled + 1));
+    return vehicle_between(position(travelled), position(travelled + 1));
   }
   const double x = direction > 0 ? kMargin_m + travelled : street.length_m - kMargin_m - travelled;
-  const auto place = [&](double at) { return on_road(at, vehicle_y(direction, pass, at)); };
-  return vehicle_between(place(x), place(x + direction * 1.0));
+  const auto position = [&](double at) { return on_road(at, vehicle_y(direction, pass, at)); };
+  return vehicle_between(position(x), position(x + direction * 1.0));
 }
 
 /// recorded_from_true of a pass.
@@ -90,7 +90,7 @@ RigidTransform pass_error(const Street& street, const StreetScanOptions& options
 }  // namespace
 
 RigidTransform vehicle_from_mapping_sensor() {
-  // A negative pitch turns +x up: the plane of the scan rises in front and meets the road behind.
+  // A negative pitch turns +x up: the scan plane rises at the front and meets the road at the rear.
   return {rotation_from_yaw_pitch_roll(0, -0.25 * std::numbers::pi, 0), {-0.4, 0, 2.0}};
 }
 
@@ -106,13 +106,13 @@ double drive_length(const Street& street, const StreetScanOptions& options) {
 std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOptions& options,
                                         int pass, std::size_t count,
                                         const RigidTransform& vehicle_from_sensor) {
-  const double way = drive_length(street, options);
-  const double start_s = pass * (way / options.speed_m_per_s + kTurnRound_s);
+  const double way_m = drive_length(street, options);
+  const double start_s = pass * (way_m / options.speed_m_per_s + kTurnRound_s);
   const RigidTransform recorded_from_true = pass_error(street, options, pass);
   std::vector<RecordedPose> poses;
   poses.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double travelled = way * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    const double travelled = way_m * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
     const double time_s = start_s + travelled / options.speed_m_per_s;
     const RigidTransform truth =
         world_from_vehicle(street, options.turns, pass, travelled) * vehicle_from_sensor;

@@ -1,35 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/street.h"
 
 namespace adasplats {
 namespace {
 
-/// A folder of this process that goes with the test.
 class WriteStreet : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("adasplats write street " + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path() / "street";
 };
 
 // Oracle: round trip through the readers.
-TEST_F(WriteStreet, FilesHoldWhatWasMade) {
+TEST_F(WriteStreet, FilesRoundTrip) {
   const Executor executor(2);
   ProgressSink progress;
   const StreetOptions street_options = {.seed = 5, .length_m = 0};
@@ -71,7 +63,7 @@ TEST_F(WriteStreet, FilesHoldWhatWasMade) {
   EXPECT_EQ(read_trajectory(folder_ / "true_driving_trajectory.csv").size(), report.driving_scans);
 }
 
-TEST_F(WriteStreet, RefusesAFolderThatHoldsAStreet) {
+TEST_F(WriteStreet, RejectsAFolderWithAStreet) {
   const Executor executor(2);
   ProgressSink progress;
   StreetScanOptions options;
@@ -79,25 +71,18 @@ TEST_F(WriteStreet, RefusesAFolderThatHoldsAStreet) {
   options.driving_spacing_m = 40;
   write_street(folder_, {.seed = 1, .length_m = 0}, options, executor, progress);
   const auto before = std::filesystem::file_size(folder_ / "mesh.ply");
-  try {
+  expect_error(ErrorKind::cannot_create, {}, [&] {
     write_street(folder_, {.seed = 2, .length_m = 0}, options, executor, progress);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::cannot_create) << error.what();
-  }
+  });
   EXPECT_EQ(std::filesystem::file_size(folder_ / "mesh.ply"), before);
 }
 
-TEST_F(WriteStreet, FolderThatCannotBeMadeIsAnError) {
+TEST_F(WriteStreet, RejectsAFolderThatCannotBeCreated) {
   std::ofstream(folder_) << "a file";
   const Executor executor(1);
   ProgressSink progress;
-  try {
-    write_street(folder_, {}, {.points = 2'000}, executor, progress);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::cannot_create) << error.what();
-  }
+  expect_error(ErrorKind::cannot_create, {},
+               [&] { write_street(folder_, {}, {.points = 2'000}, executor, progress); });
 }
 
 }  // namespace

@@ -53,32 +53,6 @@ void set_box(const WideBvh& bvh, WideChild& child) {
   }
 }
 
-/// Divides children into at most kWide groups of neighbours: splits the largest group at the middle
-/// of its longer side until there are enough.
-std::vector<std::span<WideChild>> groups_of(std::span<WideChild> children) {
-  std::vector<std::span<WideChild>> groups = {children};
-  while (groups.size() < kWide) {
-    const auto largest = std::ranges::max_element(groups, {}, &std::span<WideChild>::size);
-    const std::span<WideChild> group = *largest;
-    if (group.size() < 2) break;
-    Vec3f low = group[0].low + group[0].high, high = low;
-    for (const WideChild& child : group) {
-      low = min(low, child.low + child.high);
-      high = max(high, child.low + child.high);
-    }
-    const Vec3f size = high - low;
-    const int axis = size.x >= size.y ? 0 : 1;
-    const std::size_t half = group.size() / 2;
-    std::ranges::nth_element(group, group.begin() + static_cast<std::ptrdiff_t>(half), {},
-                             [axis](const WideChild& child) {
-                               return std::pair(child.low[axis] + child.high[axis], child.ref.bits);
-                             });
-    *largest = group.first(half);
-    groups.push_back(group.subspan(half));
-  }
-  return groups;
-}
-
 class WideTiledTracer final : public TiledTracer {
  public:
   explicit WideTiledTracer(std::span<const std::size_t> splats)
@@ -169,7 +143,9 @@ class WideTiledTracer final : public TiledTracer {
     const std::size_t at = next++;
     std::vector<WideChild> children;
     WideChild node{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}, {}};
-    for (const std::span<WideChild> group : groups_of(roots)) {
+    const auto center = [](const WideChild& child) { return child.low + child.high; };
+    const auto number = [](const WideChild& child) { return child.ref.bits; };
+    for (const std::span<WideChild> group : spatial_groups(roots, kWide, center, number)) {
       children.push_back(add_top(group, next));
       node.low = min(node.low, children.back().low);
       node.high = max(node.high, children.back().high);

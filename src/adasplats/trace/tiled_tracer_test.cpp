@@ -57,7 +57,7 @@ Field random_field() {
   return field;
 }
 
-/// Turns of a sensor in the middle, and rays from all over.
+/// Revolutions of a sensor in the middle, and rays from everywhere.
 std::vector<Ray> rays() {
   std::vector<Ray> rays;
   for (int i = 0; i < 4000; ++i) {
@@ -81,7 +81,7 @@ std::vector<Hit> hits_of(const Tracer& tracer, int depth) {
   return hits;
 }
 
-/// Of all disks, those of hidden tiles moved out of reach.
+/// Hits of all disks, with those of hidden tiles moved out of reach.
 std::vector<Hit> expected_hits(const Field& field, std::span<const std::size_t> shown, int depth) {
   std::vector<Disk> disks = field.disks;
   std::size_t first = 0;
@@ -98,7 +98,7 @@ void expect_same(const std::vector<Hit>& got, const std::vector<Hit>& expected) 
   EXPECT_EQ(std::memcmp(got.data(), expected.data(), got.size() * sizeof(Hit)), 0);
 }
 
-TEST(TiledTracer, HitsAreThoseOfAllSplatsThatAreShown) {
+TEST(TiledTracer, HitsEqualThoseOfAllShownSplats) {
   const Field field = random_field();
   const Executor executor(2);
   const std::unique_ptr<TiledTracer> tracer = make_tiled_tracer(field.counts);
@@ -121,7 +121,7 @@ TEST(TiledTracer, HitsAreThoseOfAllSplatsThatAreShown) {
   expect_same(hits_of(*tracer, 1), expected_hits(field, one, 1));
 }
 
-TEST(TiledTracer, TilesComeAndGo) {
+TEST(TiledTracer, TilesCanBeDroppedAndRebuilt) {
   const Field field = random_field();
   const Executor executor(2);
   const std::unique_ptr<TiledTracer> tracer = make_tiled_tracer(field.counts);

@@ -200,13 +200,13 @@ void expect_same_as_brute_force(const SceneView& scene, std::span<const Ray> ray
 
 class TracerInPlace : public testing::TestWithParam<Place> {};
 
-TEST_P(TracerInPlace, DisksAreHitAsByBruteForce) {
+TEST_P(TracerInPlace, DisksEqualBruteForce) {
   const auto disks = random_disks(GetParam(), 400);
   const auto rays = random_rays(GetParam(), disks, 100'000);
   expect_same_as_brute_force({disks, nullptr}, rays, 5, 0.1);
 }
 
-TEST_P(TracerInPlace, TrianglesAreHitAsByBruteForce) {
+TEST_P(TracerInPlace, TrianglesEqualBruteForce) {
   const auto mesh = random_mesh(GetParam(), 400);
   std::vector<Disk> targets;  // rays need something to aim at: disks in the triangles' planes
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -219,7 +219,7 @@ TEST_P(TracerInPlace, TrianglesAreHitAsByBruteForce) {
   expect_same_as_brute_force({{}, &mesh}, rays, 3, 0.1);
 }
 
-TEST_P(TracerInPlace, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
+TEST_P(TracerInPlace, DisksWithTrianglesEqualBruteForce) {
   const auto disks = random_disks(GetParam(), 200);
   const auto mesh = random_mesh(GetParam(), 200);
   const auto rays = random_rays(GetParam(), disks, 20'000);
@@ -234,8 +234,8 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerInPlace,
                                          Place{5, {0, 0, 0}, 0.05, 1e-3, 0.02},
                                          Place{6, {-900, 20, 3}, 100, 30, 1000}));
 
-/// Rays of rows side by side. With `travel_m` they start along a line, as those of a sensor that
-/// moves do; `pitch_rad` apart in azimuth.
+/// Rays of adjacent rows. With `travel_m` they start along a line, as from a moving
+/// sensor; `pitch_rad` apart in azimuth.
 std::vector<Ray> laser_rows(int rows, int columns, double pitch_rad, double travel_m) {
   std::vector<Ray> rays;
   for (int row = 0; row < rows; ++row) {
@@ -256,16 +256,15 @@ std::vector<Ray> laser_rows(int rows, int columns, double pitch_rad, double trav
 
 // A laser row has 4 rays a centimetre apart at the target: packets take other paths than for
 // rays in all directions.
-TEST(Tracer, CoherentRowsAreHitAsByBruteForce) {
+TEST(Tracer, CoherentRowsEqualBruteForce) {
   const Place place = {7, {0, 0, 0}, 30, 0.2, 4};
   const auto disks = random_disks(place, 600);
   const auto rays = laser_rows(16, 2250, 6.283185307179586 / 2250, 0);
   expect_same_as_brute_force({disks, nullptr}, rays, 2, 0.2);
 }
 
-// Rows from a moving sensor, packets as wide as can be and wider, and last packets that are not
-// full.
-TEST(Tracer, RowsOfEveryWidthAreHitAsByBruteForce) {
+// Rows from a moving sensor, packets up to the maximum width and beyond, and partial last packets.
+TEST(Tracer, RowsOfEveryWidthEqualBruteForce) {
   const Place place = {9, {0, 0, 0}, 20, 2, 8};
   const auto disks = random_disks(place, 300);
   const auto mesh = random_mesh(place, 100);
@@ -275,7 +274,7 @@ TEST(Tracer, RowsOfEveryWidthAreHitAsByBruteForce) {
 }
 
 // Rays of a packet that cannot be cast, have other ranges or directions of another length.
-TEST(Tracer, OddRaysInAPacketAreHitAsByBruteForce) {
+TEST(Tracer, OddRaysInAPacketEqualBruteForce) {
   const Place place = {10, {0, 0, 0}, 30, 0.5, 6};
   const auto disks = random_disks(place, 200);
   std::vector<Ray> rays = laser_rows(16, 500, 0.003, 0);
@@ -328,8 +327,8 @@ std::vector<Arrangement> arrangements() {
   return result;
 }
 
-// Oracle: brute force, for single rays, packets and lists. (Embree leaves out what is beyond 1e18.)
-TEST(Tracer, WideTreesOfOddScenesAreHitAsByBruteForce) {
+// Oracle: brute force, for single rays, packets and lists. (Embree omits primitives beyond 1e18.)
+TEST(Tracer, WideTreesOfOddScenesEqualBruteForce) {
   const Executor executor(2);
   for (const Arrangement& scene : arrangements()) {
     SCOPED_TRACE(scene.name);
@@ -441,7 +440,7 @@ TEST_P(AnyTracer, EqualDistancesGoToTheSmallerIndex) {
   for (std::uint32_t i = 0; i < hits.size(); ++i) EXPECT_EQ(hits[i], (Hit{5.0F, i % 52}));
 }
 
-TEST_P(AnyTracer, TrianglesComeBehindTheDisksInTheIndex) {
+TEST_P(AnyTracer, TriangleIndicesFollowDiskIndices) {
   const std::vector<Disk> disks = {{{9, 0, 0}, 1, {1, 0, 0}}, {{8, 0, 0}, 1, {1, 0, 0}}};
   TriangleMesh mesh;
   mesh.vertices = {{5, -2, -2}, {5, 2, -2}, {5, 0, 2}, {4, -2, -2}, {4, 2, -2}, {4, 0, 2}};
@@ -463,7 +462,7 @@ TEST_P(AnyTracer, RangesAreOpenBelowAndClosedAbove) {
   EXPECT_EQ(nearest_hits({disks, nullptr}, rays, 1), expected);
 }
 
-TEST_P(AnyTracer, AWrongNumberOfHitsIsABug) {
+TEST_P(AnyTracer, AWrongNumberOfHitsThrowsLogicError) {
   const std::vector<Ray> rays(3);
   std::vector<Hit> hits(4);
   const auto tracer = make({});
@@ -559,8 +558,8 @@ TEST(WideBvh, HoldsEveryPrimitiveOnceWithinItsBoxes) {
   EXPECT_EQ(std::ranges::count(seen, 1), static_cast<std::ptrdiff_t>(seen.size()));
 }
 
-// The choice: meshes stay with Embree, which is as fast there on any machine.
-TEST(Tracer, TheCpuTracerDependsOnTheScene) {
+// Meshes use Embree, which is as fast for them on any machine.
+TEST(Tracer, CpuTracerDependsOnTheScene) {
   const Executor executor(1);
   const std::vector<Disk> disks = {{{2, 0, 0}, 1, {1, 0, 0}}};
   const TriangleMesh mesh = random_mesh({15, {0, 0, 0}, 30, 0.2, 4}, 10);
@@ -584,9 +583,9 @@ TEST(Tracer, TwoScenesDoNotMix) {
   EXPECT_EQ(hits[0].t, 7.0F);
 }
 
-// Embree's scene was built in a loop of ours. Interrupted in it, that took Embree's own tasks with
-// it: a crash, or a wait without end, once in a hundred times.
-TEST(Tracer, InterruptionsReachNoBuildThatHasBegun) {
+// Embree builds its scene within one of our loops. An interruption of that loop also cancelled
+// Embree's tasks, which caused a crash or a deadlock in one of a hundred runs.
+TEST(Tracer, InterruptionsDoNotReachARunningBuild) {
   const TriangleMesh mesh = random_mesh({15, {0, 0, 0}, 30, 0.2, 4}, 20'000);
   for (int k = 0; k < 100; ++k) {
     int calls = 0;

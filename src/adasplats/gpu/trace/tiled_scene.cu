@@ -14,6 +14,7 @@
 #include "adasplats/gpu/trace/scene_trees.h"
 #include "adasplats/gpu/trace/tiled_scene.h"
 #include "adasplats/gpu/trace/wide_nodes.cuh"
+#include "adasplats/trace/tiled_tracer.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -212,7 +213,9 @@ class CudaTiledScene final : public TiledScene {
     boxes.emplace_back();
     Box box = boxes[tiles.front()];
     Family family;
-    for (const std::span<std::uint32_t> group : groups_of(tiles, boxes)) {
+    const auto center = [&](std::uint32_t tile) { return boxes[tile].low + boxes[tile].high; };
+    const auto number = [](std::uint32_t tile) { return tile; };
+    for (const std::span<std::uint32_t> group : spatial_groups(tiles, kWidth, center, number)) {
       const std::uint32_t child =
           group.size() == 1 ? group.front() : add_top(group, boxes, tile_count, top);
       family.nodes[family.size++] = child;
@@ -221,34 +224,6 @@ class CudaTiledScene final : public TiledScene {
     top[own].family = family;
     boxes[tile_count + own] = box;
     return tile_count + own;
-  }
-
-  /// Up to 8 groups of neighbours: the largest is cut in the middle of its longer side until there
-  /// are enough.
-  static std::vector<std::span<std::uint32_t>> groups_of(std::span<std::uint32_t> tiles,
-                                                         const std::vector<Box>& boxes) {
-    std::vector<std::span<std::uint32_t>> groups = {tiles};
-    while (groups.size() < kWidth) {
-      const auto largest = std::ranges::max_element(groups, {}, &std::span<std::uint32_t>::size);
-      const std::span<std::uint32_t> group = *largest;
-      if (group.size() < 2) break;
-      Box middles = {boxes[group[0]].low + boxes[group[0]].high,
-                     boxes[group[0]].low + boxes[group[0]].high};
-      for (const std::uint32_t tile : group) {
-        const Vec3f middle = boxes[tile].low + boxes[tile].high;
-        middles = united(middles, {middle, middle});
-      }
-      const Vec3f size = middles.high - middles.low;
-      const int axis = size.x >= size.y ? 0 : 1;
-      const std::size_t half = group.size() / 2;
-      std::ranges::nth_element(
-          group, group.begin() + static_cast<std::ptrdiff_t>(half), {}, [&](std::uint32_t tile) {
-            return std::pair(boxes[tile].low[axis] + boxes[tile].high[axis], tile);
-          });
-      *largest = group.first(half);
-      groups.push_back(group.subspan(half));
-    }
-    return groups;
   }
 
   Stream building_, showing_;

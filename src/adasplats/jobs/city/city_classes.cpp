@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/city/square_classes.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"

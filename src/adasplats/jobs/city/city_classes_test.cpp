@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/city/square_classes.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/temporary_folder_test.h"

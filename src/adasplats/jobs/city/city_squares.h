@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "adasplats/city/square_classes.h"
+#include "adasplats/city/tile_points.h"
 #include "adasplats/jobs/city/point_layer.h"
 #include "adasplats/jobs/segment/point_classes.h"
 

@@ -12,8 +12,8 @@
 #include "adasplats/segment/network/network_text_test.h"
 #include "adasplats/segment/network/run_network.h"
 
-// Broken network files, the same in each run: nothing but adasplats::Error may escape, and what is
-// read can be run. Worth most under the sanitizers.
+// Broken network files, the same in each run: they may only throw adasplats::Error, and networks
+// that load must run. Most useful under the sanitizers.
 namespace adasplats {
 namespace {
 
@@ -28,7 +28,7 @@ std::vector<NetworkText> seeds() {
   return {pole_network(), pole_network_of_8_bits(), network_of_all_layers()};
 }
 
-/// Every other time the whole file is broken, else its header or its weights.
+/// Breaks the entire file in half of the rounds, else its header or its weights.
 std::string broken(const NetworkText& seed, const NetworkText& other, std::size_t round,
                    Mutator& mutator) {
   const std::string head = seed.header.dump();
@@ -39,7 +39,7 @@ std::string broken(const NetworkText& seed, const NetworkText& other, std::size_
   }
 }
 
-/// Whether the file was read; what was read is run on a few points.
+/// Whether the file loads; runs the network on a few points if it does.
 bool is_read_and_runs(const std::string& content) {
   Network network;
   try {
@@ -62,7 +62,7 @@ bool is_read_and_runs(const std::string& content) {
   return true;
 }
 
-TEST(NetworkFuzz, TheSeedsAreValid) {
+TEST(NetworkFuzz, SeedsAreValid) {
   for (const NetworkText& seed : seeds()) EXPECT_TRUE(is_read_and_runs(seed.text()));
 }
 
@@ -77,7 +77,7 @@ TEST(NetworkFuzz, BrokenNetworks) {
       ASSERT_NO_THROW(was_read += is_read_and_runs(content) ? 1 : 0)
           << "seed " << k << ", round " << round;
     }
-  // Breaking every file beyond recognition would prove little, breaking none nothing.
+  // The mutations must leave some files readable and break others.
   EXPECT_GT(was_read, kRounds * all.size() / 20);
   EXPECT_LT(was_read, kRounds * all.size() * 19 / 20);
 }

@@ -113,13 +113,13 @@ TEST(Network, WidthsAreBounded) {
   expect_error(ErrorKind::data, {"do not match"}, [&] { parse_network(wide.text(), "n"); });
 }
 
-TEST(Network, TheDefaultOneIsSound) {
+TEST(Network, DefaultNetworkIsValid) {
   const Network network = default_network();
   EXPECT_EQ(network.classes.size(), 19U);
   EXPECT_FALSE(network.card.empty());
 }
 
-TEST(Network, ConvolutionsAreThoseOfTheirDefinition) {
+TEST(Network, ConvolutionsMatchTheirDefinition) {
   if (!has_products()) GTEST_SKIP() << "built without OpenBLAS";
   NetworkText text;
   text.header["features"] = {"one"};

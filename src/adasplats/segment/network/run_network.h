@@ -15,11 +15,11 @@
 
 namespace adasplats {
 
-/// Weight of a neighbour at the offset `way` for a kernel point (in cells; KPConv, equation 3); no
+/// Weight of a neighbour at `offset` for a kernel point (in cells; KPConv, equation 3); no
 /// influence unless it is positive.
-ADASPLATS_HD inline float kernel_influence(Vec3f way, Vec3f kernel_point, float cell_m,
+ADASPLATS_HD inline float kernel_influence(Vec3f offset, Vec3f kernel_point, float cell_m,
                                            float sigma_m) {
-  const Vec3f off = way - cell_m * kernel_point;
+  const Vec3f off = offset - cell_m * kernel_point;
   return 1 - std::sqrt(dot(off, off)) / sigma_m;
 }
 

@@ -10,7 +10,7 @@ namespace adasplats {
 namespace {
 
 constexpr float kColumn_m = 1;
-constexpr int kReach = 4;  // columns each way
+constexpr int kReach = 4;  // columns in each direction
 
 /// One number per column of a rectangle.
 struct Columns {

@@ -88,7 +88,7 @@ TEST(Pyramid, EveryPointHasACoarserOneUpToTheTop) {
   EXPECT_TRUE(levels.back().coarser.empty());
 }
 
-TEST(Pyramid, OfNoPointsAndOfOne) {
+TEST(Pyramid, NoPointsAndOnePoint) {
   const Executor executor(1);
   EXPECT_TRUE(means_by_cell({}, 1, executor).means.empty());
   const std::vector<PyramidLevel> empty = make_pyramid({}, {}, executor);

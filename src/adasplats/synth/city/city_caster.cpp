@@ -12,17 +12,16 @@ namespace adasplats {
 namespace {
 
 constexpr int kSectors = 360;
-constexpr double kFullCircle = 2 * std::numbers::pi;
-constexpr double kFiringOrigin_m = 0.3;  // beams leave this near to the sensor's origin
+constexpr double kFiringOrigin_m = 0.3;  // maximum distance of a beam's origin from the sensor's
 
 int sector_of(double azimuth) {
-  const double share = azimuth / kFullCircle + 0.5;
+  const double share = azimuth / kFullTurn + 0.5;
   return std::clamp(static_cast<int>(share * kSectors), 0, kSectors - 1);
 }
 
-/// Whether a ray is in a box somewhere between its t_min and t_max; `inverse` is inverse_of() its
+/// Whether a ray is inside a box anywhere between t_min and t_max; `inverse` is inverse_of() its
 /// direction.
-bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
+bool hits_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   float from = ray.t_min;
   float to = ray.t_max;
   const auto axis = [&](float origin, float inverse_direction, float a, float b) {
@@ -37,12 +36,12 @@ bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   return from <= to;
 }
 
-/// The nearest hits so far, and of what.
+/// The nearest hits so far and their owners.
 struct Nearest {
   std::vector<Ray> rays;        ///< t_max is the nearest hit
   std::vector<Vec3f> inverses;  ///< inverse_of() their directions
   std::vector<Hit> hits;
-  std::vector<std::uint16_t> owner;  ///< of the hit: a piece, or pieces + a mover
+  std::vector<std::uint16_t> owner;  ///< section index, or the number of sections + mover index
 };
 
 /// Rays that are cast together, compacted.
@@ -68,36 +67,36 @@ struct Batch {
   }
 };
 
-/// Of every component; finite, so that no product with a distance is NaN.
+/// Inverse of every component; finite, so that a product with a distance is never NaN.
 Vec3f inverse_of(Vec3f direction) {
   const auto inverse = [](float c) { return std::fabs(c) < 1e-30F ? 1e30F : 1.0F / c; };
   return {inverse(direction.x), inverse(direction.y), inverse(direction.z)};
 }
 
-/// Pieces from near to far: what a near one hides need not be cast against a far one.
+/// Casts from near to far: rays that hit a near section are not cast against farther ones.
 void cast_pieces(const CityScene& scene, Vec3f sensor, Nearest& nearest, Batch& batch,
                  const Executor& executor) {
   std::vector<std::pair<float, std::size_t>> order;
-  for (std::size_t p = 0; p < scene.pieces.size(); ++p) {
-    const CityPiece& piece = *scene.pieces[p];
-    const Vec3f inside = min(max(sensor, piece.low), piece.high);
+  for (std::size_t p = 0; p < scene.sections.size(); ++p) {
+    const CitySection& section = *scene.sections[p];
+    const Vec3f inside = min(max(sensor, section.low), section.high);
     order.emplace_back(length(inside - sensor), p);
   }
   std::ranges::sort(order);
-  std::vector<std::uint32_t> reaching(nearest.rays.size());  // as far as the next piece
+  std::vector<std::uint32_t> reaching(nearest.rays.size());  // rays that reach the next section
   std::iota(reaching.begin(), reaching.end(), 0U);
   for (const auto& [distance, p] : order) {
-    const CityPiece& piece = *scene.pieces[p];
+    const CitySection& section = *scene.sections[p];
     batch.clear();
     const float nearer = distance - static_cast<float>(kFiringOrigin_m);
     std::erase_if(reaching, [&](std::uint32_t i) { return nearest.rays[i].t_max < nearer; });
     for (const std::uint32_t i : reaching) {
       const Ray& ray = nearest.rays[i];
-      if (!meets_box(ray, nearest.inverses[i], piece.low, piece.high)) continue;
+      if (!hits_box(ray, nearest.inverses[i], section.low, section.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
-    if (!batch.rays.empty()) batch.cast(*piece.tracer, p, nearest, executor);
+    if (!batch.rays.empty()) batch.cast(*section.tracer, p, nearest, executor);
   }
 }
 
@@ -114,8 +113,7 @@ void cast_movers(const CityScene& scene, const FiringSectors& sectors,
     const PlacedMover& mover = scene.movers[m];
     const MoverModel& model = scene.models->model(mover.model);
     const RigidTransform mover_from_world = mover.world_from_mover.inverse();
-    if (meets_vehicle(model.low, model.high, mover_from_world * world_from_sensor.translation))
-      continue;
+    if (collides(model.low, model.high, mover_from_world * world_from_sensor.translation)) continue;
     const Vec3d middle = 0.5 * vec_cast<double>(model.low + model.high);
     const double radius = 0.5 * length(vec_cast<double>(model.high - model.low));
     const Vec3d center = sensor_from_world * (mover.world_from_mover * middle);
@@ -123,11 +121,12 @@ void cast_movers(const CityScene& scene, const FiringSectors& sectors,
     batch.clear();
     for (const std::uint32_t i : sectors.towards(center, radius)) {
       const Ray ray = ray_in(mover_from_world, nearest.rays[i]);
-      if (!meets_box(ray, inverse_of(ray.direction), model.low, model.high)) continue;
+      if (!hits_box(ray, inverse_of(ray.direction), model.low, model.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
-    if (!batch.rays.empty()) batch.cast(*model.tracer, scene.pieces.size() + m, nearest, executor);
+    if (!batch.rays.empty())
+      batch.cast(*model.tracer, scene.sections.size() + m, nearest, executor);
   }
 }
 
@@ -145,11 +144,11 @@ StreetEcho echo_of(const CityScene& scene, const Nearest& nearest, std::size_t i
     echo.intensity =
         street_intensity(built.mesh.triangle(hit.primitive), echo.reflectance, ray, hit.t, random);
   };
-  if (owner < scene.pieces.size()) {
-    const BuiltMesh& built = scene.pieces[owner]->built;
+  if (owner < scene.sections.size()) {
+    const BuiltMesh& built = scene.sections[owner]->built;
     fill(built, nearest.rays[i], built.instances[hit.primitive]);
   } else {
-    const PlacedMover& mover = scene.movers[owner - scene.pieces.size()];
+    const PlacedMover& mover = scene.movers[owner - scene.sections.size()];
     fill(scene.models->model(mover.model).built,
          ray_in(mover.world_from_mover.inverse(), nearest.rays[i]), mover.instance);
   }
@@ -170,9 +169,9 @@ std::vector<std::uint32_t> FiringSectors::towards(Vec3d center, double radius) c
   const double half = level > reach ? std::asin(reach / level) : std::numbers::pi;
   std::vector<std::uint32_t> indices;
   const int first =
-      static_cast<int>(std::floor((azimuth - half) / kFullCircle * kSectors)) + kSectors / 2;
+      static_cast<int>(std::floor((azimuth - half) / kFullTurn * kSectors)) + kSectors / 2;
   const int last =
-      static_cast<int>(std::floor((azimuth + half) / kFullCircle * kSectors)) + kSectors / 2;
+      static_cast<int>(std::floor((azimuth + half) / kFullTurn * kSectors)) + kSectors / 2;
   for (int k = first; k <= std::min(last, first + kSectors - 1); ++k) {
     const auto& sector = sectors_[((k % kSectors) + kSectors) % kSectors];
     indices.insert(indices.end(), sector.begin(), sector.end());

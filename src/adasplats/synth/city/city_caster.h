@@ -8,35 +8,35 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/synth/city/city_pieces.h"
+#include "adasplats/synth/city/city_sections.h"
 #include "adasplats/synth/city/city_traffic.h"
-#include "adasplats/synth/street_caster.h"
+#include "adasplats/synth/street_scan.h"
 
-// Inside synth/city/: rays of one revolution against the pieces and the movers around.
+// Private to synth/city/: casts the rays of one revolution against nearby sections and movers.
 
 namespace adasplats {
 
-/// Which firings of a revolution point where: by azimuth, so that what covers a narrow angle is
-/// cast against few rays.
+/// Firings of a revolution by azimuth, so that an object that covers a narrow angle is cast against
+/// few rays.
 class FiringSectors {
  public:
   explicit FiringSectors(std::span<const Firing> firings);
-  /// Indices of all firings that could meet a sphere, ascending; center in the sensor's frame.
+  /// Ascending indices of all firings that could hit a sphere; `center` is in the sensor's frame.
   std::vector<std::uint32_t> towards(Vec3d center, double radius) const;
 
  private:
-  std::vector<std::vector<std::uint32_t>> sectors_;  ///< of equal angles from -pi on
+  std::vector<std::vector<std::uint32_t>> sectors_;  ///< equal angles, from -pi
 };
 
-/// What one revolution is cast against.
+/// Sections and movers for one revolution.
 struct CityScene {
-  std::vector<const CityPiece*> pieces;
+  std::vector<const CitySection*> sections;
   const MoverModels* models = nullptr;
   std::vector<PlacedMover> movers;
 };
 
 /// The echoes of one revolution in the order of `firings`. Noise is drawn by (seed, scan, ray).
-/// Movers that the scanning vehicle would bump into are left out.
+/// Movers that would collide with the scanning vehicle are omitted.
 std::vector<StreetEcho> cast_city(const CityScene& scene, const LidarModel& sensor,
                                   std::span<const Firing> firings, const FiringSectors& sectors,
                                   const TimedPose& pose, std::uint64_t seed, std::uint64_t scan,

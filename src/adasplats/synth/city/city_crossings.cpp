@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "adasplats/synth/city/city_parts.h"
+#include "adasplats/synth/city/city_grid.h"
 
 namespace adasplats {
 namespace {
@@ -10,12 +10,12 @@ namespace {
 constexpr double kZebra_m = 3.2, kStripe_m = 0.5;
 constexpr double kZebraShare = 0.6, kLightsShare = 0.55;
 
-/// The street to the north at one end of an east piece, on one side of it.
-CityPieceId crossing_street(const CityPieceId& id, int side, bool at_end) {
+/// The north street at one end of an east section, on one side of it.
+CitySectionId crossing_street(const CitySectionId& id, int side, bool at_end) {
   return {CityAxis::north, at_end ? id.block + 1 : id.block, side > 0 ? id.line : id.line - 1};
 }
 
-/// Patches by their distance from the middle of the crossing, whichever end that is.
+/// Adds patches by their distance from the center of the crossing, at either end.
 class CrossingPatches {
  public:
   CrossingPatches(std::vector<Patch>& patches, int side, bool at_end, double length_m)
@@ -42,11 +42,11 @@ class CrossingPatches {
 
 }  // namespace
 
-CityCrossing add_crossing(const CityGrid& grid, const CityPieceId& id, const WorldPlan& profile,
+CityCrossing add_crossing(const CityGrid& grid, const CitySectionId& id, const WorldPlan& profile,
                           int side, bool at_end, std::vector<Patch>& patches) {
-  const CityPieceId north_id = crossing_street(id, side, at_end);
+  const CitySectionId north_id = crossing_street(id, side, at_end);
   const WorldPlan north = grid.plan(north_id, true);
-  const int towards = at_end ? 1 : -1;  // the side of the north street that this piece is on
+  const int towards = at_end ? 1 : -1;  // side of the north street on which this section is
   const double north_road = north.road_end(towards);
   const double north_edge = north.property_line(towards);
   const double road = profile.road_end(side);
@@ -60,7 +60,7 @@ CityCrossing add_crossing(const CityGrid& grid, const CityPieceId& id, const Wor
   }
   add.add(0, north_road, 0, edge, Ground::road, 0);
   add.add(north_road, north_edge, road, edge, Ground::sidewalk, profile.side(side).kerb);
-  // Both pieces and both sides of an arm paint the same.
+  // Draws by arm, so that both sections and both sides of an arm agree on the markings.
   const int node = at_end ? id.block + 1 : id.block;
   const std::int64_t arm = 4 * static_cast<std::int64_t>(id.line) + (at_end ? 0 : 1);
   if (random_of(grid, CityPurpose::crossing, node, arm).uniform() < kZebraShare)
@@ -73,7 +73,7 @@ CityCrossing add_crossing(const CityGrid& grid, const CityPieceId& id, const Wor
   return {north_edge};
 }
 
-void add_crossing_furniture(const CityGrid& grid, const CityPieceId& id, const WorldPlan& plan,
+void add_crossing_furniture(const CityGrid& grid, const CitySectionId& id, const WorldPlan& plan,
                             MeshBuilder& builder) {
   if (id.axis != CityAxis::east) return;
   constexpr Material kHead = {label::kOtherObject, 0.25F};
@@ -87,8 +87,8 @@ void add_crossing_furniture(const CityGrid& grid, const CityPieceId& id, const W
       const WorldPlan north = grid.plan(crossing_street(id, side, at_end), true);
       const double off = north.property_line(at_end ? 1 : -1) - 0.4;
       const double s = at_end ? plan.options.length_m - off : off;
-      builder.stand_at(plan.stand(s, side, plan.road_end(side) + 0.5));
-      // Those at the right side of their road look at who comes.
+      builder.set_frame(plan.pose_at(s, side, plan.road_end(side) + 0.5));
+      // Signs and lights on the right side of their road face oncoming drivers.
       const double tall = lights && over_road ? 5.8 : lights ? 3.4 : 2.6;
       builder.tube({0, 0, -0.4}, {0, 0, tall}, 0.07, 0.06, 10, steel);
       if (!lights) {
@@ -102,7 +102,7 @@ void add_crossing_furniture(const CityGrid& grid, const CityPieceId& id, const W
       builder.box({0.05, -3, tall - 0.9}, {0.27, -2.7, tall}, kHead);
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace adasplats

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kSample_m = 0.25;
 constexpr double kRightRadius_m = 4, kLeftRadius_m = 8;
-constexpr double kChange_m = 12;        // before and after a crossing, from lane to lane
-constexpr double kBlocksOfDrive = 0.3;  // blocks of the square for each that is driven along
-constexpr double kBlock_m = 160;        // on average
-constexpr double kStraightOn = 3;       // as likely as a turn
+constexpr double kChange_m = 12;        // length of a lane change, before and after a crossing
+constexpr double kBlocksOfDrive = 0.3;  // side of the square of blocks per driven block
+constexpr double kBlock_m = 160;        // mean length
+constexpr double kStraightOn = 3;       // weight of going straight on, relative to a turn
 
 /// East, north, west, south.
 constexpr std::array<std::pair<int, int>, 4> kHeadings = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
@@ -26,7 +26,7 @@ struct Node {
   int i = 0, j = 0;
 };
 
-/// One block of a drive: from a node in a direction.
+/// One block of a drive: from a node in one direction.
 struct Leg {
   Node from;
   int heading = 0;
@@ -36,31 +36,31 @@ struct Leg {
   }
   bool along_east() const { return heading % 2 == 0; }
   bool forth() const { return heading < 2; }
-  CityPieceId street() const {
+  CitySectionId street() const {
     const Node end = to();
     if (along_east()) return {CityAxis::east, from.j, std::min(from.i, end.i)};
     return {CityAxis::north, from.i, std::min(from.j, end.j)};
   }
 };
 
-/// Nodes 0 to `side` of both axes, at least `legs` legs.
+/// A random walk over nodes 0 to `side` of both axes with at least `legs` legs.
 std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
   const int side = std::max(
       2, static_cast<int>(std::ceil(std::sqrt(kBlocksOfDrive * static_cast<double>(legs)))));
   Random random = random_of(grid, CityPurpose::drive, 0, 0);
-  std::map<CityPieceId, int> passes;
-  std::vector<Leg> way = {{{side / 2, side / 2}, 0}};
-  while (way.size() < legs) {
-    ++passes[way.back().street()];
-    const Node here = way.back().to();
+  std::map<CitySectionId, int> passes;
+  std::vector<Leg> walk = {{{side / 2, side / 2}, 0}};
+  while (walk.size() < legs) {
+    ++passes[walk.back().street()];
+    const Node here = walk.back().to();
     std::array<double, 4> weights{};
     double all = 0;
     for (int turn : {0, 1, 3}) {
-      const Leg next = {here, (way.back().heading + turn) % 4};
+      const Leg next = {here, (walk.back().heading + turn) % 4};
       const Node end = next.to();
       if (end.i < 0 || end.j < 0 || end.i > side || end.j > side) continue;
-      const auto known = passes.find(next.street());
-      const double times = known == passes.end() ? 0 : known->second;
+      const auto found = passes.find(next.street());
+      const double times = found == passes.end() ? 0 : found->second;
       all += weights[next.heading] = (turn == 0 ? kStraightOn : 1) / (1 + 3 * times);
     }
     double draw = random.uniform() * all;
@@ -71,18 +71,18 @@ std::vector<Leg> draw_legs(const CityGrid& grid, std::size_t legs) {
       draw -= weights[k];
       if (draw < 0) break;
     }
-    way.push_back({here, heading});
+    walk.push_back({here, heading});
   }
-  return way;
+  return walk;
 }
 
-/// The line that a leg is driven on: u or v of the middle of its right outermost lane.
+/// The driven line of a leg: u or v of the center of its rightmost lane.
 class LegLine {
  public:
   LegLine(const CityGrid& grid, const Leg& leg) : leg_(leg) {
     const WorldStyle style = grid.style(leg.street());
     const double off = style.median + (style.lanes - 0.5) * style.lane_width;
-    // Right of east is south, right of north is east.
+    // Right of east is south; right of north is east.
     const double sign = leg.along_east() == leg.forth() ? -1 : 1;
     const double axis = leg.along_east() ? grid.node(CityAxis::north, leg.from.j)
                                          : grid.node(CityAxis::east, leg.from.i);
@@ -109,10 +109,10 @@ class LegLine {
   double across_ = 0, begin_ = 0, end_ = 0;
 };
 
-/// How one leg goes over into the next.
+/// The transition from one leg to the next.
 struct Joint {
   bool turns = false;
-  double end = 0, begin = 0;  ///< along this leg, where it ends; along the next, where it begins
+  double end = 0, begin = 0;  ///< end position along this leg, begin position along the next
   Vec3d center;               ///< of the turn
   double radius = 0, from_rad = 0, sweep_rad = 0;
 };
@@ -121,7 +121,7 @@ Joint joint_of(const LegLine& one, const LegLine& next, int turn) {
   if (turn == 0) return {.end = one.end(), .begin = next.begin()};
   const double radius = turn == 1 ? kLeftRadius_m : kRightRadius_m;
   Joint joint = {.turns = true, .radius = radius};
-  // The lines meet at the one's along = the next's across.
+  // The lines meet where `along` of one equals `across` of the other.
   joint.end = next.across() - one.direction() * radius;
   joint.begin = one.across() + next.direction() * radius;
   const Vec3d meet = one.at(next.across(), one.across());
@@ -140,7 +140,7 @@ CityDrive::CityDrive(const CityGrid& grid, double length_m)
   const std::vector<Leg> legs = draw_legs(grid, blocks);
   LegLine line(grid, legs[0]);
   double begin = line.begin() + line.direction() * 30;
-  double before = line.across();  // of the lane on the leg before
+  double before = line.across();  // of the lane on the previous leg
   for (std::size_t k = 0; k + 1 < legs.size(); ++k) {
     const LegLine next(grid, legs[k + 1]);
     const Joint joint = joint_of(line, next, (legs[k + 1].heading - legs[k].heading + 4) % 4);
@@ -155,8 +155,8 @@ CityDrive::CityDrive(const CityGrid& grid, double length_m)
       const double left = direction * (line.end() - s);
       double across = mix(before, line.across(), past);
       if (left < kChange_m) across = mix(line.across(), after, -left);
-      const Vec3d place = line.at(s, across);
-      append(grid.land(), place.x, place.y);
+      const Vec3d position = line.at(s, across);
+      append(grid.land(), position.x, position.y);
     }
     if (joint.turns) {
       const int steps =
@@ -183,7 +183,7 @@ void CityDrive::append(const CityLand& land, double u, double v) {
   samples_.push_back(sample);
 }
 
-Vec3d CityDrive::grid_place(double travelled_m) const {
+Vec3d CityDrive::grid_position(double travelled_m) const {
   const auto next = std::ranges::upper_bound(samples_, travelled_m, {}, &Sample::travelled_m);
   if (next == samples_.begin()) return {samples_.front().u, samples_.front().v, 0};
   if (next == samples_.end()) return {samples_.back().u, samples_.back().v, 0};
@@ -192,18 +192,18 @@ Vec3d CityDrive::grid_place(double travelled_m) const {
   return {one.u + share * (next->u - one.u), one.v + share * (next->v - one.v), 0};
 }
 
-Vec3d CityDrive::world_place(double travelled_m) const {
-  const Vec3d place = grid_place(travelled_m);
-  return land_.at(place.x, place.y);
+Vec3d CityDrive::world_position(double travelled_m) const {
+  const Vec3d position = grid_position(travelled_m);
+  return land_.at(position.x, position.y);
 }
 
 TimedPose CityDrive::at(double travelled_m) const {
   const double here = std::clamp(travelled_m, 0.0, length_m_);
-  const Vec3d ahead = world_place(here + 0.5) - world_place(here - 0.5);
+  const Vec3d ahead = world_position(here + 0.5) - world_position(here - 0.5);
   const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
   return {
       here / kCityDriveSpeed_m_per_s,
-      {rotation_from_yaw_pitch_roll(std::atan2(ahead.y, ahead.x), pitch, 0), world_place(here)}};
+      {rotation_from_yaw_pitch_roll(std::atan2(ahead.y, ahead.x), pitch, 0), world_position(here)}};
 }
 
 }  // namespace adasplats

@@ -7,26 +7,25 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/synth/city/city_grid.h"
 
-// Inside synth/city/: where the vehicle drives.
+// Private to synth/city/: the path of the vehicle.
 
 namespace adasplats {
 
 inline constexpr double kCityDriveSpeed_m_per_s = 8;
 
-/// A drive on the right lanes of the streets of a square of blocks, as large as suits its length:
-/// at every crossing it goes on or turns, rather into streets that it knows less, and comes through
-/// some of them again. The vehicle's frame has its origin on the road.
+/// A drive in the right lanes of a square of blocks with a size that suits the drive's length. At
+/// every crossing it goes straight on or turns, preferring streets with fewer visits, and it drives
+/// some streets again. The origin of the vehicle's frame is on the road.
 class CityDrive {
  public:
-  /// `length_m` at least 1.
+  /// `length_m`: at least 1.
   CityDrive(const CityGrid& grid, double length_m);
 
   double length_m() const { return length_m_; }
-  /// Where the vehicle is after so many metres, and when; before the beginning and after the end,
-  /// there.
+  /// Pose and time after a driven distance; clamped to the ends of the drive.
   TimedPose at(double travelled_m) const;
-  /// The same on the grid's plane: x is u, y is v.
-  Vec3d grid_place(double travelled_m) const;
+  /// The same position on the grid's plane: x is u, y is v.
+  Vec3d grid_position(double travelled_m) const;
 
  private:
   struct Sample {
@@ -34,7 +33,7 @@ class CityDrive {
     double travelled_m = 0;
   };
 
-  Vec3d world_place(double travelled_m) const;
+  Vec3d world_position(double travelled_m) const;
   void append(const CityLand& land, double u, double v);
 
   CityLand land_;

@@ -4,24 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "adasplats/synth/city/city_parts.h"
+#include <numbers>
 
 namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kCityStream = 0x63697479;
-constexpr double kPitchEast_m = 150, kPitchNorth_m = 170;  // between streets, on average
-constexpr double kPitchVariety = 0.12;                     // of a node either way, of the pitch
-constexpr int kRun = 3;           // blocks that a street keeps its style for
-constexpr double kGoOver_m = 12;  // before and after a crossing, from one style to the next
+constexpr double kPitchEast_m = 150, kPitchNorth_m = 170;  // mean distance between streets
+constexpr double kPitchVariety = 0.12;  // maximum shift of a node, as a share of the distance
+constexpr int kRun = 3;                 // blocks over which a street keeps its style
+constexpr double kTransition_m =
+    12;  // length of the transition between styles, before and after a crossing
 constexpr double kParkShare = 0.11, kSquareShare = 0.05;
 
 int floor_div(int a, int b) { return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0); }
 
-/// What a style of a road in the open has and a street of a city cannot have: land that rises
-/// beside it, side streets that lead nowhere, ditches across which streets would join.
-void tame(WorldStyle& style, const CityPieceId& id, int lanes, double median) {
+/// Removes features that only suit roads in open country: rising land at the sides, dead-end side
+/// streets, and ditches, which would block joining streets.
+void tame(WorldStyle& style, const CitySectionId& id, int lanes, double median) {
   style.lanes = lanes;
   style.lane_width = std::clamp(style.lane_width, 3.0, 3.5);
   style.median = median;
@@ -42,7 +42,7 @@ void tame(WorldStyle& style, const CityPieceId& id, int lanes, double median) {
     side.sidewalk = std::clamp(side.sidewalk, 1.8, 4.5);
     side.verge = std::min(side.verge, 1.5);
     side.bushes = 0;
-    if (side.parking_width <= 0) side.motorcycles = 0;  // they stand on the road
+    if (side.parking_width <= 0) side.motorcycles = 0;  // they are parked on the road
     side.grass = std::min(side.grass, 40.0);
     if (side.frontage != Frontage::facades) side.frontage = Frontage::houses;
   }
@@ -50,7 +50,7 @@ void tame(WorldStyle& style, const CityPieceId& id, int lanes, double median) {
 
 }  // namespace
 
-std::string name_of(const CityPieceId& id) {
+std::string name_of(const CitySectionId& id) {
   const bool east = id.axis == CityAxis::east;
   return "x" + std::to_string(east ? id.block : id.line) + "_y" +
          std::to_string(east ? id.line : id.block) + (east ? "_east" : "_north");
@@ -83,7 +83,7 @@ int CityGrid::block_at(CityAxis axis, double along) const {
   return block;
 }
 
-CityRect CityGrid::rect(const CityPieceId& id) const {
+CityRect CityGrid::rect(const CitySectionId& id) const {
   if (id.axis == CityAxis::east) {
     const double v = node(CityAxis::north, id.line);
     return {node(CityAxis::east, id.block), node(CityAxis::east, id.block + 1), v - kCityRow_m,
@@ -106,7 +106,7 @@ int CityGrid::lanes(CityAxis axis, int line) const {
   return random_of(*this, CityPurpose::lanes, street_key(axis, line), 0).uniform() < 0.2 ? 2 : 1;
 }
 
-WorldKind CityGrid::kind(const CityPieceId& id) const {
+WorldKind CityGrid::kind(const CitySectionId& id) const {
   Random random =
       random_of(*this, CityPurpose::kind, street_key(id.axis, id.line), floor_div(id.block, kRun));
   const double draw = random.uniform();
@@ -115,7 +115,7 @@ WorldKind CityGrid::kind(const CityPieceId& id) const {
   return draw < 0.92 ? WorldKind::suburban : WorldKind::rural;
 }
 
-WorldStyle CityGrid::style(const CityPieceId& id) const {
+WorldStyle CityGrid::style(const CitySectionId& id) const {
   const std::int64_t street = street_key(id.axis, id.line);
   WorldStyle style = draw_world_style(
       kind(id), random_of(*this, CityPurpose::style, street, floor_div(id.block, kRun)));
@@ -137,23 +137,23 @@ double CityGrid::lane_center(CityAxis axis, int line, int lane, double along) co
   const double before = node(axis, block + 1) - along;
   const auto mix = [&](int one, int other, double past) {
     if (floor_div(one, kRun) == floor_div(other, kRun)) return of_block(one);
-    const double t = std::clamp((past + kGoOver_m) / (2 * kGoOver_m), 0.0, 1.0);
+    const double t = std::clamp((past + kTransition_m) / (2 * kTransition_m), 0.0, 1.0);
     const double share = t * t * (3 - 2 * t);
     return (1 - share) * of_block(one) + share * of_block(other);
   };
-  if (after < kGoOver_m) return mix(block - 1, block, after);
-  if (before < kGoOver_m) return mix(block, block + 1, -before);
+  if (after < kTransition_m) return mix(block - 1, block, after);
+  if (before < kTransition_m) return mix(block, block + 1, -before);
   return of_block(block);
 }
 
 namespace {
 
-BlockUse block_beside(const CityGrid& grid, const CityPieceId& id, int side) {
+BlockUse block_at_side(const CityGrid& grid, const CitySectionId& id, int side) {
   if (id.axis == CityAxis::east) return grid.use(id.block, side > 0 ? id.line : id.line - 1);
   return grid.use(side > 0 ? id.line - 1 : id.line, id.block);
 }
 
-LandPlace land_place(const CityGrid& grid, const CityPieceId& id) {
+LandPosition land_position(const CityGrid& grid, const CitySectionId& id) {
   const CityRect rect = grid.rect(id);
   if (id.axis == CityAxis::east) {
     const double v = grid.node(CityAxis::north, id.line);
@@ -164,15 +164,15 @@ LandPlace land_place(const CityGrid& grid, const CityPieceId& id) {
   return [land = grid.land(), u, v = rect.v0](double s, double d) { return land.at(u - d, v + s); };
 }
 
-double length_of(const CityGrid& grid, const CityPieceId& id) {
+double length_of(const CityGrid& grid, const CitySectionId& id) {
   const CityRect rect = grid.rect(id);
   return id.axis == CityAxis::east ? rect.u1 - rect.u0 : rect.v1 - rect.v0;
 }
 
 /// Plots of one side from `s` to `end`, without gaps.
-void draw_city_plots(const CityGrid& grid, const CityPieceId& id, const WorldStyle& style, int side,
-                     double s, double end, std::vector<WorldPlot>& plots) {
-  const BlockUse use = block_beside(grid, id, side);
+void draw_city_plots(const CityGrid& grid, const CitySectionId& id, const WorldStyle& style,
+                     int side, double s, double end, std::vector<WorldPlot>& plots) {
+  const BlockUse use = block_at_side(grid, id, side);
   if (use != BlockUse::built) {
     WorldPlot whole{.side = side, .s0 = s, .s1 = end, .number = plots.size()};
     whole.use = use == BlockUse::park ? Frontage::park : Frontage::square;
@@ -193,12 +193,13 @@ void draw_city_plots(const CityGrid& grid, const CityPieceId& id, const WorldSty
 
 }  // namespace
 
-WorldPlan CityGrid::plan(const CityPieceId& id, bool bare) const {
+WorldPlan CityGrid::plan(const CitySectionId& id, bool bare) const {
   const double length_m = length_of(*this, id);
   const std::int64_t street = street_key(id.axis, id.line);
-  const WorldOptions options = {random_of(*this, CityPurpose::piece, street, id.block).next_bits(),
-                                kind(id), length_m};
-  WorldLayout layout = {.style = style(id), .route = WorldRoute(length_m, land_place(*this, id))};
+  const WorldOptions options = {
+      random_of(*this, CityPurpose::section, street, id.block).next_bits(), kind(id), length_m};
+  WorldLayout layout = {.style = style(id),
+                        .route = WorldRoute(length_m, land_position(*this, id))};
   const CityRect own = rect(id);
   if (id.axis == CityAxis::east) {
     layout.reach_m = {kCityRow_m, kCityRow_m};
@@ -210,7 +211,7 @@ WorldPlan CityGrid::plan(const CityPieceId& id, bool bare) const {
   const bool crossed = id.axis == CityAxis::east;
   const WorldPlan profile = plan(id, true);
   for (const int side : {1, -1}) {
-    CityCrossing ends[2];  // none where a street begins and ends at a strip
+    CityCrossing ends[2];  // zero where a street begins and ends at a strip
     if (crossed) {
       for (const bool at_end : {false, true})
         ends[at_end ? 1 : 0] = add_crossing(*this, id, profile, side, at_end, layout.patches);
@@ -220,6 +221,43 @@ WorldPlan CityGrid::plan(const CityPieceId& id, bool bare) const {
   }
   add_open_ground(id, profile, layout.plots, layout.patches);
   return {options, std::move(layout)};
+}
+
+namespace {
+
+constexpr std::uint64_t kLandStream = 0x6c616e64;
+constexpr double kMaxSlopeOfBend = 0.045;  // per wave: crossings within 10 degrees of square
+constexpr double kMaxSlopeOfHill = 0.014;
+
+}  // namespace
+
+double CityLand::Wave::at(double t) const {
+  return amplitude * std::sin(kFullTurn * t / length_m + phase);
+}
+
+CityLand::CityLand(std::uint64_t seed) {
+  Random random(seed, kLandStream, 0);
+  const auto draw = [&](double shortest, double longest, double slope) {
+    Wave wave = {0, random.uniform(shortest, longest), random.uniform(0, kFullTurn)};
+    wave.amplitude = random.uniform(0.2, 1) * slope * wave.length_m / kFullTurn;
+    return wave;
+  };
+  for (Wave& wave : shift_east_) wave = draw(400, 1100, kMaxSlopeOfBend);
+  for (Wave& wave : shift_north_) wave = draw(400, 1100, kMaxSlopeOfBend);
+  for (Hill& hill : hills_) {
+    hill.wave = draw(250, 1000, kMaxSlopeOfHill);
+    const double direction = random.uniform(0, kFullTurn);
+    hill.east = std::cos(direction);
+    hill.north = std::sin(direction);
+  }
+}
+
+Vec3d CityLand::at(double u, double v) const {
+  Vec3d position = {u, v, 0};
+  for (const Wave& wave : shift_east_) position.x += wave.at(v);
+  for (const Wave& wave : shift_north_) position.y += wave.at(u);
+  for (const Hill& hill : hills_) position.z += hill.wave.at(hill.east * u + hill.north * v);
+  return position;
 }
 
 }  // namespace adasplats

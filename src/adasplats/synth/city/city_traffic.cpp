@@ -9,16 +9,16 @@
 #include <tuple>
 #include <utility>
 
-#include "adasplats/synth/city/city_parts.h"
+#include "adasplats/synth/city/city_grid.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kBlockTime_s = 16;  // of a vehicle from one crossing to the next: about 35 km/h
-// When vehicles of a lane pass a crossing, in shares of that time; two follow one another after
-// about 2 s. Those of streets to the north come half of it later.
+constexpr double kBlockTime_s = 16;  // between two crossings: about 35 km/h
+// When the vehicles of a lane pass a crossing, as shares of that time; the shortest gap is about 2
+// s. On north streets they pass half a period later.
 constexpr std::array<double, 3> kPasses = {0.02, 0.14, 0.26};
-constexpr double kLater = 0.02;  // at most, of one of them
+constexpr double kLater = 0.02;  // maximum delay of a vehicle
 constexpr double kNorthLater = 0.5;
 constexpr int kSlotsOfBlock = static_cast<int>(kPasses.size());
 
@@ -45,7 +45,7 @@ VehicleKind draw_kind(Random& random) {
                        : VehicleKind::motorcyclist;
 }
 
-/// One lane of a whole street and what is on it at a time.
+/// One lane of an entire street and its vehicles at a given time.
 class Rail {
  public:
   Rail(const CityGrid& grid, const MoverModels& models, CityAxis axis, int line, bool forth,
@@ -61,29 +61,29 @@ class Rail {
       const double late = kLater * random.uniform();
       if (!taken) return;
       const VehicleKind kind = draw_kind(random);
-      place(models_.pick(kind, random), blocks - (forth_ ? late : -late),
-            static_cast<std::uint16_t>(4 * wrap(slot, 32) + pass), 0, placed);
+      add_mover(models_.pick(kind, random), blocks - (forth_ ? late : -late),
+                static_cast<std::uint16_t>(4 * wrap(slot, 32) + pass), 0, placed);
     });
   }
-  /// Cyclists at the edge of the road; they take twice the time.
+  /// Cyclists at the edge of the road, at half the speed.
   void cyclists(double from, double to, double time_s, double density,
                 std::vector<PlacedMover>& placed) const {
     each_slot(from, to, 0.5 * time_s / kBlockTime_s, 0.5, [&](int slot, double blocks, int pass) {
       if (pass != 0) return;
       Random random = random_of(grid_, CityPurpose::slots, key(), (1 << 30) + slot);
       if (random.uniform() >= density) return;
-      place(models_.pick(VehicleKind::cyclist, random), blocks,
-            static_cast<std::uint16_t>(4 * wrap(slot, 32) + 3), kCyclistsLine_m, placed);
+      add_mover(models_.pick(VehicleKind::cyclist, random), blocks,
+                static_cast<std::uint16_t>(4 * wrap(slot, 32) + 3), kCyclistsLine_m, placed);
     });
   }
 
  private:
-  static constexpr double kCyclistsLine_m = 1.2;  // right of the middle of the lane
+  static constexpr double kCyclistsLine_m = 1.2;  // offset to the right of the center of the lane
 
   std::int64_t key() const { return (4 * street_key(axis_, line_) + (forth_ ? 1 : 0)) * 4 + lane_; }
 
-  /// Calls with every slot and where it is after `blocks` blocks' time, in blocks, for who goes so
-  /// many in the time of the timetable (`pace`).
+  /// Calls `call` with every slot and its position in blocks, for movers with `pace` blocks per
+  /// period.
   template <class Call>
   void each_slot(double from, double to, double blocks, double pace, Call call) const {
     const int first = grid_.block_at(axis_, from);
@@ -94,13 +94,13 @@ class Rail {
     const int high = static_cast<int>(std::ceil(sign * blocks - first)) + 2;
     for (int slot = low; slot <= high; ++slot) {
       for (int pass = 0; pass < kSlotsOfBlock; ++pass) {
-        const double place = sign * (blocks - pace * (kPasses[pass] + half)) - slot;
-        if (place >= first && place < last) call(slot, place, pass);
+        const double position = sign * (blocks - pace * (kPasses[pass] + half)) - slot;
+        if (position >= first && position < last) call(slot, position, pass);
       }
     }
   }
 
-  Vec3d place_on(double along, double more_right) const {
+  Vec3d position_on(double along, double more_right) const {
     const double right = grid_.lane_center(axis_, line_, lane_, along) + more_right;
     if (axis_ == CityAxis::east) {
       const double v = grid_.node(CityAxis::north, line_);
@@ -110,17 +110,18 @@ class Rail {
     return grid_.land().at(u + (forth_ ? right : -right), along);
   }
 
-  void place(std::size_t model, double blocks, std::uint16_t in_street, double more_right,
-             std::vector<PlacedMover>& placed) const {
+  void add_mover(std::size_t model, double blocks, std::uint16_t in_street, double more_right,
+                 std::vector<PlacedMover>& placed) const {
     const double block = std::floor(blocks);
     const double before = grid_.node(axis_, static_cast<int>(block));
     const double next = grid_.node(axis_, static_cast<int>(block) + 1);
     const double along = before + (blocks - block) * (next - before);
     const double half = forth_ ? 0.5 : -0.5;
-    const Vec3d here = place_on(along, more_right);
-    const Vec3d ahead = place_on(along + half, more_right) - place_on(along - half, more_right);
+    const Vec3d here = position_on(along, more_right);
+    const Vec3d ahead =
+        position_on(along + half, more_right) - position_on(along - half, more_right);
     const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
-    // 8 streets of 2 axes, 2 ways, 2 lanes, 128 in each.
+    // 8 streets of 2 axes, 2 directions and 2 lanes; 128 vehicles each.
     const int street =
         ((wrap(line_, 8) * 2 + (axis_ == CityAxis::north ? 1 : 0)) * 2 + (forth_ ? 1 : 0)) * 2 +
         std::min(lane_, 1);
@@ -139,8 +140,8 @@ class Rail {
 };
 
 constexpr std::uint16_t kFirstWalker = kFirstMover + 64 * 128;
-constexpr int kMaxWalkers = 16;  // of one side of a piece
-static_assert(kFirstWalker + 2 * kMaxWalkers * kPieceGroups <= 65535);
+constexpr int kMaxWalkers = 16;  // per side of a section
+static_assert(kFirstWalker + 2 * kMaxWalkers * kSectionGroups <= 65535);
 
 }  // namespace
 
@@ -151,7 +152,7 @@ std::pair<Vec3f, Vec3f> city_bounds(const TriangleMesh& mesh) {
     low = min(low, vertex);
     high = max(high, vertex);
   }
-  constexpr Vec3f kMargin = {0.01F, 0.01F, 0.01F};  // of a hit that is rounded
+  constexpr Vec3f kMargin = {0.01F, 0.01F, 0.01F};  // covers the rounding of hits
   return {low - kMargin, high + kMargin};
 }
 
@@ -178,20 +179,20 @@ std::size_t MoverModels::pick(VehicleKind kind, Random& random) const {
          static_cast<std::size_t>(count * random.uniform());
 }
 
-std::uint16_t piece_group(const CityPieceId& id) {
+std::uint16_t section_group(const CitySectionId& id) {
   const bool east = id.axis == CityAxis::east;
   const int i = wrap(east ? id.block : id.line, 8);
   const int j = wrap(east ? id.line : id.block, 8);
   return static_cast<std::uint16_t>((8 * i + j) * 2 + (east ? 0 : 1));
 }
 
-std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, const WorldPlan& plan,
-                                 const MoverModels& models) {
+std::vector<Walker> draw_walkers(const CityGrid& grid, const CitySectionId& id,
+                                 const WorldPlan& plan, const MoverModels& models) {
   std::vector<Walker> walkers;
   for (const int side : {1, -1}) {
     double s0 = 2;
     double s1 = plan.options.length_m - 2;
-    for (const Patch& patch : plan.patches) {  // nobody walks out onto the road
+    for (const Patch& patch : plan.patches) {  // keeps walkers off the road
       if (patch.side != side || !patch.is_crossing) continue;
       if (patch.s1 < 0.5 * plan.options.length_m)
         s0 = std::max(s0, patch.s1 + 1);
@@ -201,16 +202,16 @@ std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, co
     if (s1 - s0 < 5) continue;
     Random random = random_of(grid, CityPurpose::walkers,
                               2 * street_key(id.axis, id.line) + (side > 0 ? 1 : 0), id.block);
-    const double wish = plan.style.walkers * (s1 - s0) / 100 * random.uniform(0.5, 1.5);
+    const double expected = plan.style.walkers * (s1 - s0) / 100 * random.uniform(0.5, 1.5);
     const double walk = 0.5 * (plan.road_end(side) + plan.property_line(side));
-    for (int k = 0; k < std::min(kMaxWalkers, static_cast<int>(wish + random.uniform())); ++k) {
+    for (int k = 0; k < std::min(kMaxWalkers, static_cast<int>(expected + random.uniform())); ++k) {
       Walker walker = {
           .side = side, .from_axis = walk + random.uniform(-0.4, 0.4), .s0 = s0, .s1 = s1};
       walker.model = models.pick(VehicleKind::walker, random);
       walker.speed_m_per_s = random.uniform(0.8, 1.7);
       walker.phase_m = random.uniform(0, 2 * (s1 - s0));
       walker.instance = static_cast<std::uint16_t>(
-          kFirstWalker + (2 * piece_group(id) + (side > 0 ? 1 : 0)) * kMaxWalkers + k);
+          kFirstWalker + (2 * section_group(id) + (side > 0 ? 1 : 0)) * kMaxWalkers + k);
       walkers.push_back(walker);
     }
   }
@@ -223,16 +224,16 @@ PlacedMover place_walker(const Walker& walker, const WorldPlan& plan, double tim
   const bool forth = done < way;
   const double s = walker.s0 + (forth ? done : 2 * way - done);
   const double yaw = (walker.side > 0) == forth ? 0 : std::numbers::pi;
-  return {walker.model, walker.instance, plan.stand(s, walker.side, walker.from_axis, yaw)};
+  return {walker.model, walker.instance, plan.pose_at(s, walker.side, walker.from_axis, yaw)};
 }
 
 std::vector<PlacedMover> vehicles_around(const CityGrid& grid, const MoverModels& models,
-                                         Vec3d grid_place, double reach_m, double time_s) {
+                                         Vec3d grid_position, double reach_m, double time_s) {
   std::vector<PlacedMover> placed;
   for (const CityAxis axis : {CityAxis::east, CityAxis::north}) {
     const bool east = axis == CityAxis::east;
-    const double along = east ? grid_place.x : grid_place.y;
-    const double across = east ? grid_place.y : grid_place.x;
+    const double along = east ? grid_position.x : grid_position.y;
+    const double across = east ? grid_position.y : grid_position.x;
     const CityAxis other = east ? CityAxis::north : CityAxis::east;
     const int last = grid.block_at(other, across + reach_m);
     for (int line = grid.block_at(other, across - reach_m); line <= last; ++line) {

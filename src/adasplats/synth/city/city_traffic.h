@@ -13,31 +13,31 @@
 #include "adasplats/synth/world/world_parts.h"
 #include "adasplats/trace/tracer.h"
 
-// Inside synth/city/: what moves. Vehicles go along the lanes of whole streets on rails, by a
-// timetable: every block takes the same time, and those of streets to the east pass crossings in
-// one part of it, those of streets to the north in another, so that nobody meets. People walk up
-// and down the sidewalks. Where all of them are depends on the seed and the time alone.
+// Private to synth/city/: moving objects. Vehicles follow the lanes of entire streets on a
+// timetable: every block takes the same time, and vehicles on east and north streets pass crossings
+// in different parts of the period, so they never collide. People walk up and down the sidewalks.
+// All positions depend only on the seed and the time.
 
 namespace adasplats {
 
-/// The box of a mesh that is not empty, with a margin of a centimetre.
+/// The box of a non-empty mesh, with a margin of 1 cm.
 std::pair<Vec3f, Vec3f> city_bounds(const TriangleMesh& mesh);
 
-/// A shape that movers share, in its own frame: x forward, z up, origin on the ground.
+/// A shape shared by movers, in its own frame: x forward, z up, origin on the ground.
 struct MoverModel {
   BuiltMesh built;
   Vec3f low, high;
   std::unique_ptr<Tracer> tracer;  ///< views `built`
 };
 
-/// The shapes of a city.
+/// The mover shapes of a city.
 class MoverModels {
  public:
   MoverModels(const CityGrid& grid, const Executor& executor);
 
   const MoverModel& model(std::size_t i) const { return *models_[i]; }
   std::size_t size() const { return models_.size(); }
-  /// One of a kind.
+  /// A random model of a kind.
   std::size_t pick(VehicleKind kind, Random& random) const;
 
  private:
@@ -45,14 +45,14 @@ class MoverModels {
   std::vector<VehicleKind> kinds_;  ///< ascending
 };
 
-/// A mover at one time.
+/// A mover at a given time.
 struct PlacedMover {
   std::size_t model = 0;
   std::uint16_t instance = 0;
   RigidTransform world_from_mover;
 };
 
-/// Somebody who walks up and down a sidewalk.
+/// A person who walks up and down a sidewalk.
 struct Walker {
   std::size_t model = 0;
   std::uint16_t instance = 0;
@@ -61,20 +61,20 @@ struct Walker {
   double speed_m_per_s = 1.3, phase_m = 0;
 };
 
-/// The walkers of a piece.
-std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, const WorldPlan& plan,
-                                 const MoverModels& models);
+/// The walkers of a section.
+std::vector<Walker> draw_walkers(const CityGrid& grid, const CitySectionId& id,
+                                 const WorldPlan& plan, const MoverModels& models);
 PlacedMover place_walker(const Walker& walker, const WorldPlan& plan, double time_s);
 
-/// The vehicles on the streets around a place of the grid at a time, out to `reach_m`.
+/// The vehicles at a given time on all streets within `reach_m` of a grid position.
 std::vector<PlacedMover> vehicles_around(const CityGrid& grid, const MoverModels& models,
-                                         Vec3d grid_place, double reach_m, double time_s);
+                                         Vec3d grid_position, double reach_m, double time_s);
 
-/// Ids of what stands are below this one, those of movers from it on; in a city they are one
-/// thing's alone within a kilometre, not all over it.
+/// Instance ids below this one belong to static objects, the others to movers. Ids are unique
+/// within about a kilometre, not in the entire city.
 inline constexpr std::uint16_t kFirstMover = 38401;
-/// The group of ids of a piece: pieces with the same one are far apart.
-std::uint16_t piece_group(const CityPieceId& id);
-inline constexpr std::uint16_t kPieceGroups = 128;
+/// Group of instance ids of a section; sections that share a group are far apart.
+std::uint16_t section_group(const CitySectionId& id);
+inline constexpr std::uint16_t kSectionGroups = 128;
 
 }  // namespace adasplats

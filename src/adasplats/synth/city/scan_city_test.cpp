@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/city/city_caster.h"
@@ -22,7 +22,7 @@
 namespace adasplats {
 namespace {
 
-/// A sensor of short sight, so that few pieces are made: a file of this process.
+/// A short-range sensor, which needs few sections.
 class SensorFile {
  public:
   SensorFile()
@@ -49,7 +49,7 @@ SynthCityOptions thin_city(double length_m, double spacing_m) {
 
 struct Recorded {
   std::map<std::size_t, Scan> scans;
-  std::map<std::string, std::size_t> pieces;  ///< their triangles
+  std::map<std::string, std::size_t> sections;  ///< triangles by name
   SynthCityReport report;
 };
 
@@ -62,10 +62,11 @@ Recorded record(const SynthCityOptions& options, int threads) {
             const std::lock_guard lock(mutex);
             EXPECT_TRUE(recorded.scans.emplace(index, scan).second) << index;
           },
-      .piece =
-          [&](const std::string& name, const BuiltMesh& piece) {
+      .section =
+          [&](const std::string& name, const BuiltMesh& section) {
             const std::lock_guard lock(mutex);
-            EXPECT_TRUE(recorded.pieces.emplace(name, piece.mesh.triangles.size()).second) << name;
+            EXPECT_TRUE(recorded.sections.emplace(name, section.mesh.triangles.size()).second)
+                << name;
           },
       .scans_done = {}};
   const Executor executor(threads);
@@ -74,13 +75,13 @@ Recorded record(const SynthCityOptions& options, int threads) {
   return recorded;
 }
 
-// Oracle: the same with another number of threads.
+// Oracle: the same drive with another number of threads.
 TEST(ScanSynthCity, DoesNotDependOnThreads) {
   const Recorded one = record(thin_city(60, 15), 1);
   const Recorded three = record(thin_city(60, 15), 3);
   ASSERT_EQ(one.scans.size(), 5U);
   ASSERT_EQ(three.scans.size(), 5U);
-  EXPECT_EQ(one.pieces, three.pieces);
+  EXPECT_EQ(one.sections, three.sections);
   for (const auto& [index, scan] : one.scans) {
     const Scan& other = three.scans.at(index);
     EXPECT_EQ(scan.positions, other.positions);
@@ -91,8 +92,8 @@ TEST(ScanSynthCity, DoesNotDependOnThreads) {
   }
 }
 
-// Oracle: an area of streets is as full whether the drive is short or long.
-TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
+// Oracle: the density of streets does not depend on the length of the drive.
+TEST(ScanSynthCity, SectionsInMemoryDoNotGrowWithTheDrive) {
   const SynthCityReport few = record(thin_city(300, 100), 2).report;
   const SynthCityReport many = record(thin_city(1500, 100), 2).report;
   EXPECT_GT(many.pieces, 2 * few.pieces);
@@ -100,7 +101,7 @@ TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
   EXPECT_EQ(many.scans, 16U);
 }
 
-TEST(ScanSynthCity, GivesAsManyPointsAsWished) {
+TEST(ScanSynthCity, MeetsTheTargetNumberOfPoints) {
   SynthCityOptions options = thin_city(300, 1);
   options.spacing_m.reset();
   options.points = 200'000;
@@ -109,7 +110,7 @@ TEST(ScanSynthCity, GivesAsManyPointsAsWished) {
   EXPECT_GT(made.report.scans, 5U);
 }
 
-TEST(ScanSynthCity, SeesWhatMovesAndWhatStands) {
+TEST(ScanSynthCity, ScansHaveMovingAndStaticClasses) {
   const Recorded made = record(thin_city(800, 20), 2);
   std::set<std::uint16_t> classes;
   for (const auto& [index, scan] : made.scans)
@@ -118,8 +119,8 @@ TEST(ScanSynthCity, SeesWhatMovesAndWhatStands) {
     EXPECT_TRUE(classes.count(static_cast<std::uint16_t>(known)) > 0) << known;
 }
 
-// Oracle: brute force over all triangles of the pieces and of the movers in their places.
-TEST(CastCity, FindsTheNearestOfAll) {
+// Oracle: brute force over all triangles of the sections and the movers at their poses.
+TEST(CastCity, EqualsBruteForce) {
   const Executor executor(2);
   const CityGrid grid(9);
   const MoverModels models(grid, executor);
@@ -129,13 +130,13 @@ TEST(CastCity, FindsTheNearestOfAll) {
   sensor.max_range_m = 40;
   sensor.columns = 240;
   const std::vector<Firing> firings = firings_of(sensor);
-  CityPieces pieces;
+  CitySections sections;
   std::size_t on_movers = 0;
   for (const double travelled : {20.0, 120.0, 250.0}) {
     TimedPose pose = drive.at(travelled);
     pose.world_from_sensor.translation.z += 1.7;
     CityScene scene = {.models = &models};
-    scene.movers = vehicles_around(grid, models, drive.grid_place(travelled), 40, pose.time_s);
+    scene.movers = vehicles_around(grid, models, drive.grid_position(travelled), 40, pose.time_s);
     std::vector<Ray> rays = street_rays(sensor, firings, pose.world_from_sensor, executor);
     std::vector<float> expected(rays.size(), std::numeric_limits<float>::infinity());
     const auto look = [&](const BuiltMesh& built, const RigidTransform& world_from_mesh) {
@@ -145,15 +146,16 @@ TEST(CastCity, FindsTheNearestOfAll) {
       make_cpu_tracer(SceneView{{}, &mesh}, executor)->nearest(rays, hits, executor);
       for (std::size_t i = 0; i < rays.size(); ++i) expected[i] = std::min(expected[i], hits[i].t);
     };
-    for (const CityPieceId& id : pieces_around(grid, drive.grid_place(travelled), 40)) {
-      if (!pieces.holds(id)) pieces.add(std::make_unique<CityPiece>(grid, id, models), executor);
-      scene.pieces.push_back(&pieces.piece(id));
-      look(pieces.piece(id).built, {});
+    for (const CitySectionId& id : sections_around(grid, drive.grid_position(travelled), 40)) {
+      if (!sections.holds(id))
+        sections.add(std::make_unique<CitySection>(grid, id, models), executor);
+      scene.sections.push_back(&sections.section(id));
+      look(sections.section(id).built, {});
     }
     const Vec3d here = pose.world_from_sensor.translation;
     for (const PlacedMover& mover : scene.movers) {
       const MoverModel& model = models.model(mover.model);
-      if (!meets_vehicle(model.low, model.high, mover.world_from_mover.inverse() * here))
+      if (!collides(model.low, model.high, mover.world_from_mover.inverse() * here))
         look(model.built, mover.world_from_mover);
     }
     const auto echoes =
@@ -175,22 +177,15 @@ TEST(CastCity, FindsTheNearestOfAll) {
   EXPECT_GT(on_movers, 0U);
 }
 
-/// A folder of this process that goes with the test.
 class WriteSynthCity : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("adasplats write city " + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path() / "city";
   ProgressSink progress_;
 };
 
 // Oracle: round trip through the readers.
-TEST_F(WriteSynthCity, FilesHoldWhatWasMade) {
+TEST_F(WriteSynthCity, FilesRoundTrip) {
   const Executor executor(2);
   const SynthCityReport report = write_synth_city(folder_, thin_city(60, 20), executor, progress_);
   EXPECT_EQ(report.scans, 4U);
@@ -207,7 +202,7 @@ TEST_F(WriteSynthCity, FilesHoldWhatWasMade) {
   EXPECT_EQ(faces, report.mesh_triangles);
 }
 
-TEST_F(WriteSynthCity, LeavesTruthOutWhereNotWanted) {
+TEST_F(WriteSynthCity, OmitsTruthOnRequest) {
   const Executor executor(2);
   SynthCityOptions options = thin_city(50, 50);
   options.truth = false;
@@ -215,17 +210,13 @@ TEST_F(WriteSynthCity, LeavesTruthOutWhereNotWanted) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "truth"));
 }
 
-TEST_F(WriteSynthCity, RefusesAFolderThatHoldsOne) {
+TEST_F(WriteSynthCity, RejectsAFolderWithACity) {
   const Executor executor(2);
   SynthCityOptions options = thin_city(50, 50);
   options.truth = false;
   write_synth_city(folder_, options, executor, progress_);
-  try {
-    write_synth_city(folder_, options, executor, progress_);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::cannot_create) << error.what();
-  }
+  expect_error(ErrorKind::cannot_create, {},
+               [&] { write_synth_city(folder_, options, executor, progress_); });
 }
 
 }  // namespace

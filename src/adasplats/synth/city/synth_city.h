@@ -17,14 +17,15 @@
 
 namespace adasplats {
 
-/// A drive through a procedural city, as long as wished.
+/// A drive of any length through a procedural city.
 struct SynthCityOptions {
   std::uint64_t seed = 1;
-  double length_m = 1000;           ///< of the drive
-  std::optional<double> points;     ///< of all scans, to one scan's; instead of spacing_m
-  std::optional<double> spacing_m;  ///< between scans; where neither is given, 1 m
-  bool truth = true;                ///< whether the meshes are written
-  std::string sensor = "velodyne-hdl-64e-kitti";  ///< as load_lidar_model takes it
+  double length_m = 1000;  ///< of the drive
+  std::optional<double>
+      points;  ///< target for all scans, met to within one scan; excludes spacing_m
+  std::optional<double> spacing_m;                ///< between scans; default without `points`: 1 m
+  bool truth = true;                              ///< write the meshes
+  std::string sensor = "velodyne-hdl-64e-kitti";  ///< as for load_lidar_model
 };
 
 template <class Visit>
@@ -58,38 +59,39 @@ void visit_settings(SynthCityOptions& city, Visit&& visit) {
         city.truth);
 }
 
-/// What a drive through a city was.
+/// Figures of a drive through a city.
 struct SynthCityReport {
   std::size_t scans = 0;
   std::size_t points = 0;
-  std::size_t pieces = 0;             ///< that were within the sensor's range at some time
-  std::size_t max_pieces = 0;         ///< in memory at once
-  std::size_t mesh_triangles = 0;     ///< of all pieces
-  std::size_t pieces_made_again = 0;  ///< where the drive came back
+  std::size_t pieces = 0;             ///< street sections that were within the sensor's range
+  std::size_t max_pieces = 0;         ///< maximum number of sections in memory
+  std::size_t mesh_triangles = 0;     ///< of all sections
+  std::size_t pieces_made_again = 0;  ///< sections that were dropped and built again
 };
 
-/// What receives the parts of a city. Several threads call at once, in any order.
+/// Receives scans and sections. Several threads call it at once, in any order.
 struct SynthCitySink {
-  /// Scan number `index`; every number from 0 on comes once.
+  /// Scan number `index`; called once for every number from 0.
   std::function<void(std::size_t index, const Scan& scan)> scan;
-  /// What stands in a piece, "x0_y2_east": once, when it comes into the sensor's range.
-  std::function<void(const std::string& name, const BuiltMesh& piece)> piece;
-  /// Scans up to this number have come; from the calling thread.
+  /// Static mesh of a section, with its name ("x0_y2_east"): called once, when the section first
+  /// comes within the sensor's range.
+  std::function<void(const std::string& name, const BuiltMesh& section)> section;
+  /// All scans below this number have been delivered; called from the calling thread.
   std::function<void(std::size_t scans)> scans_done;
 };
 
-/// Drives through a city and scans it. Only pieces around the sensor are in memory. Depends on the
-/// options alone: not on threads, nor on which pieces were there before. Ranges are noisy and some
-/// returns lost as scan_world has them.
-/// Errors: usage (an option out of its range; points and spacing both; scans nearer together than
-/// 1 mm or more than a million), those of load_lidar_model.
+/// Drives through a city and scans it. Only sections around the sensor are in memory. The result
+/// depends only on the options, not on threads or on the sections in memory. Range noise and lost
+/// returns are those of scan_world().
+/// Errors: usage (an option out of range; both points and spacing; a scan spacing below 1 mm; more
+/// than a million scans), those of load_lidar_model.
 SynthCityReport scan_synth_city(const SynthCityOptions& options, const SynthCitySink& sink,
                                 const Executor& executor, ProgressSink& progress);
 
-/// Scans and writes a city: FOLDER/sequences/00/ (SemanticKITTI) and FOLDER/truth/NAME.ply (the
-/// meshes of pieces as save_street_mesh() writes them). Scans are written in place: the folder is
-/// whole when this returns.
-/// Errors: as scan_synth_city; cannot_create (also where sequences/00 is there already), io.
+/// Scans a city and writes it: FOLDER/sequences/00/ (SemanticKITTI) and FOLDER/truth/NAME.ply
+/// (meshes of sections, in the format of save_street_mesh()). Scans are written in place, so the
+/// folder is complete only when this returns.
+/// Errors: those of scan_synth_city; cannot_create (also if sequences/00 exists), io.
 SynthCityReport write_synth_city(const std::filesystem::path& folder,
                                  const SynthCityOptions& options, const Executor& executor,
                                  ProgressSink& progress);

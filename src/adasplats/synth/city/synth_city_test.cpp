@@ -14,34 +14,34 @@
 #include <set>
 #include <vector>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/city/city_drive.h"
-#include "adasplats/synth/city/city_pace.h"
-#include "adasplats/synth/city/city_parts.h"
-#include "adasplats/synth/city/city_pieces.h"
+#include "adasplats/synth/city/city_grid.h"
+#include "adasplats/synth/city/city_sections.h"
 #include "adasplats/synth/city/city_traffic.h"
+#include "adasplats/synth/city/scan_schedule.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::array<std::uint64_t, 3> kSeeds = {1, 2, 77};
 
-/// Where a ray along `direction` first meets a piece, m.
-float nearest_m(const CityPiece& piece, Vec3d from, Vec3d direction, const Executor& executor) {
+/// Distance along `direction` to the first hit, m.
+float nearest_m(const CitySection& section, Vec3d from, Vec3d direction, const Executor& executor) {
   const std::array<Ray, 1> ray = {Ray{vec_cast<float>(from), 0, vec_cast<float>(direction), 200}};
   std::array<Hit, 1> hit;
-  piece.tracer->nearest(ray, hit, executor);
+  section.tracer->nearest(ray, hit, executor);
   return hit[0].t;
 }
 
-// Oracle: what a rectangle is, on a grid of places: every place is in one piece and no other.
-TEST(CityGrid, PiecesTileThePlane) {
+// Oracle: rectangle containment; each position of a grid is in exactly one section.
+TEST(CityGrid, SectionsTileThePlane) {
   for (const std::uint64_t seed : kSeeds) {
     const CityGrid grid(seed);
     for (double u = -401; u < 500; u += 13.7) {
       for (double v = -399; v < 500; v += 11.3) {
         int in = 0;
-        for (const CityPieceId& id : pieces_around(grid, {u, v, 0}, 0)) {
+        for (const CitySectionId& id : sections_around(grid, {u, v, 0}, 0)) {
           const CityRect rect = grid.rect(id);
           if (u >= rect.u0 && u < rect.u1 && v >= rect.v0 && v < rect.v1) ++in;
         }
@@ -51,23 +51,23 @@ TEST(CityGrid, PiecesTileThePlane) {
   }
 }
 
-// Oracle: the definition, over all pieces of a large region.
-TEST(CityGrid, PiecesAroundAreThoseThatAreNear) {
+// Oracle: the definition, over all sections of a large region.
+TEST(CityGrid, SectionsAroundEqualBruteForce) {
   const CityGrid grid(3);
-  const Vec3d place = {33, -12, 0};
-  std::set<CityPieceId> near;
+  const Vec3d position = {33, -12, 0};
+  std::set<CitySectionId> near;
   for (int i = -8; i < 9; ++i)
     for (int j = -8; j < 9; ++j)
-      for (const CityPieceId id :
-           {CityPieceId{CityAxis::east, j, i}, CityPieceId{CityAxis::north, i, j}})
-        if (grid.rect(id).distance(place.x, place.y) < 120) near.insert(id);
-  const std::set<CityPieceId> found = pieces_around(grid, place, 120);
+      for (const CitySectionId id :
+           {CitySectionId{CityAxis::east, j, i}, CitySectionId{CityAxis::north, i, j}})
+        if (grid.rect(id).distance(position.x, position.y) < 120) near.insert(id);
+  const std::set<CitySectionId> found = sections_around(grid, position, 120);
   EXPECT_TRUE(std::includes(found.begin(), found.end(), near.begin(), near.end()));
   EXPECT_LT(found.size(), 40U);
 }
 
-// Oracle: the land itself, where two pieces have the same place.
-TEST(CityGrid, StreetsMeetInPlaceAndHeight) {
+// Oracle: the land at positions that two sections share.
+TEST(CityGrid, StreetsJoinInPositionAndHeight) {
   const CityGrid grid(5);
   const WorldPlan west = grid.plan({CityAxis::east, 2, 1});
   const WorldPlan east = grid.plan({CityAxis::east, 2, 2});
@@ -76,23 +76,22 @@ TEST(CityGrid, StreetsMeetInPlaceAndHeight) {
     EXPECT_LT(length(west.route.at(end, d) - east.route.at(0, d)), 1e-9);
     EXPECT_NEAR(west.height(end, d), east.height(0, d), 1e-9);
   }
-  // The street to the north begins where the strip of the one to the east ends.
+  // North sections begin at the edge of the strip of the east street.
   const WorldPlan north = grid.plan({CityAxis::north, 2, 2});
   const Vec3d rim = east.route.at(0, kCityRow_m);
   EXPECT_LT(length(north.route.at(0, 0) - rim), 1e-9);
   EXPECT_NEAR(north.height(0, 0), east.height(0, kCityRow_m), 1e-9);
-  // Across the rim the ground is of one kind: lanes go on, and so do sidewalks.
+  // Lanes and sidewalks continue across the edge.
   for (double d = 0.3; d < north.property_line(-1); d += 0.5)
     EXPECT_EQ(north.cell_at(1, -d).ground, east.cell_at(d, kCityRow_m - 1).ground) << d;
 }
 
-// Oracle: steps of a few centimetres between places that are near each other, and the ground of the
-// plan under the vehicle.
+// Oracle: consecutive poses are centimetres apart, and the plan has road under the vehicle.
 TEST(CityDrive, IsContinuousAndOnRoads) {
   for (const std::uint64_t seed : kSeeds) {
     const CityGrid grid(seed);
     const CityDrive drive(grid, 2500);
-    std::map<CityPieceId, WorldPlan> plans;
+    std::map<CitySectionId, WorldPlan> plans;
     TimedPose before = drive.at(0);
     double turned = 0;
     for (double s = 0.5; s <= 2500; s += 0.5) {
@@ -105,37 +104,38 @@ TEST(CityDrive, IsContinuousAndOnRoads) {
       ASSERT_LT(turn, 0.2) << s;
       turned += turn;
       before = here;
-      const Vec3d place = drive.grid_place(s);
+      const Vec3d position = drive.grid_position(s);
       int on_road = 0;
-      for (const CityPieceId& id : pieces_around(grid, place, 0)) {
+      for (const CitySectionId& id : sections_around(grid, position, 0)) {
         const CityRect rect = grid.rect(id);
-        if (place.x < rect.u0 || place.x >= rect.u1 || place.y < rect.v0 || place.y >= rect.v1)
+        if (position.x < rect.u0 || position.x >= rect.u1 || position.y < rect.v0 ||
+            position.y >= rect.v1)
           continue;
         const auto plan = plans.try_emplace(id, grid.plan(id)).first;
         const bool east = id.axis == CityAxis::east;
-        const double along = east ? place.x - rect.u0 : place.y - rect.v0;
-        const double left = east ? place.y - grid.node(CityAxis::north, id.line)
-                                 : grid.node(CityAxis::east, id.line) - place.x;
+        const double along = east ? position.x - rect.u0 : position.y - rect.v0;
+        const double left = east ? position.y - grid.node(CityAxis::north, id.line)
+                                 : grid.node(CityAxis::east, id.line) - position.x;
         const Ground ground = plan->second.cell_at(along, left).ground;
         on_road += ground == Ground::road || ground == Ground::marking ? 1 : 0;
         EXPECT_NEAR(plan->second.height(along, left), here.world_from_sensor.translation.z, 0.01);
       }
       ASSERT_EQ(on_road, 1) << s << " of seed " << seed;
     }
-    EXPECT_GT(turned, 2 * std::numbers::pi);  // it did turn at crossings
+    EXPECT_GT(turned, 2 * std::numbers::pi);  // it turned at crossings
   }
 }
 
-// Oracle: the streets one after another, as rectangles tell them.
-TEST(CityDrive, ComesThroughStreetsAgainAndSeesMany) {
+// Oracle: the sequence of streets, from the sections' rectangles.
+TEST(CityDrive, RepeatsStreetsAndVisitsMany) {
   const CityGrid grid(4);
   const CityDrive drive(grid, 8000);
-  std::map<CityPieceId, int> passes;
-  CityPieceId last;
+  std::map<CitySectionId, int> passes;
+  CitySectionId last;
   for (double s = 0; s < 8000; s += 1) {
-    const Vec3d place = drive.grid_place(s);
-    for (const CityPieceId& id : pieces_around(grid, place, 0)) {
-      if (grid.rect(id).distance(place.x, place.y) > 0 || id == last) continue;
+    const Vec3d position = drive.grid_position(s);
+    for (const CitySectionId& id : sections_around(grid, position, 0)) {
+      if (grid.rect(id).distance(position.x, position.y) > 0 || id == last) continue;
       ++passes[id];
       last = id;
     }
@@ -144,42 +144,43 @@ TEST(CityDrive, ComesThroughStreetsAgainAndSeesMany) {
   EXPECT_GT(std::ranges::count_if(passes, [](const auto& entry) { return entry.second > 1; }), 5);
 }
 
-// Oracle: rays at the heights of a car from the middle of the lane: nothing that stands is nearer
-// than half a metre beside the vehicle, nor 2 m before it.
-TEST(CityPieces, NothingStandsWhereTheVehicleDrives) {
+// Oracle: rays at car height from the center of the lane: static objects are at least 0.5 m to the
+// side of the vehicle and 2 m ahead of it.
+TEST(CitySections, DrivenLanesAreClear) {
   const Executor executor(2);
   const CityGrid grid(6);
   const MoverModels models(grid, executor);
   const CityDrive drive(grid, 420);
-  CityPieces pieces;
+  CitySections sections;
   for (double s = 0; s <= 420; s += 1.5) {
     const TimedPose pose = drive.at(s);
-    for (const CityPieceId& id : pieces_around(grid, drive.grid_place(s), 0)) {
-      if (!pieces.holds(id)) pieces.add(std::make_unique<CityPiece>(grid, id, models), executor);
+    for (const CitySectionId& id : sections_around(grid, drive.grid_position(s), 0)) {
+      if (!sections.holds(id))
+        sections.add(std::make_unique<CitySection>(grid, id, models), executor);
       for (const double height : {0.5, 1.0, 1.7}) {
         const Vec3d from = pose.world_from_sensor * Vec3d{0, 0, height};
         for (int k = 0; k < 8; ++k) {
           const double yaw = k * std::numbers::pi / 4;
           const Vec3d direction =
               pose.world_from_sensor.rotation * Vec3d{std::cos(yaw), std::sin(yaw), 0};
-          EXPECT_GT(nearest_m(pieces.piece(id), from, direction, executor), 1)
+          EXPECT_GT(nearest_m(sections.section(id), from, direction, executor), 1)
               << name_of(id) << " at " << s << " m, height " << height << ", direction " << k;
         }
       }
     }
   }
-  EXPECT_GT(pieces.size(), 5U);
+  EXPECT_GT(sections.size(), 5U);
 }
 
-// Oracle: the same thing made twice, the second time after others.
-TEST(CityPieces, AreTheSameWhenMadeAgain) {
+// Oracle: the same section built twice, the second time after others.
+TEST(CitySections, AreEqualWhenRebuilt) {
   const Executor executor(1);
   const CityGrid grid(8);
   const MoverModels models(grid, executor);
-  const CityPieceId id = {CityAxis::east, 1, 0};
-  const CityPiece one(grid, id, models);
-  const CityPiece between(grid, {CityAxis::north, 1, 0}, models);
-  const CityPiece again(CityGrid(8), id, models);
+  const CitySectionId id = {CityAxis::east, 1, 0};
+  const CitySection one(grid, id, models);
+  const CitySection between(grid, {CityAxis::north, 1, 0}, models);
+  const CitySection again(CityGrid(8), id, models);
   EXPECT_EQ(one.built.mesh.vertices, again.built.mesh.vertices);
   EXPECT_EQ(one.built.mesh.classes, again.built.mesh.classes);
   EXPECT_EQ(one.built.instances, again.built.instances);
@@ -188,22 +189,22 @@ TEST(CityPieces, AreTheSameWhenMadeAgain) {
   for (const std::uint16_t instance : one.built.instances) ASSERT_LT(instance, kFirstMover);
 }
 
-TEST(CityPieces, DropsWhatIsNotWanted) {
+TEST(CitySections, KeepDropsOtherSections) {
   const Executor executor(1);
   const CityGrid grid(8);
   const MoverModels models(grid, executor);
-  const CityPieceId one = {CityAxis::north, 0, 0};
-  const CityPieceId other = {CityAxis::north, 1, 0};
-  CityPieces pieces;
-  pieces.add(std::make_unique<CityPiece>(grid, one, models), executor);
-  pieces.add(std::make_unique<CityPiece>(grid, other, models), executor);
-  pieces.keep({other});
-  EXPECT_FALSE(pieces.holds(one));
-  EXPECT_TRUE(pieces.holds(other));
+  const CitySectionId one = {CityAxis::north, 0, 0};
+  const CitySectionId other = {CityAxis::north, 1, 0};
+  CitySections sections;
+  sections.add(std::make_unique<CitySection>(grid, one, models), executor);
+  sections.add(std::make_unique<CitySection>(grid, other, models), executor);
+  sections.keep({other});
+  EXPECT_FALSE(sections.holds(one));
+  EXPECT_TRUE(sections.holds(other));
 }
 
-// Oracle: distances between all pairs, over the time of a timetable's period and more.
-TEST(CityTraffic, VehiclesNeverMeet) {
+// Oracle: distances between all pairs, over more than a period of the timetable.
+TEST(CityTraffic, VehiclesNeverCollide) {
   const Executor executor(1);
   for (const std::uint64_t seed : kSeeds) {
     const CityGrid grid(seed);
@@ -227,8 +228,8 @@ TEST(CityTraffic, VehiclesNeverMeet) {
   }
 }
 
-// Oracle: the speed that a block's length and time give, from positions a moment apart.
-TEST(CityTraffic, VehiclesDriveTheWayTheyLook) {
+// Oracle: the speed from a block's length and time, from positions a moment apart.
+TEST(CityTraffic, VehiclesMoveForwards) {
   const Executor executor(1);
   const CityGrid grid(2);
   const MoverModels models(grid, executor);
@@ -240,7 +241,7 @@ TEST(CityTraffic, VehiclesDriveTheWayTheyLook) {
     const auto found = before.find(mover.instance);
     if (found == before.end()) continue;
     const Vec3d way = found->second.world_from_mover.inverse() * mover.world_from_mover.translation;
-    if (length(way) > 5) continue;  // gone, and another one with its id
+    if (length(way) > 5) continue;  // left; its id belongs to another vehicle
     ++compared;
     EXPECT_GT(way.x, 0.3);
     EXPECT_LT(way.x, 1.6);
@@ -249,10 +250,10 @@ TEST(CityTraffic, VehiclesDriveTheWayTheyLook) {
   EXPECT_GT(compared, 5);
 }
 
-TEST(CityPace, SpacingGivesEveryPlaceOnce) {
-  CityPace pace({.length_m = 100, .spacing_m = 3}, 1000);
+TEST(ScanSchedule, SpacingGivesEveryPositionOnce) {
+  ScanSchedule schedule({.length_m = 100, .spacing_m = 3}, 1000);
   std::vector<double> all;
-  for (auto some = pace.next(7, 12, 0); !some.empty(); some = pace.next(7, 12, 0)) {
+  for (auto some = schedule.next(7, 12, 0); !some.empty(); some = schedule.next(7, 12, 0)) {
     EXPECT_LE(some.back() - some.front(), 12);
     all.insert(all.end(), some.begin(), some.end());
   }
@@ -261,37 +262,32 @@ TEST(CityPace, SpacingGivesEveryPlaceOnce) {
     EXPECT_NEAR(all[k], 3.0 * static_cast<double>(k), 1e-9);
 }
 
-// Oracle: the wish, with scans whose points differ along the way from what is assumed first.
-TEST(CityPace, PointsComeOutToOneScan) {
+// Oracle: the requested number, with scans that deviate from the first assumption.
+TEST(ScanSchedule, PointsAreMetToWithinOneScan) {
   constexpr std::size_t kRays = 1000;
-  for (const double wish : {700.0, 5'000.0, 300'000.0, 2e6}) {
-    CityPace pace({.length_m = 400, .points = wish}, kRays);
+  for (const double points_wanted : {700.0, 5'000.0, 300'000.0, 2e6}) {
+    ScanSchedule schedule({.length_m = 400, .points = points_wanted}, kRays);
     double points = 0;
     double last = -1;
-    for (auto some = pace.next(64, 48, 0); !some.empty();
-         some = pace.next(64, 48, static_cast<std::size_t>(points))) {
-      for (const double place : some) {
-        EXPECT_GT(place, last);
-        EXPECT_LE(place, 400 + 1e-6);
-        last = place;
-        points += 500 + place;  // from 500 to 900 of 1000 rays
+    for (auto some = schedule.next(64, 48, 0); !some.empty();
+         some = schedule.next(64, 48, static_cast<std::size_t>(points))) {
+      for (const double position : some) {
+        EXPECT_GT(position, last);
+        EXPECT_LE(position, 400 + 1e-6);
+        last = position;
+        points += 500 + position;  // 500 to 900 of 1000 rays
       }
     }
-    EXPECT_NEAR(points, wish, 900) << wish;
-    EXPECT_GE(last, wish > 1e5 ? 380 : 0);
+    EXPECT_NEAR(points, points_wanted, 900) << points_wanted;
+    EXPECT_GE(last, points_wanted > 1e5 ? 380 : 0);
   }
 }
 
-TEST(CityPace, RefusesWhatCannotBe) {
+TEST(ScanSchedule, RejectsContradictoryOptions) {
   for (const SynthCityOptions& options : {SynthCityOptions{.points = 1e6, .spacing_m = 1},
                                           SynthCityOptions{.length_m = 50, .points = 1e12},
                                           SynthCityOptions{.length_m = 1e6, .spacing_m = 0.01}}) {
-    try {
-      const CityPace pace(options, 100'000);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { const ScanSchedule schedule(options, 100'000); });
   }
 }
 

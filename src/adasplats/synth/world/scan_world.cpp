@@ -5,10 +5,10 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/synth/street_caster.h"
-#include "adasplats/synth/vehicle_path.h"
+#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/synth/street_scan.h"
+#include "adasplats/synth/world/world.h"
 #include "adasplats/synth/world/world_parts.h"
-#include "adasplats/synth/world/world_scan.h"
 
 namespace adasplats {
 namespace {
@@ -17,16 +17,17 @@ constexpr std::uint64_t kMountStream = 0x6d6f756e74;
 constexpr double kMountError_rad = 0.006;  // standard deviations
 constexpr double kMountError_m = 0.03;
 constexpr std::uint64_t kDropStream = 0x64726f70;
-constexpr double kLostAnywhere = 0.01;  // of all returns
-constexpr double kLostOnWindows = 0.5;  // of those from panes
+constexpr double kLostAnywhere = 0.01;  // share of all returns
+constexpr double kLostOnWindows = 0.5;  // share of returns from panes
 constexpr double kLostOnCarGlass = 0.85;
-constexpr double kOutliers = 0.0002;  // from nowhere: dust, double echoes
-constexpr double kFaintest = 0.24;    // intensity over (range / 100 m)^2: always kept above
+constexpr double kOutliers = 0.0002;  // share of returns at random ranges: dust, double echoes
+constexpr double kMinStrength =
+    0.24;  // minimum intensity / (range / 100 m)^2 of returns that are never lost
 
 bool is_about(float reflectance, float pane) { return std::fabs(reflectance - pane) < 1e-6F; }
 
-/// The vehicle under the sensor: roof and tail behind it, bonnet before it, as flat tops. In
-/// KITTI's scans the lowest beams lack a third of their points so.
+/// The vehicle under the sensor: flat roof and tail at the rear, bonnet at the front. In KITTI's
+/// scans the lowest beams lack a third of their points for this reason.
 struct BodyTop {
   float rear, front, half_width, below_sensor;  // m
 };
@@ -41,15 +42,15 @@ bool meets_own_body(Vec3f direction) {
   });
 }
 
-/// Whether a return reaches the sensor at all.
+/// Whether a return reaches the sensor.
 bool is_lost(const StreetEcho& echo, Random& random) {
   if (random.uniform() < kLostAnywhere) return true;
   if (is_about(echo.reflectance, kDarkPane)) return random.uniform() < kLostOnWindows;
   if (is_about(echo.reflectance, kCarPane)) return random.uniform() < kLostOnCarGlass;
   const double far = static_cast<double>(echo.range_m) / 100;
-  // Paint that throws the beam away still returns from near.
+  // Specular paint still returns from short range.
   const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);
-  return strength < kFaintest * random.uniform();
+  return strength < kMinStrength * random.uniform();
 }
 
 }  // namespace
@@ -85,7 +86,7 @@ Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> 
         outlier ? echo.range_m * static_cast<float>(random.uniform(0.2, 0.95)) : echo.range_m;
     scan.positions.push_back(firing.origin + range_m * firing.direction);
     scan.ranges_m.push_back(range_m);
-    // Two digits, as KITTI's.
+    // Two digits, as in KITTI.
     scan.intensities.push_back(std::round(echo.intensity * 100) / 100);
     scan.classes.push_back(outlier ? label::kOutlier : echo.class_id);
     scan.instances.push_back(outlier ? std::uint16_t{0} : echo.instance);
@@ -100,16 +101,16 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                 const Executor& executor, ProgressSink& progress) {
   check_settings(options);
   const double way = static_cast<double>(options.scans - 1) * options.spacing_m;
-  if (way > world.place.length_m - 10)
+  if (way > world.street.length_m - 10)
     throw Error(ErrorKind::usage,
                 "a drive of " + std::to_string(way) + " m does not fit on a road of " +
-                    std::to_string(world.place.length_m) + " m; `length` makes it longer");
+                    std::to_string(world.street.length_m) + " m; increase `length`");
   const LidarModel sensor = load_lidar_model(options.sensor);
-  const StreetCaster caster(world.place, sensor.range_noise_m, executor);
+  const StreetCaster caster(world.street, sensor.range_noise_m, executor);
   const RigidTransform vehicle_from_sensor = draw_world_mount(options.seed);
   const double end_s = world.drive.back().time_s;
-  const double m_per_s = world.place.length_m / end_s;
-  const double first_m = 0.5 * (world.place.length_m - way);
+  const double m_per_s = world.street.length_m / end_s;
+  const double first_m = 0.5 * (world.street.length_m - way);
   std::vector<Firing> firings = firings_of(sensor);
   progress.begin_step("scans", options.scans);
   for (std::size_t k = 0; k < options.scans; ++k) {
@@ -122,6 +123,28 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
     progress.advance(k + 1);
   }
   progress.end_step();
+}
+
+WorldReport write_world(const std::filesystem::path& folder, const WorldOptions& world_options,
+                        const WorldScanOptions& scan_options, const Executor& executor,
+                        ProgressSink& progress) {
+  const SynthWorld world = make_world(world_options);
+  WorldReport report;
+  report.mesh_triangles = world.street.fixed.triangles.size();
+  report.moving_objects = world.street.moving.size();
+  // First, because it rejects a folder with another sequence.
+  SemanticKittiWriter sequence(folder / "sequences" / "00");
+  scan_world(
+      world, scan_options,
+      [&](std::size_t index, const Scan& scan) {
+        sequence.write_scan(index, scan);
+        report.points += scan.size();
+        ++report.scans;
+      },
+      executor, progress);
+  sequence.finish();
+  save_street_mesh(folder / "mesh.ply", world.street);
+  return report;
 }
 
 }  // namespace adasplats

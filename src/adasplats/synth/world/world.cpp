@@ -12,19 +12,19 @@ namespace {
 constexpr double kDriveSpeed_m_per_s = 8;
 constexpr double kDriveStep_m = 0.5;
 
-/// The vehicle in the outermost lane of the right side, or further in where no line divides the
-/// road; level across.
+/// The vehicle drives in the outermost lane of the right side, or nearer to the axis of a road
+/// without a center line. No roll.
 Trajectory drive_along(const WorldPlan& plan) {
   Trajectory drive;
   const double lane = plan.driven_line();
-  const auto place = [&](double s) {
+  const auto position = [&](double s) {
     Vec3d p = plan.route.at(s, -lane);
     p.z = plan.height(s, -lane);
     return p;
   };
   for (double s = 0; s < plan.options.length_m; s += kDriveStep_m) {
-    const Vec3d here = place(s);
-    const Vec3d ahead = place(s + 1) - here;
+    const Vec3d here = position(s);
+    const Vec3d ahead = position(s + 1) - here;
     const double pitch = -std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
     drive.push_back({s / kDriveSpeed_m_per_s,
                      {rotation_from_yaw_pitch_roll(std::atan2(ahead.y, ahead.x), pitch, 0), here}});
@@ -43,15 +43,15 @@ SynthWorld make_world(const WorldOptions& options) {
   add_world_edges(plan, builder);
   add_world_plants(plan, builder);
   add_world_furniture(plan, builder);
-  const std::uint16_t first_moving = add_world_standing(plan, builder);
+  const std::uint16_t first_moving = add_world_objects(plan, builder);
   BuiltMesh built = builder.take();
 
   SynthWorld world;
-  world.place.length_m = options.length_m;
-  world.place.fixed = std::move(built.mesh);
-  world.place.instances = std::move(built.instances);
-  world.place.reflectances = std::move(built.reflectances);
-  world.place.moving = make_world_traffic(plan, first_moving);
+  world.street.length_m = options.length_m;
+  world.street.fixed = std::move(built.mesh);
+  world.street.instances = std::move(built.instances);
+  world.street.reflectances = std::move(built.reflectances);
+  world.street.moving = make_world_traffic(plan, first_moving);
   world.drive = drive_along(plan);
   return world;
 }

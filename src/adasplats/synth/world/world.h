@@ -20,7 +20,7 @@
 
 namespace adasplats {
 
-/// What sort of place a procedural world is.
+/// Kind of a procedural world.
 enum class WorldKind : std::uint8_t { residential, suburban, rural, motorway, city };
 inline constexpr std::pair<std::string_view, WorldKind> kWorldKinds[] = {
     {"residential", WorldKind::residential},
@@ -36,13 +36,13 @@ struct WorldOptions {
   double length_m = 200;  ///< of the road
 };
 
-/// How a world is scanned: by a sensor at KITTI's height that drives in the right lane, its drive
-/// in the middle of the road.
+/// How a world is scanned: by a sensor at KITTI's height in the right lane, on a drive around the
+/// middle of the road.
 struct WorldScanOptions {
   std::uint64_t seed = 1;
   std::size_t scans = 10;
   double spacing_m = 1;                           ///< between scans
-  std::string sensor = "velodyne-hdl-64e-kitti";  ///< as load_lidar_model takes it
+  std::string sensor = "velodyne-hdl-64e-kitti";  ///< as for load_lidar_model
 };
 
 template <class Visit>
@@ -77,26 +77,26 @@ void visit_settings(WorldScanOptions& scan, Visit&& visit) {
         scan.spacing_m);
 }
 
-/// A place to learn semantic classes from: SemanticKITTI's classes in exact geometry, another plan
-/// with every seed. Metres, z up; the road begins at the origin and winds.
+/// A scene for learning semantic classes: exact geometry with SemanticKITTI's classes, and another
+/// layout for every seed. Metres, z up; the road is curved and starts at the origin.
 struct SynthWorld {
-  Street place;      ///< its road is not straight; what moves is there from time 0 on
-  Trajectory drive;  ///< of the vehicle on the right lane, origin on the road, from end to end
+  Street street;     ///< with a curved road; movers exist from time 0 on
+  Trajectory drive;  ///< of the vehicle in the right lane, origin on the road, from end to end
 };
 
-/// Builds a world; depends on the options alone. Errors: usage (length out of its range).
+/// Builds a world; depends only on the options. Errors: usage (length out of range).
 SynthWorld make_world(const WorldOptions& options);
 
-/// Scans a world; `on_scan` receives every scan (index, scan) in order. Ranges are noisy as the
-/// sensor says; glass and bright metal lose some returns, and a few are from nowhere: those have
+/// Scans a world; `on_scan` receives every scan (index, scan) in order. Ranges have the sensor's
+/// noise; glass and bright metal lose some returns, and a few returns have random ranges and
 /// SemanticKITTI's class outlier.
-/// Errors: usage (an option out of its range, more scans than the road has room for), those of
+/// Errors: usage (an option out of range, more scans than fit on the road), those of
 /// load_lidar_model.
 void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                 const std::function<void(std::size_t, const Scan&)>& on_scan,
                 const Executor& executor, ProgressSink& progress);
 
-/// What write_world wrote.
+/// Figures of write_world().
 struct WorldReport {
   std::size_t mesh_triangles = 0;
   std::size_t moving_objects = 0;
@@ -104,9 +104,9 @@ struct WorldReport {
   std::size_t points = 0;
 };
 
-/// Makes, scans and writes a world: FOLDER/sequences/00/ (SemanticKITTI), mesh.ply (what stands).
-/// Errors: as make_world and scan_world; cannot_create (also where sequences/00 is there already),
-/// io.
+/// Builds, scans and writes a world: FOLDER/sequences/00/ (SemanticKITTI) and mesh.ply (static
+/// surfaces).
+/// Errors: those of make_world and scan_world; cannot_create (also if sequences/00 exists), io.
 WorldReport write_world(const std::filesystem::path& folder, const WorldOptions& world,
                         const WorldScanOptions& scan, const Executor& executor,
                         ProgressSink& progress);

@@ -4,22 +4,23 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/synth/facade.h"
+#include "adasplats/synth/street_parts.h"
 #include "adasplats/synth/world/world_parts.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kFooting = 1.6;  // walls reach down through land that slopes
+constexpr double kFooting = 1.6;  // walls extend below sloping land
 constexpr double kStorey = 2.75;
-// A row along a street that joins begins so far behind the sidewalk, and is at least so long.
+// Distance behind the sidewalk at which a row along a joining street begins, and its minimum
+// length.
 constexpr double kRowBehindFacades_m = 11.5, kRowBehindHouses_m = 22;
-constexpr double kShortestRow_m = 5;
+constexpr double kMinRow_m = 5;
 
 struct WorldHouse {
   double width = 9, depth = 8;
   int storeys = 2;
-  double roof = 3;  ///< rise of the ridge over the eaves; 0: flat
+  double roof = 3;  ///< height of the ridge above the eaves; 0: flat
   bool ridge_along = true;
   float wall = 0.5F, tiles = 0.3F;
   double eaves() const { return storeys * kStorey + 0.3; }
@@ -37,7 +38,7 @@ WorldHouse draw_house(double widest, Random& random) {
   return house;
 }
 
-/// One wall with an opening in most of its bays, of one storey after the other.
+/// One wall with an opening in most bays, storey by storey.
 void add_house_wall(MeshBuilder& builder, const WallFrame& wall, double width,
                     const WorldHouse& house, bool has_door, Random& random) {
   const int bays = std::max(1, static_cast<int>(std::lround(width / random.uniform(2.4, 3.6))));
@@ -67,7 +68,7 @@ void add_house_wall(MeshBuilder& builder, const WallFrame& wall, double width,
   }
 }
 
-/// Roof with overhanging eaves, its gables and a chimney; x across the front, y away from the road.
+/// Roof with overhanging eaves, gables and a chimney; x along the front, y away from the road.
 void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
   const Material stone = {label::kBuilding, house.wall};
   const Material tiles = {label::kBuilding, house.tiles};
@@ -77,7 +78,7 @@ void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
     builder.box({-half - 0.2, -0.2, top - 0.1}, {half + 0.2, house.depth + 0.2, top + 0.25}, tiles);
     return;
   }
-  // As if the ridge lay along x: u along it, v across.
+  // Computed as if the ridge were along x: u along it, v across.
   const double length_u = house.ridge_along ? house.width : house.depth;
   const double length_v = house.ridge_along ? house.depth : house.width;
   const auto at = [&](double u, double v, double z) {
@@ -96,7 +97,7 @@ void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
   builder.box(chimney - Vec3d{0.35, 0.3, 1.5}, chimney + Vec3d{0.35, 0.3, 0.8}, stone);
 }
 
-/// In the builder's frame: x along the front, its middle at zero, y away from the road.
+/// In the builder's frame: x along the front with 0 at its middle, y away from the road.
 void add_house(MeshBuilder& builder, const WorldHouse& house, Random& random) {
   const double half = 0.5 * house.width;
   add_house_wall(builder, {{-half, 0, 0}, {1, 0, 0}, {0, -1, 0}}, house.width, house, true, random);
@@ -132,29 +133,30 @@ void add_house_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot
   WorldHouse house = draw_house(widest, random);
   if (gap == 0 && random.uniform() < 0.7) house.width = widest;
   const double middle = left + random.uniform(0.5, 1) * (widest - house.width) + 0.5 * house.width;
-  builder.stand_at(plan.stand(middle, plot.side, front, random.normal() * 0.01));
+  builder.set_frame(plan.pose_at(middle, plot.side, front, random.normal() * 0.01));
   add_house(builder, house, random);
   if (plot.driveway && random.uniform() < 0.6) {
     const double back = front + random.uniform(1, 7);
-    builder.stand_at(plan.stand(plot.s0 + 1.9, plot.side, back));
+    builder.set_frame(plan.pose_at(plot.s0 + 1.9, plot.side, back));
     const double z = random.uniform(2.3, 2.9);
     builder.box({-1.6, 0, -kFooting}, {1.6, 5.5, z}, {label::kBuilding, house.wall * 0.9F});
     builder.box({-1.7, -0.2, z}, {1.7, 5.7, z + 0.15}, {label::kBuilding, house.tiles});
   }
-  if (random.uniform() < 0.3) {  // a shed further back
-    builder.stand_at(plan.stand(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
-                                front + house.depth + random.uniform(3, 9), random.uniform(-1, 1)));
+  if (random.uniform() < 0.3) {  // a shed at the back
+    builder.set_frame(plan.pose_at(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
+                                   front + house.depth + random.uniform(3, 9),
+                                   random.uniform(-1, 1)));
     builder.box({-1.4, -1.1, -1}, {1.4, 1.1, 2.1},
                 {random.uniform() < 0.6 ? label::kBuilding : label::kOtherStructure, 0.35F});
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::house, plot.number);
   const double setback = random.uniform() < 0.3 ? random.uniform(0.3, 3) : 0.05;
   const double front = plan.property_line(plot.side) + setback;
-  // Chords between the ends, so that rows of a curve meet.
+  // Chords between the ends, so that rows along a curve join.
   constexpr double kChord_m = 15;
   const int rows = std::max(1, static_cast<int>(std::lround(plot.width() / kChord_m)));
   for (int k = 0; k < rows; ++k) {
@@ -165,13 +167,13 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
     const Vec3d chord = {other.x - one.x, other.y - one.y, 0};
     const Vec3d along = normalized(chord);
     const Vec3d out = static_cast<double>(plot.side) * Vec3d{along.y, -along.x, 0};
-    builder.stand_at({Mat3d{}, {one.x, one.y, std::min(one.z, other.z)}});
+    builder.set_frame({Mat3d{}, {one.x, one.y, std::min(one.z, other.z)}});
     add_facade_row(builder, {{0, 0, 0}, along, out}, length(chord), 0.1, random);
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
-/// A barn, a workshop, a shop: large and with few openings.
+/// A barn, workshop or shop: large, with few openings.
 void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::house, plot.number);
   WorldHouse hall;
@@ -182,55 +184,55 @@ void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot
   hall.wall = static_cast<float>(random.uniform(0.3, 0.75));
   hall.tiles = static_cast<float>(random.uniform(0.2, 0.6));
   const double front = plan.property_line(plot.side) + random.uniform(5, 18);
-  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.05 * random.normal()));
+  builder.set_frame(plan.pose_at(plot.center(), plot.side, front, 0.05 * random.normal()));
   const double half = 0.5 * hall.width;
   builder.box({-half, 0, -kFooting}, {half, hall.depth, hall.eaves()},
               {label::kBuilding, hall.wall});
   add_house_roof(builder, hall);
   for (double x = 1 - half; x < half - 4; x += random.uniform(5, 9))  // gates
     builder.box({x, -0.05, -0.2}, {x + 3, 0.05, 2.6}, {label::kBuilding, 0.25F});
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
-/// The houses of the next street, seen between those of this one.
+/// The houses of the next street, visible between those of this one.
 void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::behind, plot.number);
   if (random.uniform() < 0.35) return;
   const double front = plan.property_line(plot.side) + plot.setback + random.uniform(24, 32);
   const WorldHouse house = draw_house(plot.width() - 2, random);
   if (front + house.depth > plan.reach(plot.side)) return;
-  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.1 * random.normal()));
+  builder.set_frame(plan.pose_at(plot.center(), plot.side, front, 0.1 * random.normal()));
   add_house(builder, house, random);
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
-/// Along one side of a street that joins at s: houses, or facades in a row. `towards` is +1 where
-/// the street is on the side of growing s.
+/// Houses or a row of facades along one side of a street that joins at s. `towards`: +1 if the
+/// street is towards larger s.
 void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot, double s,
                       int towards, double from) {
   Random random =
       random_of(plan, WorldPurpose::behind, 2 * plot.number + (towards > 0 ? 1 : 0) + 100'000);
   const double back = plan.property_line(plot.side) + from;
   const double reach = plan.reach(plot.side);
-  if (reach - back < kShortestRow_m) return;
+  if (reach - back < kMinRow_m) return;
   if (plot.use == Frontage::facades) {
     const Vec3d one = plan.ground_at(s, plot.side * back);
     const Vec3d along =
         normalized(plan.route.at(s, plot.side * (back + 1)) - plan.route.at(s, plot.side * back));
     const double turn = static_cast<double>(plot.side * towards);
-    builder.stand_at({Mat3d{}, one});
+    builder.set_frame({Mat3d{}, one});
     add_facade_row(builder, {{0, 0, 0}, along, turn * Vec3d{along.y, -along.x, 0}}, reach - back,
                    0.1, random);
   } else if (plot.use == Frontage::houses) {
     const double inward = random.uniform(2, 5);
     for (double d = back + 6; d < reach - 6; d += random.uniform(13, 20)) {
-      // The front looks up the street: y of its frame goes away from that.
+      // The front faces the street; y of its frame points away from it.
       const double yaw = (plot.side > 0) == (towards > 0) ? 0.5 : -0.5;
-      builder.stand_at(plan.stand(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
+      builder.set_frame(plan.pose_at(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
       add_house(builder, draw_house(11, random), random);
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void add_side_streets(const WorldPlan& plan, MeshBuilder& builder) {

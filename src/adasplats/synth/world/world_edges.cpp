@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPiece_m = 2.5;
 
-/// Boards or pickets side by side.
+/// Boards or pickets next to each other.
 void add_board_fence(MeshBuilder& builder, Vec3d from, Vec3d to, double height, double board,
                      double gap, float reflectance, Random& random) {
   const Material wood = {label::kFence, reflectance};
@@ -28,7 +28,7 @@ void add_board_fence(MeshBuilder& builder, Vec3d from, Vec3d to, double height, 
   builder.beam(from - Vec3d{0, 0, 0.2}, from + Vec3d{0, 0, height}, 0.045, 0.045, wood);
 }
 
-/// Wires between posts, each a thin band so that a beam may pass.
+/// Wires between posts, each a thin band, so that beams may pass.
 void add_mesh_fence(MeshBuilder& builder, Vec3d from, Vec3d to, double height, float reflectance) {
   const Material wire = {label::kFence, reflectance};
   constexpr double kHalfWire = 0.004;
@@ -61,7 +61,7 @@ void add_wall_piece(MeshBuilder& builder, Vec3d from, Vec3d to, double height, d
 struct EdgeLook {
   EdgeKind kind = EdgeKind::none;
   double height = 1;
-  double detail = 0.1;  ///< board, gap or thickness
+  double detail = 0.1;  ///< width of a board, gap or wall
   float reflectance = 0.4F;
 };
 
@@ -156,7 +156,7 @@ void add_plot_edges(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot
                   random);
 }
 
-/// A band of steel on posts.
+/// A steel band on posts.
 void add_guard_rail(const WorldPlan& plan, MeshBuilder& builder, int side, double from_axis,
                     double s0, double s1) {
   constexpr Material kRail = {label::kFence, 0.5F};
@@ -169,7 +169,7 @@ void add_guard_rail(const WorldPlan& plan, MeshBuilder& builder, int side, doubl
       builder.quad(a + off + Vec3d{0, 0, z0}, b + off + Vec3d{0, 0, z0}, b + Vec3d{0, 0, z1},
                    a + Vec3d{0, 0, z1}, kRail);
     };
-    band(0.44, 0.53, 0.08);  // a wave of two crests
+    band(0.44, 0.53, 0.08);  // a W-beam profile
     band(0.60, 0.53, 0.08);
     band(0.62, 0.69, 0.08);
     band(0.76, 0.69, 0.08);

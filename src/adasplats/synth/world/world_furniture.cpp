@@ -17,7 +17,7 @@ Material pole_material(Random& random) {
 void add_road_sign(MeshBuilder& builder, double height, Random& random) {
   const double radius = random.uniform(0.025, 0.045);
   builder.tube(kInGround, {0, 0, height}, radius, radius, 8, pole_material(random));
-  // Towards those that come, and some to the other side.
+  // Facing oncoming traffic; some face the other way.
   const double yaw = (random.uniform() < 0.8 ? 0 : 3.14159) + 0.2 * random.normal();
   const Vec3d normal = {std::cos(yaw), std::sin(yaw), 0};
   const auto shape = static_cast<SignShape>(static_cast<int>(random.uniform(0, 3.99)));
@@ -26,7 +26,7 @@ void add_road_sign(MeshBuilder& builder, double height, Random& random) {
     add_sign(builder, {}, radius, height - 0.95, normal, SignShape::panel);
 }
 
-/// A board that tells the way, on two posts.
+/// A direction sign on two posts.
 void add_sign_board(MeshBuilder& builder, double width, double low, double high, Random& random) {
   const Material steel = pole_material(random);
   for (const double y : {-0.35 * width, 0.35 * width})
@@ -45,7 +45,7 @@ void add_small_bollard(MeshBuilder& builder, double height, double radius, Rando
   builder.tube(kInGround, {0, 0, height}, radius, 0.9 * radius, 8, pole_material(random));
 }
 
-/// A bin, a cabinet, a letter box, a bench, a planter: what has no class of its own.
+/// Street objects of class other-object: bin, cabinet, letter box, bench, planter.
 void add_street_box(MeshBuilder& builder, Random& random) {
   const Material material = {label::kOtherObject, static_cast<float>(random.uniform(0.15, 0.6))};
   const double draw = random.uniform();
@@ -63,7 +63,7 @@ void add_street_box(MeshBuilder& builder, Random& random) {
   }
 }
 
-/// Glass about a bench.
+/// A glass shelter with a bench.
 void add_shelter(MeshBuilder& builder) {
   constexpr Material kFrame = {label::kOtherStructure, 0.4F};
   constexpr Material kPane = {label::kOtherStructure, kDarkPane};
@@ -75,7 +75,7 @@ void add_shelter(MeshBuilder& builder) {
   builder.box({-1.2, 0.2, 0.42}, {1.2, 0.5, 0.47}, kFrame);
 }
 
-/// What stands on one side, thing by thing: where is free of drives and streets.
+/// Adds objects along one side, where no driveway or street crosses.
 class Furnisher {
  public:
   Furnisher(const WorldPlan& plan, MeshBuilder& builder, int side)
@@ -86,12 +86,12 @@ class Furnisher {
 
   template <class Add>
   void along(double in_100_m, double room, double from_axis, Add add) {
-    for (const double s : places_along(plan_, in_100_m, room, random_)) {
+    for (const double s : positions_along(plan_, in_100_m, room, random_)) {
       if (plan_.is_open(side_, s - 0.4, s + 0.4)) continue;
-      builder_.stand_at(plan_.stand(s, side_, from_axis));
+      builder_.set_frame(plan_.pose_at(s, side_, from_axis));
       add(builder_, random_);
     }
-    builder_.stand_in_world();
+    builder_.reset_frame();
   }
   Random& random() { return random_; }
 
@@ -137,7 +137,7 @@ void furnish_sidewalk(const WorldPlan& plan, MeshBuilder& builder, int side) {
     furnish.along(0.5, 40, back - 0.4, [](MeshBuilder& b, Random&) { add_shelter(b); });
 }
 
-/// Where a street joins: a post with lights before it, on some with an arm over the road.
+/// Traffic lights before a joining street: on a post, some also on an arm over the road.
 void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
   Random random = random_of(plan, WorldPurpose::signs, 1);
   const bool over_road = random.uniform() < 0.5;
@@ -146,7 +146,7 @@ void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
   for (const Patch& patch : plan.patches) {
     if (patch.ground != Ground::road || !patch.crosses_sidewalk) continue;
     for (const double s : {patch.s0 - 1.2, patch.s1 + 1.2}) {
-      builder.stand_at(plan.stand(s, patch.side, patch.d0 + 0.5));
+      builder.set_frame(plan.pose_at(s, patch.side, patch.d0 + 0.5));
       const double tall = over_road ? 5.8 : 3.4;
       builder.tube(kInGround, {0, 0, tall}, 0.07, 0.06, 10, steel);
       builder.box({0.1, -0.15, 2.3}, {0.32, 0.15, 3.2}, kHead);
@@ -155,7 +155,7 @@ void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
       builder.box({0.05, -3, tall - 0.9}, {0.27, -2.7, tall}, kHead);
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
@@ -167,11 +167,11 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
     });
   }
   Random random = random_of(plan, WorldPurpose::signs, 0);
-  for (const double s : places_along(plan, plan.style.gantries, 40, random)) {
+  for (const double s : positions_along(plan, plan.style.gantries, 40, random)) {
     const Material steel = {label::kPole, 0.4F};
     for (const int side : {1, -1}) {
       const double reach = plan.road_end(side) + 1.2;
-      builder.stand_at(plan.stand(s, side, reach));
+      builder.set_frame(plan.pose_at(s, side, reach));
       builder.box({-0.2, -0.2, -0.5}, {0.2, 0.2, 6.5}, steel);
       builder.beam({0, 0, 6.2}, {0, -reach, 6.2}, 0.2, 0.3, steel);
       for (int lane = 0; lane < plan.style.lanes; ++lane) {
@@ -180,7 +180,7 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
       }
     }
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace

@@ -12,43 +12,44 @@ constexpr std::uint16_t kGroundClasses[kGroundCount] = {label::kRoad,        lab
                                                         label::kParking,     label::kSidewalk,
                                                         label::kOtherGround, label::kTerrain};
 
-/// The wished cuts and, between them, even ones at most step(place) apart. Wishes nearer to one
-/// another than 3 cm are one.
+/// The requested cuts and, between them, even ones at most step(position) apart. Requested cuts
+/// within 3 cm of each other are merged.
 template <class Step>
-std::vector<double> even_cuts(std::vector<double> wishes, double low, double high, Step step) {
-  wishes.insert(wishes.end(), {low, high});
-  std::erase_if(wishes, [&](double cut) { return cut < low || cut > high; });
-  std::ranges::sort(wishes);
-  std::vector<double> cuts = {wishes.front()};
-  for (const double wish : wishes) {
+std::vector<double> even_cuts(std::vector<double> requested, double low, double high, Step step) {
+  requested.insert(requested.end(), {low, high});
+  std::erase_if(requested, [&](double cut) { return cut < low || cut > high; });
+  std::ranges::sort(requested);
+  std::vector<double> cuts = {requested.front()};
+  for (const double cut : requested) {
     const double from = cuts.back();
-    if (wish - from < 0.03) continue;
-    const int pieces = std::max(1, static_cast<int>(std::ceil((wish - from) / step(wish))));
-    for (int k = 1; k <= pieces; ++k) cuts.push_back(from + (wish - from) * k / pieces);
+    if (cut - from < 0.03) continue;
+    const int steps = std::max(1, static_cast<int>(std::ceil((cut - from) / step(cut))));
+    for (int k = 1; k <= steps; ++k) cuts.push_back(from + (cut - from) * k / steps);
   }
   return cuts;
 }
 
 std::vector<double> world_cuts_along(const WorldPlan& plan) {
-  std::vector<double> wishes;
-  for (const Patch& patch : plan.patches) wishes.insert(wishes.end(), {patch.s0, patch.s1});
-  return even_cuts(wishes, 0, plan.options.length_m, [](double) { return 0.7; });
+  std::vector<double> requested;
+  for (const Patch& patch : plan.patches) requested.insert(requested.end(), {patch.s0, patch.s1});
+  return even_cuts(requested, 0, plan.options.length_m, [](double) { return 0.7; });
 }
 
 std::vector<double> world_cuts_across(const WorldPlan& plan) {
-  std::vector<double> wishes = {0};
+  std::vector<double> requested = {0};
   for (const int which : {1, -1}) {
-    for (const Strip& strip : plan.strips_of(which)) wishes.push_back(which * strip.to);
+    for (const Strip& strip : plan.strips_of(which)) requested.push_back(which * strip.to);
     for (const Patch& patch : plan.patches)
-      if (patch.side == which) wishes.insert(wishes.end(), {which * patch.d0, which * patch.d1});
+      if (patch.side == which)
+        requested.insert(requested.end(), {which * patch.d0, which * patch.d1});
   }
-  return even_cuts(wishes, -plan.reach(-1), plan.reach(1), [](double d) {
+  return even_cuts(requested, -plan.reach(-1), plan.reach(1), [](double d) {
     const double off = std::fabs(d);
     return off < 12 ? 0.5 : off < 25 ? 0.8 : 1.6;
   });
 }
 
-/// The corners of cells as heights of the land; soil is rough by a draw of the corner.
+/// Heights of the land at cell corners; the roughness of soil is drawn by corner.
 struct GroundGrid {
   const WorldPlan& plan;
   std::vector<double> s, d;
@@ -97,8 +98,8 @@ void add_ground_step(const GroundGrid& grid, MeshBuilder& builder, const WorldPl
                grid.corner(other, i0, j0), face);
 }
 
-/// Faces down from the rim of the land, so that no ray slips between two pieces of a city whose
-/// rims are a little apart.
+/// Vertical faces down from the edge of the land, so that no ray passes through small gaps between
+/// the sections of a city.
 void add_ground_rim(const GroundGrid& grid, MeshBuilder& builder) {
   constexpr Vec3d kDown = {0, 0, -0.6};
   const auto face = [&](const WorldPlan::Cell& cell, std::size_t i0, std::size_t j0, std::size_t i1,

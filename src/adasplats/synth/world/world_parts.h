@@ -3,19 +3,24 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/synth/mesh_builder.h"
 #include "adasplats/synth/street.h"
 #include "adasplats/synth/street_parts.h"
+#include "adasplats/synth/street_scan.h"
 #include "adasplats/synth/world/world_plan.h"
 
-// Inside synth/world/: the builders of the parts of a world, each of which turns its share of the
-// plan into triangles, and the shapes that several of them use.
+// Private to synth/: builders that turn the parts of a world plan into triangles, and shapes that
+// several of them use.
 
 namespace adasplats {
 
-/// First words of WorldPlan::random, one for each thing that draws.
+/// First keys of WorldPlan::random, one per use.
 enum class WorldPurpose : std::uint64_t {
   ground = 20,
   house,
@@ -47,40 +52,40 @@ void add_world_edges(const WorldPlan& plan, MeshBuilder& builder);
 void add_world_plants(const WorldPlan& plan, MeshBuilder& builder);
 /// Lamps, signs, power and tram poles, bollards, boxes, gantries.
 void add_world_furniture(const WorldPlan& plan, MeshBuilder& builder);
-/// Parked vehicles, bicycles, people that stand; ids from 1. Returns the first that is free.
-std::uint16_t add_world_standing(const WorldPlan& plan, MeshBuilder& builder);
-/// What moves, ids from `first_instance`.
+/// Parked vehicles, bicycles and standing people; ids start at 1. Returns the first unused one.
+std::uint16_t add_world_objects(const WorldPlan& plan, MeshBuilder& builder);
+/// Movers; instance ids start at `first_instance`.
 std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_t first_instance);
 
-/// Reflectances of panes: returns of them are often lost.
+/// Reflectances of panes, which often lose returns.
 inline constexpr float kDarkPane = 0.09F, kCarPane = 0.1F;
 
-/// A random number of things in 100 m becomes their places along a side, at least `room` apart.
-std::vector<double> places_along(const WorldPlan& plan, double in_100_m, double room,
-                                 Random& random);
+/// Draws the positions of objects along a side from their density, at least `room` apart.
+std::vector<double> positions_along(const WorldPlan& plan, double in_100_m, double room,
+                                    Random& random);
 
-/// A hedge from `from` to `to`, both on the ground, of leaves about a core.
+/// A hedge of leaves around a core from `from` to `to`, both on the ground.
 void add_leafy_hedge(MeshBuilder& builder, Vec3d from, Vec3d to, double height, double thickness,
                      Random& random);
-/// About the origin of the builder's frame.
+/// At the origin of the builder's frame.
 void add_leafy_bush(MeshBuilder& builder, double radius, double height, Random& random);
 
-/// Buildings along the streets that cross at both ends of a road, behind its outermost plots.
+/// Buildings along the cross streets at both ends of a road, behind its outermost plots.
 void add_corner_rows(const WorldPlan& plan, MeshBuilder& builder);
 
-/// A tree high enough to walk under.
+/// A tree with a crown high enough to walk under.
 void plant_park_tree(const WorldPlan& plan, MeshBuilder& builder, double s, int side,
                      double from_axis, Random& random);
 
-/// In the builder's frame; -y is towards the road. Without an arm (0 m) it is a lantern.
+/// In the builder's frame; -y is towards the road. A lantern if the arm is 0 m long.
 void add_street_lamp(MeshBuilder& builder, double height, double arm, double radius,
                      const Material& material);
-/// In the builder's frame, along x; who sits on it looks to -y.
+/// In the builder's frame, along x, facing -y.
 void add_world_bench(MeshBuilder& builder, const Material& material);
 
-/// What drives, about its own frame: x forward, z up, origin on the ground in the middle.
+/// A mover in its own frame: x forward, z up, origin on the ground at its center.
 enum class VehicleKind : std::uint8_t { car, truck, bus, trailer, cyclist, motorcyclist, walker };
-/// How long one is, m.
+/// Length of a vehicle, m.
 double vehicle_length(VehicleKind kind);
 void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& world_from_vehicle,
                  const Material& material, Random& random);
@@ -88,7 +93,16 @@ void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& w
 void add_bicycle(MeshBuilder& builder, const Material& material);
 void add_motorcycle(MeshBuilder& builder, const Material& material);
 
-/// Reflectance of paint: most of it throws the beam away.
+/// Reflectance of paint; most paint is specular.
 float draw_paint(Random& random);
+
+/// Pose of the sensor on its vehicle: at KITTI's height, with realistic errors of mounting and
+/// load.
+RigidTransform draw_world_mount(std::uint64_t seed);
+
+/// Scan number `number`: drops returns that the vehicle blocks and lost ones, and adds random
+/// outliers. Draws by (seed, number, ray).
+Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
+                   const TimedPose& pose, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace adasplats

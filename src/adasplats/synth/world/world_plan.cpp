@@ -10,7 +10,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::uint64_t kWorldStream = 0x776f726c64;  // apart from the street's
+constexpr std::uint64_t kWorldStream = 0x776f726c64;  // separate from the street's
 constexpr double kDrivewayHalf = 1.5;
 
 double smooth_step(double t) {
@@ -237,23 +237,24 @@ double WorldPlan::height(double s, double d) const {
   z += own.bank * smooth_step((beyond - 2) / 7) + own.tilt * std::max(0.0, beyond - 2);
   z -= own.ditch * std::exp(-std::pow((roads_edge - 2.2) / 0.8, 2));
   if (beyond <= 0) return z;
-  const Vec3d place = route.at(s, d);
+  const Vec3d position = route.at(s, d);
   double swell = 0;
   for (const auto& [direction, wavelength, phase, share] : swells_)
-    swell += share * std::sin(2 * std::numbers::pi *
-                                  (place.x * std::cos(direction) + place.y * std::sin(direction)) /
-                                  wavelength +
-                              phase);
+    swell +=
+        share * std::sin(2 * std::numbers::pi *
+                             (position.x * std::cos(direction) + position.y * std::sin(direction)) /
+                             wavelength +
+                         phase);
   return z + style.undulation * swell * smooth_step(beyond / 12);
 }
 
 Vec3d WorldPlan::ground_at(double s, double d) const {
-  Vec3d place = route.at(s, d);
-  place.z = height(s, d) + cell_at(s, d).step;
-  return place;
+  Vec3d position = route.at(s, d);
+  position.z = height(s, d) + cell_at(s, d).step;
+  return position;
 }
 
-RigidTransform WorldPlan::stand(double s, int which, double from_axis, double yaw) const {
+RigidTransform WorldPlan::pose_at(double s, int which, double from_axis, double yaw) const {
   const double turned = which > 0 ? 0 : std::numbers::pi;
   return {rotation_from_yaw_pitch_roll(route.heading(s) + turned + yaw, 0, 0),
           ground_at(s, which * from_axis)};

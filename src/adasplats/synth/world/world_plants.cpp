@@ -9,11 +9,9 @@
 namespace adasplats {
 namespace {
 
-constexpr double kWholeTurn = 2 * std::numbers::pi;
-
 Vec3d draw_direction(Random& random) {
   const double z = random.uniform(-1, 1);
-  const double azimuth = random.uniform(0, kWholeTurn);
+  const double azimuth = random.uniform(0, kFullTurn);
   const double level = std::sqrt(1 - z * z);
   return {level * std::cos(azimuth), level * std::sin(azimuth), z};
 }
@@ -50,21 +48,22 @@ WorldTree draw_tree(double leafiness, double tallest, Random& random) {
       break;
   }
   tree.leaf = random.uniform(0.14, 0.3);
-  const double skin = tree.crown_radius * (tree.height - tree.crown_base) * kWholeTurn;
-  const double wish = leafiness * random.uniform(0.5, 1.2) * skin / (0.25 * tree.leaf * tree.leaf);
-  tree.leaves = static_cast<int>(std::clamp(wish, 400.0, 4500.0));
+  const double skin = tree.crown_radius * (tree.height - tree.crown_base) * kFullTurn;
+  const double leaves =
+      leafiness * random.uniform(0.5, 1.2) * skin / (0.25 * tree.leaf * tree.leaf);
+  tree.leaves = static_cast<int>(std::clamp(leaves, 400.0, 4500.0));
   tree.leaf = std::max(tree.leaf, std::sqrt(leafiness * skin / (0.35 * tree.leaves)));
   return tree;
 }
 
-/// More leaves and smaller ones, for what stands near the road.
+/// More and smaller leaves for plants near the road.
 WorldTree with_fine_leaves(WorldTree tree) {
   tree.leaves *= 2;
   tree.leaf /= std::numbers::sqrt2;
   return tree;
 }
 
-/// How wide the crown is at a share of its height, 0..1.
+/// Relative width of the crown at a share of its height, 0..1.
 double crown_width(Crown crown, double share) {
   switch (crown) {
     case Crown::round: return std::sqrt(std::max(0.0, 1 - std::pow(2 * share - 0.85, 2) / 1.33));
@@ -74,11 +73,11 @@ double crown_width(Crown crown, double share) {
   return 0;
 }
 
-/// In the builder's frame, its foot at the origin.
+/// In the builder's frame, with its foot at the origin.
 void add_world_tree(MeshBuilder& builder, const WorldTree& tree, Random& random) {
   const Material bark = {label::kTrunk, static_cast<float>(random.uniform(0.3, 0.55))};
   const Material branch = {label::kVegetation, bark.reflectance};
-  const double azimuth = random.uniform(0, kWholeTurn);
+  const double azimuth = random.uniform(0, kFullTurn);
   const auto stem = [&](double z) {
     return Vec3d{tree.lean * z * std::cos(azimuth), tree.lean * z * std::sin(azimuth), z};
   };
@@ -87,7 +86,7 @@ void add_world_tree(MeshBuilder& builder, const WorldTree& tree, Random& random)
            0.9 * tree.trunk_radius, 9, bark);
   add_limb(builder, {stem(fork), stem(0.9 * tree.height)}, 0.9 * tree.trunk_radius, 0.03, 6, bark);
   const double crown_height = tree.height - tree.crown_base;
-  // Leaves hang about clumps, so that a crown has holes and bulges.
+  // Leaves surround clumps, so that a crown has holes and bulges.
   const int clumps = 12 + static_cast<int>(random.uniform(0, 24));
   const int each = std::max(1, tree.leaves / clumps);
   for (int k = 0; k < clumps; ++k) {
@@ -112,15 +111,15 @@ void add_world_tree(MeshBuilder& builder, const WorldTree& tree, Random& random)
 
 void plant(const WorldPlan& plan, MeshBuilder& builder, double s, int side, double from_axis,
            const WorldTree& tree, Random& random) {
-  builder.stand_at(plan.stand(s, side, from_axis, random.uniform(0, kWholeTurn)));
+  builder.set_frame(plan.pose_at(s, side, from_axis, random.uniform(0, kFullTurn)));
   add_world_tree(builder, tree, random);
 }
 
 void plant_bush(const WorldPlan& plan, MeshBuilder& builder, double s, int side, double from_axis,
                 Random& random) {
   const double radius = random.uniform(0.3, 1.1) * random.uniform(0.8, 1.6);
-  builder.stand_at(plan.stand(s, side, from_axis, random.uniform(0, kWholeTurn)),
-                   {random.uniform(0.7, 1.4), 1, 1});
+  builder.set_frame(plan.pose_at(s, side, from_axis, random.uniform(0, kFullTurn)),
+                    {random.uniform(0.7, 1.4), 1, 1});
   add_leafy_bush(builder, radius, radius * random.uniform(0.8, 2), random);
 }
 
@@ -129,7 +128,7 @@ void plant_garden(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
   const double line = plan.property_line(plot.side);
   const auto draw_place = [&](double& s, double& d) {
     s = random.uniform(plot.s0 + 1, plot.s1 - 1);
-    // Before the house or behind it; beside the drive.
+    // In front of the house, behind it, or next to the driveway.
     const bool before = plot.setback > 2.5 && random.uniform() < 0.7;
     d = line + (before ? random.uniform(0.9, plot.setback - 0.8)
                        : random.uniform(plot.setback + 12, plot.setback + 24));
@@ -147,7 +146,7 @@ void plant_garden(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
     if (draw_place(s, d)) plant_bush(plan, builder, s, plot.side, d, random);
 }
 
-/// Bushes that grow at the edge of a plot.
+/// Bushes at the edge of a plot.
 void plant_edge(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::edges_plants, plot.number);
   const double line = plan.property_line(plot.side);
@@ -168,16 +167,16 @@ void plant_grass(const WorldPlan& plan, MeshBuilder& builder, int side) {
   Random random = random_of(plan, WorldPurpose::grass, side > 0 ? 1 : 0);
   const double line = plan.road_end(side) + 0.5;
   const double reach = random.uniform(1, 9);
-  for (const double s : places_along(plan, plan.side(side).grass, 0, random)) {
+  for (const double s : positions_along(plan, plan.side(side).grass, 0, random)) {
     const double out = line + reach * random.uniform();
     if (plan.cell_at(s, side * out).ground != Ground::terrain) continue;
-    builder.stand_at(plan.stand(s, side, out));
+    builder.set_frame(plan.pose_at(s, side, out));
     const double height = random.uniform(0.25, 0.8);
     for (int blade = 0; blade < 30; ++blade) {
       const Vec3d foot = {0.3 * random.normal(), 0.3 * random.normal(), -0.05};
       const Vec3d tip = foot + height * Vec3d{0.3 * random.normal(), 0.3 * random.normal(),
                                               random.uniform(0.6, 1.1)};
-      const double azimuth = random.uniform(0, kWholeTurn);
+      const double azimuth = random.uniform(0, kFullTurn);
       const Vec3d wide = 0.02 * Vec3d{std::cos(azimuth), std::sin(azimuth), 0};
       builder.triangle(foot - wide, foot + wide, tip,
                        {label::kVegetation, static_cast<float>(random.uniform(0.35, 0.6))});
@@ -185,7 +184,7 @@ void plant_grass(const WorldPlan& plan, MeshBuilder& builder, int side) {
   }
 }
 
-/// A tree on each island of the parking lane, and low plants about it.
+/// A tree on each island of the parking lane, with low plants around it.
 void plant_islands(const WorldPlan& plan, MeshBuilder& builder) {
   Random random = random_of(plan, WorldPurpose::islands, 0);
   const double low = random.uniform() < 0.6 ? random.uniform(0.25, 0.8) : 0;
@@ -200,7 +199,7 @@ void plant_islands(const WorldPlan& plan, MeshBuilder& builder) {
       tree.height = std::max(tree.height, 4.5);
       plant(plan, builder, s, patch.side, d, with_fine_leaves(tree), random);
     }
-    builder.stand_in_world();
+    builder.reset_frame();
     if (low > 0)
       add_leafy_hedge(builder, plan.ground_at(patch.s0 + 0.15, patch.side * d),
                       plan.ground_at(patch.s1 - 0.15, patch.side * d),
@@ -212,7 +211,7 @@ void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& pl
   Random random = random_of(plan, WorldPurpose::garden, plot.number);
   const double line = plan.property_line(plot.side) + random.uniform(0.8, 6);
   const double deep = std::min(plan.reach(plot.side) - 3, line + random.uniform(6, 26));
-  const double room = random.uniform(10, 30);  // m2 a tree
+  const double room = random.uniform(10, 30);  // m2 per tree
   const int trees = static_cast<int>(plot.width() * (deep - line) / room);
   for (int k = 0; k < trees; ++k) {
     WorldTree tree = draw_tree(plan.style.leafiness, random.uniform(6, 16), random);
@@ -226,17 +225,17 @@ void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& pl
                line + 5 * random.uniform() * random.uniform(), random);
 }
 
-/// Trees between road and plots, or just behind; bushes of the open land.
+/// Trees between the road and the plots, or just behind; bushes of the open land.
 void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
   Random random = random_of(plan, WorldPurpose::trees, side > 0 ? 1 : 0);
   const SideStyle& own = plan.side(side);
   const bool at_kerb = own.sidewalk + own.verge > 1.8;
   const double line = at_kerb ? plan.road_end(side) + 0.9 : plan.property_line(side) + 1.6;
   const double tallest = random.uniform(5, 14);
-  for (const double s : places_along(plan, own.trees, 3, random)) {
+  for (const double s : positions_along(plan, own.trees, 3, random)) {
     if (plan.is_open(side, s - 1, s + 1)) continue;
     WorldTree tree = draw_tree(plan.style.leafiness, tallest, random);
-    if (at_kerb) {  // those over a road are pruned
+    if (at_kerb) {  // trees over a road are pruned
       tree.crown = Crown::round;
       tree.height = std::max(tree.height, 5.0);
       tree.crown_base = std::max(tree.crown_base, 2.1);
@@ -244,7 +243,7 @@ void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
     plant(plan, builder, s, side, line + 0.15 * random.normal(), with_fine_leaves(tree), random);
   }
   if (own.frontage != Frontage::open) return;
-  for (const double s : places_along(plan, own.bushes, 0.5, random)) {
+  for (const double s : positions_along(plan, own.bushes, 0.5, random)) {
     if (plan.is_crossing(side, s)) continue;
     plant_bush(plan, builder, s, side,
                plan.property_line(side) + 1 + 14 * random.uniform() * random.uniform(), random);
@@ -262,18 +261,18 @@ void plant_park_tree(const WorldPlan& plan, MeshBuilder& builder, double s, int 
   tree.leaves /= 2;
   tree.leaf *= std::numbers::sqrt2;
   plant(plan, builder, s, side, from_axis, tree, random);
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
-std::vector<double> places_along(const WorldPlan& plan, double in_100_m, double room,
-                                 Random& random) {
-  std::vector<double> places;
-  if (in_100_m <= 0) return places;
+std::vector<double> positions_along(const WorldPlan& plan, double in_100_m, double room,
+                                    Random& random) {
+  std::vector<double> positions;
+  if (in_100_m <= 0) return positions;
   const double mean = 100 / in_100_m;
   for (double s = mean * random.uniform(); s < plan.options.length_m - 0.5;
        s += std::max(room, mean * random.uniform(0.4, 1.6)))
-    places.push_back(s);
-  return places;
+    positions.push_back(s);
+  return positions;
 }
 
 void add_leafy_hedge(MeshBuilder& builder, Vec3d from, Vec3d to, double height, double thickness,
@@ -326,7 +325,7 @@ void add_world_plants(const WorldPlan& plan, MeshBuilder& builder) {
     plant_grass(plan, builder, side);
   }
   plant_islands(plan, builder);
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace adasplats

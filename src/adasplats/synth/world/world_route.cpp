@@ -11,7 +11,6 @@ namespace adasplats {
 namespace {
 
 constexpr double kRouteStep_m = 0.5;
-constexpr double kFullTurn = 2 * std::numbers::pi;
 
 }  // namespace
 
@@ -33,35 +32,35 @@ WorldRoute::WorldRoute(double length_m, const RouteLimits& limits, Random random
     wave.phase = random.uniform(0, kFullTurn);
     wave.amplitude = 0.5 * limits.max_climb * random.uniform() * wave.length_m / kFullTurn;
   }
-  Vec3d place;
+  Vec3d position;
   const double beyond = length_m + 2 * kBeyond_m;
   for (double s = -kBeyond_m; s <= beyond; s += kRouteStep_m) {
-    axis_.push_back(place);
+    axis_.push_back(position);
     const double middle = heading(s + 0.5 * kRouteStep_m);
-    place = place + kRouteStep_m * Vec3d{std::cos(middle), std::sin(middle), 0};
+    position = position + kRouteStep_m * Vec3d{std::cos(middle), std::sin(middle), 0};
   }
   const Vec3d start = axis_[static_cast<std::size_t>(kBeyond_m / kRouteStep_m)];
   for (Vec3d& p : axis_) p = p - start;
 }
 
-WorldRoute::WorldRoute(double length_m, LandPlace place_of)
-    : length_m_(length_m), place_of_(std::move(place_of)) {}
+WorldRoute::WorldRoute(double length_m, LandPosition land)
+    : length_m_(length_m), land_(std::move(land)) {}
 
 double WorldRoute::heading(double s) const {
-  if (!place_of_) return heading_[0].at(s) + heading_[1].at(s);
-  const Vec3d along = place_of_(s + kRouteStep_m, 0) - place_of_(s - kRouteStep_m, 0);
+  if (!land_) return heading_[0].at(s) + heading_[1].at(s);
+  const Vec3d along = land_(s + kRouteStep_m, 0) - land_(s - kRouteStep_m, 0);
   return std::atan2(along.y, along.x);
 }
 
 double WorldRoute::land_height(double s, double d) const {
-  return place_of_ ? place_of_(s, d).z : height_[0].at(s) + height_[1].at(s);
+  return land_ ? land_(s, d).z : height_[0].at(s) + height_[1].at(s);
 }
 
 Vec3d WorldRoute::at(double s, double d) const {
-  if (place_of_) {
-    Vec3d place = place_of_(s, d);
-    place.z = 0;
-    return place;
+  if (land_) {
+    Vec3d position = land_(s, d);
+    position.z = 0;
+    return position;
   }
   const double along =
       std::clamp((s + kBeyond_m) / kRouteStep_m, 0.0, static_cast<double>(axis_.size()) - 2);

@@ -4,37 +4,40 @@
 
 #include <array>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/rigid_transform.h"
 
-// Inside synth/world/: where the road goes, in the plane and up and down. A place of a world is
-// (s, d): metres along the axis of the road, and metres to the left of it.
+// Private to synth/: the course of the road, in plan and height. Positions in a world are (s, d):
+// metres along the axis of the road, and metres to its left.
 
 namespace adasplats {
 
-/// How far a kind of place bends and climbs.
+inline constexpr double kFullTurn = 2 * std::numbers::pi;
+
+/// Limits of the curvature and slope of a kind of world.
 struct RouteLimits {
   double min_radius_m = 100;
   double max_climb = 0.03;  ///< slope of the road
 };
 
-/// Where the place (s, d) of a road is, with the height of the land there.
-using LandPlace = std::function<Vec3d(double s, double d)>;
+/// World coordinates of a position (s, d), including the height of the land.
+using LandPosition = std::function<Vec3d(double s, double d)>;
 
-/// The axis of a road: its heading is a sum of two waves, its height another; or it lies in a land
-/// that is given.
+/// The axis of a road: its heading is the sum of two waves, its height another wave; or it follows
+/// a given land.
 class WorldRoute {
  public:
   WorldRoute(double length_m, const RouteLimits& limits, Random random);
-  WorldRoute(double length_m, LandPlace place_of);
+  WorldRoute(double length_m, LandPosition land);
 
   double length_m() const { return length_m_; }
   double heading(double s) const;
-  /// Of the land at a place: that of the axis there, unless the land is given.
+  /// Height of the land: that of the axis, unless the land is given.
   double land_height(double s, double d) const;
-  /// A place without its height.
+  /// World coordinates without the height.
   Vec3d at(double s, double d) const;
 
  private:
@@ -44,13 +47,13 @@ class WorldRoute {
   };
 
   double length_m_;
-  LandPlace place_of_;  ///< where the land is given, else empty
+  LandPosition land_;  ///< the given land, else empty
   std::array<Wave, 2> heading_;
   std::array<Wave, 2> height_;
   std::vector<Vec3d> axis_;  ///< every kStep_m from -kBeyond_m on
 };
 
-/// The axis goes on for so long before its beginning and after its end.
+/// The axis extends this far beyond both ends of the road.
 inline constexpr double kBeyond_m = 40;
 
 }  // namespace adasplats

@@ -5,14 +5,14 @@
 namespace adasplats {
 namespace {
 
-/// Draws of one style, short to write.
+/// Shorthands for the draws of one style.
 class Draw {
  public:
   explicit Draw(Random random) : random_(random) {}
   double in(double low, double high) { return random_.uniform(low, high); }
   bool chance(double share) { return random_.uniform() < share; }
-  /// Mostly few, at times many: the variety of real places.
-  double few(double most) { return most * in(0, 1) * in(0.2, 1); }
+  /// Mostly small, sometimes near the maximum, like the variety of real streets.
+  double few(double max) { return max * in(0, 1) * in(0.2, 1); }
 
  private:
   Random random_;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/world/world_plan.h"
 
 namespace adasplats {
@@ -18,14 +18,14 @@ constexpr std::array kKinds = {WorldKind::residential, WorldKind::suburban, Worl
                                WorldKind::motorway, WorldKind::city};
 
 std::set<std::uint16_t> classes_of(const SynthWorld& world) {
-  std::set<std::uint16_t> classes(world.place.fixed.classes.begin(),
-                                  world.place.fixed.classes.end());
-  for (const MovingObject& object : world.place.moving)
+  std::set<std::uint16_t> classes(world.street.fixed.classes.begin(),
+                                  world.street.fixed.classes.end());
+  for (const MovingObject& object : world.street.moving)
     classes.insert(object.mesh.classes.begin(), object.mesh.classes.end());
   return classes;
 }
 
-// Oracle: SemanticKITTI's list of classes that are learnt (semantic-kitti.yaml), moving or not.
+// Oracle: SemanticKITTI's list of learned classes (semantic-kitti.yaml), moving or not.
 TEST(SynthWorld, KindsTogetherHaveEveryClass) {
   std::set<std::uint16_t> seen;
   for (const WorldKind kind : kKinds)
@@ -41,34 +41,34 @@ TEST(SynthWorld, KindsTogetherHaveEveryClass) {
         << standing;
 }
 
-TEST(SynthWorld, DependsOnItsOptionsAlone) {
+TEST(SynthWorld, DependsOnlyOnItsOptions) {
   const WorldOptions options = {.seed = 4, .kind = WorldKind::residential, .length_m = 80};
   const SynthWorld one = make_world(options);
   const SynthWorld same = make_world(options);
   const SynthWorld other = make_world({.seed = 5, .kind = options.kind, .length_m = 80});
-  EXPECT_EQ(one.place.fixed.vertices, same.place.fixed.vertices);
-  EXPECT_EQ(one.place.fixed.classes, same.place.fixed.classes);
-  EXPECT_EQ(one.place.moving.size(), same.place.moving.size());
-  EXPECT_NE(one.place.fixed.vertices, other.place.fixed.vertices);
+  EXPECT_EQ(one.street.fixed.vertices, same.street.fixed.vertices);
+  EXPECT_EQ(one.street.fixed.classes, same.street.fixed.classes);
+  EXPECT_EQ(one.street.moving.size(), same.street.moving.size());
+  EXPECT_NE(one.street.fixed.vertices, other.street.fixed.vertices);
 }
 
 TEST(SynthWorld, EveryTriangleIsFiniteAndHasItsAttributes) {
   for (const WorldKind kind : kKinds) {
     const SynthWorld world = make_world({.seed = 2, .kind = kind, .length_m = 80});
-    const TriangleMesh& mesh = world.place.fixed;
+    const TriangleMesh& mesh = world.street.fixed;
     EXPECT_GT(mesh.triangles.size(), 10'000U);
     ASSERT_EQ(mesh.classes.size(), mesh.triangles.size());
-    ASSERT_EQ(world.place.instances.size(), mesh.triangles.size());
-    ASSERT_EQ(world.place.reflectances.size(), mesh.triangles.size());
+    ASSERT_EQ(world.street.instances.size(), mesh.triangles.size());
+    ASSERT_EQ(world.street.reflectances.size(), mesh.triangles.size());
     for (const Vec3f& v : mesh.vertices)
       ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
-    for (const float reflectance : world.place.reflectances)
+    for (const float reflectance : world.street.reflectances)
       ASSERT_TRUE(reflectance > 0 && reflectance <= 1) << reflectance;
   }
 }
 
-// Oracle: the plan's own height, on the lane that is driven.
-TEST(SynthWorld, TheDriveIsOnTheRoad) {
+// Oracle: the plan's own height in the driven lane.
+TEST(SynthWorld, DriveIsOnTheRoad) {
   for (const WorldKind kind : kKinds) {
     const WorldOptions options = {.seed = 3, .kind = kind, .length_m = 80};
     const WorldPlan plan(options);
@@ -83,14 +83,23 @@ TEST(SynthWorld, TheDriveIsOnTheRoad) {
   }
 }
 
-TEST(SynthWorld, RefusesALengthOutOfRange) {
+TEST(SynthWorld, RejectsALengthOutOfRange) {
   for (const double length_m : {0.0, 79.0, 1001.0, std::nan("")}) {
-    try {
-      make_world({.length_m = length_m});
-      ADD_FAILURE() << length_m;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    expect_error(ErrorKind::usage, {}, [&] { make_world({.length_m = length_m}); });
+  }
+}
+
+// Oracle: a displacement of d along the normal of the axis has length d and keeps the heading.
+TEST(WorldRoute, PositionsBesideTheAxisHaveTheirDistance) {
+  const WorldRoute route(200, {90, 0.05}, Random(1, 2, 3));
+  EXPECT_EQ(route.at(0, 0), (Vec3d{0, 0, 0}));
+  for (const double s : {0.0, 33.3, 100.0, 199.0}) {
+    const Vec3d off = route.at(s, 12) - route.at(s, 0);
+    EXPECT_NEAR(length(off), 12, 1e-9);
+    EXPECT_NEAR(off.x * std::cos(route.heading(s)) + off.y * std::sin(route.heading(s)), 0, 1e-9);
+    EXPECT_NEAR(length(route.at(s + 0.5, 0) - route.at(s, 0)), 0.5, 1e-3);
+    // The radius stays above its limit: inner positions are passed only once.
+    EXPECT_LT(std::fabs(route.heading(s + 1) - route.heading(s)), 1 / 90.0 + 1e-9);
   }
 }
 

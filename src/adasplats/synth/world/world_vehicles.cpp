@@ -22,7 +22,7 @@ void add_wheel_pairs(MeshBuilder& builder, std::initializer_list<double> axles, 
                    14, with_reflectance(material, 0.07F));
 }
 
-/// A truck of a cab and a box, or with a trailer behind it.
+/// A truck with a box or a flat bed, optionally with a trailer.
 void add_truck(MeshBuilder& builder, const Material& paint, Random& random) {
   const double box = random.uniform(3.2, 4) - 1;
   const bool flat = random.uniform() < 0.2;
@@ -64,7 +64,7 @@ void add_bus(MeshBuilder& builder, const Material& paint) {
   add_wheel_pairs(builder, {3.3, -3.2}, 1.27, 0.48, paint);
 }
 
-/// A trailer without what draws it: of a box, or a caravan.
+/// A trailer without its towing vehicle: a box or a caravan.
 void add_trailer(MeshBuilder& builder, const Material& paint, Random& random) {
   const bool caravan = random.uniform() < 0.5;
   const double half = caravan ? 2.3 : random.uniform(0.9, 1.6);
@@ -79,7 +79,7 @@ void add_trailer(MeshBuilder& builder, const Material& paint, Random& random) {
   add_wheel_pairs(builder, {0}, 1.05, 0.32, paint);
 }
 
-/// A wheel seen from the side: a ring of tubes and a few spokes.
+/// A wheel in side view: a ring of tubes with a few spokes.
 void add_spoked_wheel(MeshBuilder& builder, double x, double radius, double tyre,
                       const Material& material) {
   constexpr int kPieces = 14;
@@ -92,7 +92,7 @@ void add_spoked_wheel(MeshBuilder& builder, double x, double radius, double tyre
     builder.beam({x, 0, radius + tyre}, at(k), 0.004, 0.004, material);
 }
 
-/// Legs bent over a saddle, body leaning to the bars.
+/// A seated rider: legs bent, body leaning towards the handlebars.
 void add_rider(MeshBuilder& builder, double saddle_x, double saddle_z, double lean,
                const Material& cloth) {
   const Vec3d seat = {saddle_x, 0, saddle_z};
@@ -112,13 +112,13 @@ void add_rider(MeshBuilder& builder, double saddle_x, double saddle_z, double le
 void add_stretched_car(MeshBuilder& builder, const RigidTransform& world_from_vehicle,
                        const Material& paint, Random& random) {
   const double body = random.uniform();
-  const int shape = body < 0.55   ? 0  // hatchbacks, and longer ones as estates
+  const int shape = body < 0.55   ? 0  // hatchbacks, the longer ones as estates
                     : body < 0.77 ? 1
                     : body < 0.92 ? 2
                                   : 3;
   const bool estate = shape == 0 && random.uniform() < 0.45;
-  builder.stand_at(world_from_vehicle, {(estate ? 1.16 : 1.0) * random.uniform(0.92, 1.08),
-                                        random.uniform(0.94, 1.04), random.uniform(0.93, 1.03)});
+  builder.set_frame(world_from_vehicle, {(estate ? 1.16 : 1.0) * random.uniform(0.92, 1.08),
+                                         random.uniform(0.94, 1.04), random.uniform(0.93, 1.03)});
   add_car(builder, shape, paint, RigidTransform{});
 }
 
@@ -174,7 +174,7 @@ void add_motorcycle(MeshBuilder& builder, const Material& material) {
 void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& world_from_vehicle,
                  const Material& material, Random& random) {
   const double scale = random.uniform(0.93, 1.07);
-  builder.stand_at(world_from_vehicle, {scale, scale, scale});
+  builder.set_frame(world_from_vehicle, {scale, scale, scale});
   switch (kind) {
     case VehicleKind::car: add_stretched_car(builder, world_from_vehicle, material, random); break;
     case VehicleKind::truck: add_truck(builder, material, random); break;
@@ -190,7 +190,7 @@ void add_vehicle(MeshBuilder& builder, VehicleKind kind, const RigidTransform& w
       break;
     case VehicleKind::walker: add_person(builder, random.uniform(1.15, 1.95), material); break;
   }
-  builder.stand_in_world();
+  builder.reset_frame();
 }
 
 }  // namespace adasplats

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -9,24 +8,17 @@
 #include <string>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/world/world.h"
 
 namespace adasplats {
 namespace {
 
-/// A folder of this process that goes with the test.
 class WriteWorld : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("adasplats write world " + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path() / "world";
   ProgressSink progress_;
 };
 
@@ -37,7 +29,7 @@ WorldScanOptions few_scans(std::size_t scans) {
 }
 
 // Oracle: round trip through the readers.
-TEST_F(WriteWorld, FilesHoldWhatWasMade) {
+TEST_F(WriteWorld, FilesRoundTrip) {
   const Executor executor(2);
   const WorldReport report = write_world(folder_, kSmall, few_scans(3), executor, progress_);
   EXPECT_EQ(report.scans, 3U);
@@ -55,18 +47,14 @@ TEST_F(WriteWorld, FilesHoldWhatWasMade) {
         2, 0.05);
 }
 
-TEST_F(WriteWorld, RefusesAFolderThatHoldsAWorld) {
+TEST_F(WriteWorld, RejectsAFolderWithAWorld) {
   const Executor executor(2);
   write_world(folder_, kSmall, few_scans(1), executor, progress_);
-  try {
-    write_world(folder_, kSmall, few_scans(1), executor, progress_);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::cannot_create) << error.what();
-  }
+  expect_error(ErrorKind::cannot_create, {},
+               [&] { write_world(folder_, kSmall, few_scans(1), executor, progress_); });
 }
 
-// Oracle: the same with another number of threads.
+// Oracle: the same world with another number of threads.
 TEST_F(WriteWorld, ScansDoNotDependOnThreads) {
   const SynthWorld world = make_world(kSmall);
   std::vector<Scan> scans;
@@ -82,18 +70,15 @@ TEST_F(WriteWorld, ScansDoNotDependOnThreads) {
   EXPECT_LT(scans[0].size(), scans[0].rays);
 }
 
-TEST_F(WriteWorld, RefusesMoreScansThanTheRoadHasRoomFor) {
+TEST_F(WriteWorld, RejectsMoreScansThanFitOnTheRoad) {
   const Executor executor(1);
   const SynthWorld world = make_world(kSmall);
   for (const WorldScanOptions& options :
        {few_scans(0), few_scans(60), WorldScanOptions{.spacing_m = std::nan("")}}) {
-    try {
+    expect_error(ErrorKind::usage, {}, [&] {
       scan_world(
           world, options, [](std::size_t, const Scan&) {}, executor, progress_);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
-    }
+    });
   }
 }
 

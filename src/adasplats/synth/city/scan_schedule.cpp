@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/synth/city/city_pace.h"
+#include "adasplats/synth/city/scan_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,41 +12,39 @@ namespace adasplats {
 namespace {
 
 constexpr double kDefaultSpacing_m = 1;
-constexpr double kReturningShare = 0.85;  // of rays, before any is cast
-constexpr double kMaxScans = 1e6;         // that six digits name
+constexpr double kReturningShare = 0.85;  // expected share of rays that return
+constexpr double kMaxScans = 1e6;         // file names have six digits
 constexpr double kMinSpacing_m = 0.001;
 
 }  // namespace
 
-CityPace::CityPace(const SynthCityOptions& options, std::size_t rays)
+ScanSchedule::ScanSchedule(const SynthCityOptions& options, std::size_t rays)
     : length_m_(options.length_m),
       spacing_m_(options.spacing_m.value_or(kDefaultSpacing_m)),
       points_(options.points.value_or(0)),
       mean_points_(kReturningShare * static_cast<double>(rays)) {
   if (options.points && options.spacing_m)
-    throw Error(ErrorKind::usage,
-                "`points` and `spacing` are two ways to say the same: give one of them");
-  // Where a scan has fewer points than expected there are more scans.
+    throw Error(ErrorKind::usage, "`points` and `spacing` exclude each other; use one of them");
+  // Scans may have fewer points than expected, which adds scans.
   const double scans = options.points ? 2 * points_ / mean_points_ : length_m_ / spacing_m_ + 1;
   if (scans > kMaxScans)
     throw Error(ErrorKind::usage,
-                "that is more than " + std::to_string(static_cast<long>(kMaxScans)) +
-                    " scans; several cities of other seeds, or a larger" + " `spacing`");
+                "the drive has more than " + std::to_string(static_cast<long>(kMaxScans)) +
+                    " scans; increase `spacing`, or make several cities with different `seed`");
   if (options.points && length_m_ / scans < kMinSpacing_m)
     throw Error(ErrorKind::usage,
-                "scans would be less than 1 mm apart: fewer `points`, or more"
-                " `length`");
+                "the scans are less than 1 mm apart; decrease `points` or increase `length`");
 }
 
-std::vector<double> CityPace::next(std::size_t most, double way_m, std::size_t points) {
+std::vector<double> ScanSchedule::next(std::size_t max_scans, double way_m, std::size_t points) {
   if (points_ > 0) {
     if (scans_ > 0)
       mean_points_ = std::max(1.0, static_cast<double>(points) / static_cast<double>(scans_));
     const double left = std::round((points_ - static_cast<double>(points)) / mean_points_);
     if (left < 1 && scans_ > 0) return {};
-    // Half of those that are left at most, so that the last ones are right to a scan.
+    // At max_scans half of the remaining scans, so that the total is right to within one scan.
     const double scans = std::max(1.0, left);
-    most = std::min(most, static_cast<std::size_t>(std::ceil(0.5 * scans)));
+    max_scans = std::min(max_scans, static_cast<std::size_t>(std::ceil(0.5 * scans)));
     if (scans_ == 0) {
       spacing_m_ = length_m_ / scans;
     } else {
@@ -55,20 +53,20 @@ std::vector<double> CityPace::next(std::size_t most, double way_m, std::size_t p
       next_m_ = last + spacing_m_;
     }
   }
-  std::vector<double> places = foreseen(most, way_m);
-  scans_ += places.size();
-  next_m_ += spacing_m_ * static_cast<double>(places.size());
-  return places;
+  std::vector<double> positions = preview(max_scans, way_m);
+  scans_ += positions.size();
+  next_m_ += spacing_m_ * static_cast<double>(positions.size());
+  return positions;
 }
 
-std::vector<double> CityPace::foreseen(std::size_t most, double way_m) const {
-  std::vector<double> places;
-  for (std::size_t k = 0; k < most; ++k) {
+std::vector<double> ScanSchedule::preview(std::size_t max_scans, double way_m) const {
+  std::vector<double> positions;
+  for (std::size_t k = 0; k < max_scans; ++k) {
     const double on = spacing_m_ * static_cast<double>(k);
     if (next_m_ + on > length_m_ + 1e-6 || (k > 0 && on > way_m)) break;
-    places.push_back(next_m_ + on);
+    positions.push_back(next_m_ + on);
   }
-  return places;
+  return positions;
 }
 
 }  // namespace adasplats

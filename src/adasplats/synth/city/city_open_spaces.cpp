@@ -4,26 +4,26 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/synth/city/city_parts.h"
+#include "adasplats/synth/city/city_grid.h"
 
 namespace adasplats {
 namespace {
 
 constexpr double kPathHalf_m = 1.4;
 constexpr double kParkTree_m2 = 110, kParkBush_m2 = 260;
-constexpr double kSquareTrees_m = 9;  // from one to the next
+constexpr double kSquareTrees_m = 9;  // spacing
 constexpr double kSquareRim_m = 2.5;
 
-Random open_random(const CityGrid& grid, const CityPieceId& id, int side, int what) {
+Random open_random(const CityGrid& grid, const CitySectionId& id, int side, int purpose) {
   return random_of(grid, CityPurpose::furniture,
                    1000 + 4 * street_key(id.axis, id.line) + (side > 0 ? 1 : 0),
-                   8 * static_cast<std::int64_t>(id.block) + what);
+                   8 * static_cast<std::int64_t>(id.block) + purpose);
 }
 
-/// What stands in one park or square of a piece.
-class OpenPlace {
+/// Furnishes one park or square of a section.
+class OpenSpace {
  public:
-  OpenPlace(const WorldPlan& plan, const WorldPlot& plot, std::uint16_t instance, Random random,
+  OpenSpace(const WorldPlan& plan, const WorldPlot& plot, std::uint16_t instance, Random random,
             MeshBuilder& builder)
       : plan_(plan), plot_(plot), instance_(instance), random_(random), builder_(builder) {}
 
@@ -39,48 +39,48 @@ class OpenPlace {
       const double d = random_.uniform(line() + 1.5, reach() - 0.5);
       if (ground(s, d) == on) add(s, d);
     }
-    builder_.stand_in_world();
+    builder_.reset_frame();
   }
 
   void tree(double s, double d) { plant_park_tree(plan_, builder_, s, plot_.side, d, random_); }
   void bush(double s, double d) {
-    builder_.stand_at(plan_.stand(s, plot_.side, d));
+    builder_.set_frame(plan_.pose_at(s, plot_.side, d));
     const double radius = random_.uniform(0.4, 1.2);
     add_leafy_bush(builder_, radius, radius * random_.uniform(0.8, 1.6), random_);
   }
   void bench(double s, double d, double yaw) {
-    builder_.stand_at(plan_.stand(s, plot_.side, d, yaw));
+    builder_.set_frame(plan_.pose_at(s, plot_.side, d, yaw));
     add_world_bench(builder_, {label::kOtherObject, 0.35F});
   }
   void lamp(double s, double d) {
-    builder_.stand_at(plan_.stand(s, plot_.side, d));
+    builder_.set_frame(plan_.pose_at(s, plot_.side, d));
     add_street_lamp(builder_, 3.8, 0, 0.05, {label::kPole, 0.3F});
   }
   void person(double s, double d) {
     add_vehicle(builder_, VehicleKind::walker,
-                plan_.stand(s, plot_.side, d, random_.uniform(0, 2 * std::numbers::pi)),
+                plan_.pose_at(s, plot_.side, d, random_.uniform(0, 2 * std::numbers::pi)),
                 {label::kPerson, static_cast<float>(random_.uniform(0.1, 0.7)), instance_++},
                 random_);
   }
-  /// A market stall: posts, a counter and a roof.
+  /// A market stall: posts, counter and roof.
   void stall(double s, double d) {
     const Material cloth = {label::kOtherStructure, static_cast<float>(random_.uniform(0.3, 0.8))};
-    builder_.stand_at(
-        plan_.stand(s, plot_.side, d, 0.5 * std::numbers::pi * random_.uniform(0, 4)));
+    builder_.set_frame(
+        plan_.pose_at(s, plot_.side, d, 0.5 * std::numbers::pi * random_.uniform(0, 4)));
     for (const double x : {-1.4, 1.4})
       for (const double y : {-1.0, 1.0})
         builder_.beam({x, y, -0.2}, {x, y, 2.2}, 0.03, 0.03, cloth);
     builder_.box({-1.4, -1, 0.8}, {1.4, -0.3, 0.9}, cloth);
     builder_.quad({-1.6, -1.3, 2.1}, {1.6, -1.3, 2.1}, {1.6, 1.2, 2.5}, {-1.6, 1.2, 2.5}, cloth);
   }
-  /// A basin with a column in its middle.
+  /// A basin with a column in the center.
   void fountain(double s, double d) {
     const Material stone = {label::kOtherStructure, 0.6F};
-    builder_.stand_at(plan_.stand(s, plot_.side, d));
+    builder_.set_frame(plan_.pose_at(s, plot_.side, d));
     builder_.tube({0, 0, -0.3}, {0, 0, 0.55}, 2.6, 2.6, 24, stone);
     builder_.tube({0, 0, 0.5}, {0, 0, 2.2}, 0.35, 0.25, 14, stone);
     builder_.ellipsoid({0, 0, 2.4}, {0.5, 0.5, 0.45}, 8, 14, stone);
-    builder_.stand_in_world();
+    builder_.reset_frame();
   }
   Ground ground(double s, double d) const { return plan_.cell_at(s, plot_.side * d).ground; }
   const WorldPlot& plot() const { return plot_; }
@@ -94,7 +94,7 @@ class OpenPlace {
   MeshBuilder& builder_;
 };
 
-void fill_park(OpenPlace& park) {
+void fill_park(OpenSpace& park) {
   park.scatter(kParkTree_m2, Ground::terrain, [&](double s, double d) { park.tree(s, d); });
   park.scatter(kParkBush_m2, Ground::terrain, [&](double s, double d) { park.bush(s, d); });
   const double path = park.line() + 5;
@@ -105,7 +105,7 @@ void fill_park(OpenPlace& park) {
   park.scatter(60, Ground::other, [&](double s, double d) { park.person(s, d); });
 }
 
-void fill_square(OpenPlace& square) {
+void fill_square(OpenSpace& square) {
   const double first = square.line() + kSquareRim_m;
   for (double s = square.plot().s0 + kSquareRim_m; s < square.plot().s1 - 2; s += kSquareTrees_m)
     square.tree(s, first);
@@ -131,7 +131,7 @@ void fill_square(OpenPlace& square) {
 
 }  // namespace
 
-void add_open_ground(const CityPieceId& id, const WorldPlan& profile,
+void add_open_ground(const CitySectionId& id, const WorldPlan& profile,
                      const std::vector<WorldPlot>& plots, std::vector<Patch>& patches) {
   for (const WorldPlot& plot : plots) {
     const double line = profile.property_line(plot.side);
@@ -149,7 +149,7 @@ void add_open_ground(const CityPieceId& id, const WorldPlan& profile,
     if (plot.use != Frontage::park) continue;
     const double path = line + 5;
     add(plot.s0 + 2, plot.s1 - 2, path - kPathHalf_m, path + kPathHalf_m, Ground::other);
-    // Two ways through the middle of the block, each drawn by all pieces that it passes.
+    // Two paths through the middle of the block; every section that they cross draws the same ones.
     if (id.axis == CityAxis::east)
       add(plot.center() - kPathHalf_m, plot.center() + kPathHalf_m, line, reach, Ground::other);
     else
@@ -157,16 +157,16 @@ void add_open_ground(const CityPieceId& id, const WorldPlan& profile,
   }
 }
 
-std::uint16_t add_open_places(const CityGrid& grid, const CityPieceId& id, const WorldPlan& plan,
+std::uint16_t add_open_spaces(const CityGrid& grid, const CitySectionId& id, const WorldPlan& plan,
                               std::uint16_t instance, MeshBuilder& builder) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use != Frontage::park && plot.use != Frontage::square) continue;
-    OpenPlace place(plan, plot, instance, open_random(grid, id, plot.side, 0), builder);
+    OpenSpace space(plan, plot, instance, open_random(grid, id, plot.side, 0), builder);
     if (plot.use == Frontage::park)
-      fill_park(place);
+      fill_park(space);
     else
-      fill_square(place);
-    instance = place.next_instance();
+      fill_square(space);
+    instance = space.next_instance();
   }
   return instance;
 }

@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// Puts things down with one instance id after the other.
+/// Adds objects with consecutive instance ids.
 class Parking {
  public:
   Parking(const WorldPlan& plan, MeshBuilder& builder) : plan_(plan), builder_(builder) {}
@@ -19,21 +19,21 @@ class Parking {
   void put(VehicleKind kind, std::uint16_t class_id, double s, int side, double from_axis,
            double yaw, Random& random) {
     if (plan_.is_crossing(side, s)) return;
-    const RigidTransform place = plan_.stand(s, side, from_axis, yaw);
-    add_vehicle(builder_, kind, place, {class_id, draw_paint(random), instance_++}, random);
+    const RigidTransform pose = plan_.pose_at(s, side, from_axis, yaw);
+    add_vehicle(builder_, kind, pose, {class_id, draw_paint(random), instance_++}, random);
   }
-  /// Without a rider; it leans a little.
+  /// Without a rider, slightly tilted.
   void put_bike(bool motorcycle, double s, int side, double from_axis, double yaw, Random& random) {
     if (plan_.is_crossing(side, s)) return;
-    RigidTransform place = plan_.stand(s, side, from_axis, yaw);
-    place.rotation = place.rotation * rotation_from_yaw_pitch_roll(0, 0, random.uniform(-0.2, 0.2));
-    builder_.stand_at(place);
+    RigidTransform pose = plan_.pose_at(s, side, from_axis, yaw);
+    pose.rotation = pose.rotation * rotation_from_yaw_pitch_roll(0, 0, random.uniform(-0.2, 0.2));
+    builder_.set_frame(pose);
     const auto reflectance = static_cast<float>(random.uniform(0.1, 0.5));
     if (motorcycle)
       add_motorcycle(builder_, {label::kMotorcycle, reflectance, instance_++});
     else
       add_bicycle(builder_, {label::kBicycle, reflectance, instance_++});
-    builder_.stand_in_world();
+    builder_.reset_frame();
   }
 
  private:
@@ -48,7 +48,7 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::parked, side > 0 ? 1 : 0);
   const double middle = plan.lanes_end() + 0.5 * own.parking_width;
   for (double s = 3; s < plan.options.length_m - 8;) {
-    // Trucks and buses take more than a narrow lane.
+    // Trucks and buses need more than a narrow lane.
     const double draw = random.uniform() * (own.parking_width > 2.2 ? 1 : 0.91);
     const VehicleKind kind = draw < 0.91    ? VehicleKind::car
                              : draw < 0.945 ? VehicleKind::truck
@@ -61,10 +61,10 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
                                      : kind == VehicleKind::truck   ? label::kTruck
                                      : kind == VehicleKind::trailer ? label::kOtherVehicle
                                                                     : label::kBus;
-      // Cars face as their lane drives, against x of either side; some do not.
+      // Most cars face the direction of their lane, against x on either side.
       const bool is_car = kind == VehicleKind::car;
       const double against = is_car && random.uniform() < 0.12 ? 0 : std::numbers::pi;
-      // A truck with its trailer is longer behind its origin than before it.
+      // A truck with a trailer is longer behind its origin than ahead of it.
       const double ahead = kind != VehicleKind::truck ? 0.5 * room : side < 0 ? room - 5.5 : 5.5;
       parking.put(kind, class_id, s + ahead, side, middle + random.uniform(-0.12, 0.12),
                   against + random.uniform(-0.03, 0.03), random);
@@ -89,7 +89,7 @@ void park_in_drives(const WorldPlan& plan, Parking& parking) {
   }
 }
 
-/// Two rows of cars, nose to the way between them or tail.
+/// Two rows of cars, with their nose or tail towards the lane between them.
 void fill_car_parks(const WorldPlan& plan, Parking& parking) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use != Frontage::car_park) continue;
@@ -107,7 +107,7 @@ void fill_car_parks(const WorldPlan& plan, Parking& parking) {
   }
 }
 
-/// What is left before barns and workshops.
+/// Vehicles in front of barns and workshops.
 void park_at_halls(const WorldPlan& plan, Parking& parking) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use != Frontage::hall) continue;
@@ -131,7 +131,7 @@ void stand_on_sidewalk(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::standing, side > 0 ? 1 : 0);
   const double wide = std::max(1.2, own.sidewalk + own.verge);
   const double kerb = plan.road_end(side);
-  for (const double s : places_along(plan, own.bicycles, 0.6, random)) {
+  for (const double s : positions_along(plan, own.bicycles, 0.6, random)) {
     if (plan.is_open(side, s - 1, s + 5)) continue;
     const double yaw = random.uniform() < 0.5 ? 0.1 * random.normal() : 1.3;
     const int group = random.uniform() < 0.3 ? 1 + static_cast<int>(random.uniform(1, 7)) : 1;
@@ -139,11 +139,11 @@ void stand_on_sidewalk(const WorldPlan& plan, Parking& parking, int side) {
       parking.put_bike(false, s + 0.6 * k, side, kerb + random.uniform(0.75, 0.85) * wide,
                        group > 1 ? 1.4 + 0.1 * random.normal() : yaw, random);
   }
-  for (const double s : places_along(plan, own.motorcycles, 1.5, random))
+  for (const double s : positions_along(plan, own.motorcycles, 1.5, random))
     parking.put_bike(true, s, side,
                      random.uniform() < 0.5 ? kerb - 0.6 : kerb + random.uniform(0.3, 0.7) * wide,
                      random.uniform(-1.6, 1.6), random);
-  for (const double s : places_along(plan, own.people, 0.5, random)) {
+  for (const double s : positions_along(plan, own.people, 0.5, random)) {
     const int group = random.uniform() < 0.3 ? 2 : 1;
     for (int k = 0; k < group; ++k)
       parking.put(VehicleKind::walker, label::kPerson, s + 0.7 * k, side,
@@ -151,20 +151,20 @@ void stand_on_sidewalk(const WorldPlan& plan, Parking& parking, int side) {
   }
 }
 
-/// Riders that wait at the kerb.
+/// Riders waiting at the kerb.
 void wait_on_road(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::standing, side > 0 ? 3 : 2);
   const double edge = plan.road_end(side) - 0.1;
-  for (const double s : places_along(plan, 0.3 * plan.style.cyclists, 3, random))
+  for (const double s : positions_along(plan, 0.3 * plan.style.cyclists, 3, random))
     parking.put(VehicleKind::cyclist, label::kBicyclist, s, side, edge, std::numbers::pi, random);
-  for (const double s : places_along(plan, 0.3 * plan.style.motorcyclists, 4, random))
+  for (const double s : positions_along(plan, 0.3 * plan.style.motorcyclists, 4, random))
     parking.put(VehicleKind::motorcyclist, label::kMotorcyclist, s, side, edge, std::numbers::pi,
                 random);
 }
 
 }  // namespace
 
-std::uint16_t add_world_standing(const WorldPlan& plan, MeshBuilder& builder) {
+std::uint16_t add_world_objects(const WorldPlan& plan, MeshBuilder& builder) {
   Parking parking(plan, builder);
   park_in_drives(plan, parking);
   fill_car_parks(plan, parking);
