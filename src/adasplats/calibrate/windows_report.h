@@ -24,8 +24,8 @@ struct WindowReport {
   /// mount that all windows have in common; with the window's own poses. 0: not judged.
   double given_m = 0, common_m = 0, calibrated_m = 0;
   double weakest_share = 0;
-  bool tells_lasers = false;  ///< it was among those whose lasers were pooled
-  std::string objection;      ///< why its scans get nothing of their own; empty: they do
+  bool constrains_lasers = false;  ///< it was among those whose lasers were pooled
+  std::string objection;           ///< why its scans get nothing of their own; empty: they do
   /// From the window before, where both have poses of their own, once both lie as well as they can
   /// on one another as a whole.
   PoseDisagreement overlap;

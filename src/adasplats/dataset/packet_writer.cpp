@@ -25,8 +25,10 @@ constexpr double kSecondsInHour = 3600;
 constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are not quite regular
 
 /// As sensors leave the factory; locally administered hardware addresses.
-UdpEnd sensor_end(std::uint16_t port) { return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port}; }
-UdpEnd everyone(std::uint16_t port) {
+UdpEndpoint sensor_end(std::uint16_t port) {
+  return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port};
+}
+UdpEndpoint everyone(std::uint16_t port) {
   return {{255, 255, 255, 255, 255, 255}, {255, 255, 255, 255}, port};
 }
 
@@ -160,20 +162,20 @@ class PacketWriter final : public WriterWithPoses {
 
 void require_packets(const LidarModel& model, const PacketOptions& options) {
   const PacketSensor sensor = packet_sensor(model);
-  const auto refuse = [&](const std::string& why) {
+  const auto reject = [&](const std::string& why) {
     throw Error(ErrorKind::usage, "packets of sensor '" + model.name + "': " + why);
   };
   if (sensor.format > PacketFormat::ouster_legacy)
-    refuse("written are those of profile LEGACY alone");
-  if (options.returns > 1) refuse("hold one return a firing; --returns 1");
+    reject("written are those of profile LEGACY alone");
+  if (options.returns > 1) reject("hold one return a firing; --returns 1");
   if (options.has_angular_noise && model.angular_noise_rad > 0)
-    refuse(
+    reject(
         "do not hold the angles of beams, so their noise would be lost; --no-noise, or a sensor "
         "without");
-  if (!options.is_raw) refuse("are as measured, with the motion in them; --points raw");
+  if (!options.is_raw) reject("are as measured, with the motion in them; --points raw");
   const double max_m = sensor.facts.max_counts * sensor.facts.quantum_m;
   if (model.max_range_m > max_m)
-    refuse("hold ranges up to " + std::to_string(max_m) + " m, and the sensor measures up to " +
+    reject("hold ranges up to " + std::to_string(max_m) + " m, and the sensor measures up to " +
            std::to_string(model.max_range_m) + " m; --max-range");
   if (!is_ouster(sensor.format)) return;
   const std::string mode =
@@ -181,7 +183,7 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
   constexpr const char* kModes[] = {"512x10", "512x20", "1024x10", "1024x20", "2048x10", "4096x5"};
   if (std::ranges::find(kModes, mode) == std::end(kModes) ||
       model.rotation_hz != std::round(model.rotation_hz))
-    refuse("its mode " + mode + " is none of 512x10, 512x20, 1024x10, 1024x20, 2048x10, 4096x5");
+    reject("its mode " + mode + " is none of 512x10, 512x20, 1024x10, 1024x20, 2048x10, 4096x5");
   calibration_file(sensor);  // says what metadata cannot
 }
 

@@ -49,8 +49,8 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
   return removed;
 }
 
-std::string why_nothing_is_removed(const PointCloud& cloud, const LabelScheme* labels,
-                                   DynamicRemoval removal) {
+std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
+                            DynamicRemoval removal) {
   if (removal == DynamicRemoval::none) return "";
   if (cloud.classes.empty()) return "the points have no labels";
   if (labels == nullptr) return "labels have no scheme (name it with `labels`, for example asprs)";

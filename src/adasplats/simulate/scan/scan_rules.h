@@ -52,9 +52,9 @@ class ScanRules {
   std::span<const double> range_offsets_m() const;
   std::span<const double> ring_noise_m() const;
   /// Null where intensities are reported as the scene has them.
-  const UnitIntensity* intensity() const;
+  const SensorIntensity* intensity() const;
   /// Null where beams are drawn one by one.
-  const UnitFields* unit_fields() const;
+  const SensorFields* unit_fields() const;
   /// What scans have of what is wanted.
   ScanFields fields() const;
   PointFrame frame() const { return options_.frame; }
