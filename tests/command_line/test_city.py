@@ -206,7 +206,7 @@ class City(ProgramTest):
         self.assertEqual(set(found), expected)
         # One piece was asked for; the tasks say the tiles that were chosen.
         self.run_good(*command, *memory, "--tile", "0", "-o", self.folder / "one.ply")
-        plan = self.run_warned("modelled in tiles", *command, *memory, "-o",
+        plan = self.run_warned("modelling in tiles", *command, *memory, "-o",
                                self.folder / "other", "--plan").stdout
         self.assertTrue(all("--tile 64" in line for line in plan.splitlines()), plan)
         self.run_bad(65, *command, "--memory", "0.0001", "-o", self.folder / "none",

@@ -112,20 +112,20 @@ class CityTasks(ProgramTest):
         self.assertIn(".ply done", self.run_good(*self.task(first)).stdout)
         tile = self.unfinished / "tiles" / f"{first}.ply"
         before = tile.stat().st_mtime_ns
-        self.assertIn("was done", self.run_good(*self.task(first)).stdout)
+        self.assertIn("already done", self.run_good(*self.task(first)).stdout)
         self.assertEqual(tile.stat().st_mtime_ns, before)
         # What coreutils make of the note.
         self.in_shell(["sh", "-c", 'cd "$1" && sha256sum --quiet -c *.sha256', "sh",
                        str(tile.parent)])
         # Nor is it planned again.
         self.assertEqual(self.tiles(), others)
-        self.assertIn("was done", self.run_good(*self.task(first)).stdout)
+        self.assertIn("already done", self.run_good(*self.task(first)).stdout)
         for name in others:
             self.run_good(*self.task(name))
         self.assertEqual(self.tiles(), [])
         self.finish()
         # A line that is run late.
-        self.assertIn("was done", self.run_good(*self.task(first)).stdout)
+        self.assertIn("already done", self.run_good(*self.task(first)).stdout)
         self.assertEqual(tree_digest(self.city), self.whole())
 
     def test_killed_tasks(self):

@@ -9,7 +9,7 @@ import unittest
 from support import SENSOR, ProgramTest, tree_digest, write_poses
 
 # Options that change where results go, who computes, or what is said, but no scan.
-DECIDE_NOTHING = {"--output", "--help", "--version", "--threads", "--report", "--config",
+DECIDE_NOTHING = {"--output", "--help", "--help-all", "--version", "--threads", "--report", "--config",
                   "--overwrite", "--device", "--gpus",
                   # Who makes which of the scans.
                   "--plan", "--only-scans", "--tile-memory",

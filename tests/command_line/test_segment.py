@@ -113,7 +113,7 @@ class SegmentTest(ProgramTest):
         self.run_good("evaluate", "segmentation", self.folder / "b.laz", self.folder / "b.las")
         self.assertLess((self.folder / "b.laz").stat().st_size,
                         (self.folder / "b.las").stat().st_size)
-        self.run_bad(64, "segment", las, "-o", las, says=["is an input"])
+        self.run_bad(64, "segment", las, "-o", las, says=["is also an input"])
         self.run_bad(64, "segment", las, "-o", self.folder / "b.label", says=["one scan (.bin)"])
         self.run_bad(64, "segment", scan, "-o", label, "--confidences", says=["no confidences"])
         self.run_bad(64, "segment", scan, "-o", self.folder / "b.txt",
