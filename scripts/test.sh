@@ -125,9 +125,9 @@ run_tests() {
 
 # Installs into a folder of its own and builds the examples against that, as a stranger would.
 build_example() {
-  # README.md shows the short one, without its licence.
+  # docs/cpp.md shows the short program without its licence.
   # shellcheck disable=SC2016
-  diff <(sed -n '/^```cpp$/,/^```$/{//!p}' README.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
+  diff <(sed -n '/^```cpp$/,/^```$/{//!p}' docs/cpp.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
   rm -rf build/install build/example
   cmake --install build/release --prefix build/install >/dev/null
   local file
