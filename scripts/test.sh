@@ -126,9 +126,9 @@ run_tests() {
 
 # Installs into an empty folder and builds the examples against it, like an outside project.
 build_example() {
-  # README.md shows the short example without its licence header.
+  # docs/cpp.md shows the short program without its licence header.
   # shellcheck disable=SC2016
-  diff <(sed -n '/^```cpp$/,/^```$/{//!p}' README.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
+  diff <(sed -n '/^```cpp$/,/^```$/{//!p}' docs/cpp.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
   rm -rf build/install build/example
   cmake --install build/release --prefix build/install >/dev/null
   local file
