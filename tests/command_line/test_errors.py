@@ -13,7 +13,7 @@ class Usage(ProgramTest):
         self.run_bad(64, "simulate", "--trajektory=x", says=["did you mean '--trajectory'"])
 
     def test_option_before_the_subcommand(self):
-        self.run_bad(64, "--threads", "2", "info", self.cloud, says=["behind the subcommand"])
+        self.run_bad(64, "--threads", "2", "info", self.cloud, says=["must follow the subcommand"])
 
     def test_unknown_subcommand_names_the_nearest(self):
         self.run_bad(64, "modle", says=["modle", "did you mean 'model'"])

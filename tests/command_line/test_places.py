@@ -55,7 +55,7 @@ class Places(ProgramTest):
     def test_a_recording_is_a_trajectory(self):
         """Oracle: the clouds' times in the recording are those of the beginning of revolutions."""
         path = ["--path", "3,0;9,1", "--rolling-shutter", "--format", "mcap"]
-        self.assertIn("1 s later", run(*self.command(*path)).stderr)
+        self.assertIn("shifted by +1 s", run(*self.command(*path)).stderr)
         recorded = self.folder / "recorded.mcap"
         (self.folder / "scans" / "scans.mcap").rename(recorded)
 
