@@ -115,7 +115,7 @@ def test_processes_of_this_machine(street, whole, tmp_path, capfd, monkeypatch):
     said = capfd.readouterr().err
     assert "dashboard: http://" in said
     assert "tasks [" + "#" * 40 + "]" in said
-    with pytest.raises(distributed.TaskError, match="not empty \(--overwrite"):
+    with pytest.raises(distributed.TaskError, match=r"not empty \(--overwrite"):
         distributed.make_city([street.cloud], "city", tile=12.0, options=HALO)
 
 

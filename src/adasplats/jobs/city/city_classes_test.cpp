@@ -335,11 +335,13 @@ TEST(SquareClasses, ComeBackAndDamageIsSaid) {
   expect_error(ErrorKind::data, {"some.squares", "ends within its classes"},
                [&] { read_square_classes(file); });
   write_file(file, text + "x");
-  expect_error(ErrorKind::data, {"some.squares", "follow the classes"}, [&] { read_square_classes(file); });
+  expect_error(ErrorKind::data, {"some.squares", "follow the classes"},
+               [&] { read_square_classes(file); });
   write_file(file, text.substr(0, 24));
   expect_error(ErrorKind::data, {"some.squares", "head"}, [&] { read_square_classes(file); });
   write_file(file, "adasplats classes 2 1 1 0\n");
-  expect_error(ErrorKind::data, {"some.squares", "not a file of classes"}, [&] { read_square_classes(file); });
+  expect_error(ErrorKind::data, {"some.squares", "not a file of classes"},
+               [&] { read_square_classes(file); });
   write_square_classes(file, {});
   EXPECT_TRUE(read_square_classes(file).of_tile.empty());
 }
