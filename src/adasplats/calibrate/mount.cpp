@@ -386,13 +386,13 @@ class MountSearch {
     for (const Row& out : left_out_) add_outer(span, out, 1);
     std::vector<MountDirection> result;
     for (std::size_t n = 0; n < left_out_.size(); ++n) {
-      std::size_t main = 0;
+      std::size_t largest = 0;
       for (std::size_t k = 1; k < 6; ++k)
-        if (span[k * 7] > span[main * 7]) main = k;
-      const double size = std::sqrt(std::max(span[main * 7], 1e-12));
+        if (span[k * 7] > span[largest * 7]) largest = k;
+      const double size = std::sqrt(std::max(span[largest * 7], 1e-12));
       Row u{};
-      for (std::size_t k = 0; k < 6; ++k) u[k] = span[main * 6 + k] / size;
-      result.push_back({kNames[main], {u[0], u[1], u[2]}, {u[3], u[4], u[5]}});
+      for (std::size_t k = 0; k < 6; ++k) u[k] = span[largest * 6 + k] / size;
+      result.push_back({kNames[largest], {u[0], u[1], u[2]}, {u[3], u[4], u[5]}});
       add_outer(span, u, -1);
     }
     return result;
