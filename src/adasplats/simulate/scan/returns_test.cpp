@@ -182,7 +182,7 @@ TEST(Returns, ClassesAreNeverMixed) {
   ASSERT_EQ(returns_of_hits(hits, options).size(), 1U) << "without classes";
   options.separation_m = 0.025;
   const auto strongest_class = returns_of_hits(hits, options, {40, 48, 40, 48, 40});
-  // The class that is nearer has three echoes; the other cannot be told from it.
+  // The nearer class has three echoes; the other one cannot be separated from it.
   ASSERT_EQ(strongest_class.size(), 1U);
   EXPECT_NEAR(static_cast<double>(strongest_class[0].range_m),
               (10.00 * static_cast<double>(sub_ray_weights(options)[0]) +
