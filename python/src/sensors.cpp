@@ -25,7 +25,7 @@ void fields(Archive& archive, RosettePattern& rosette) {
 }
 
 template <class Archive>
-void fields(Archive& archive, UnitIntensity& unit) {
+void fields(Archive& archive, SensorIntensity& unit) {
   archive("step", unit.step);
   archive("highest", unit.highest);
   archive("ring_nodes", unit.ring_nodes);
@@ -37,7 +37,7 @@ void fields(Archive& archive, UnitIntensity& unit) {
 }
 
 template <class Archive>
-void fields(Archive& archive, UnitFields& unit) {
+void fields(Archive& archive, SensorFields& unit) {
   archive("turns", unit.turns);
   archive("rings", unit.rings);
   archive("columns", unit.columns);

@@ -67,7 +67,7 @@ void open_kitti_raw(const Input& input) { require_sound(open_kitti_raw_drive(inp
 
 void open_pandaset(const Input& input) {
   pandaset_class_names(input.folder);
-  FrameDrive drive;
+  DriveInput drive;
   drive.folder = input.folder;
   ProgressSink quiet;
   require_sound(open_pandaset_drive(drive, Executor(1), quiet));

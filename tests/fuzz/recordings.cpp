@@ -38,7 +38,7 @@ std::pair<std::uint8_t, std::string_view> chosen(std::string_view bytes) {
 void read_recording(const Input& input) {
   const Recording recording(input.file);
   constexpr std::size_t kAgain = 8;
-  std::vector<std::pair<MessagePlace, std::string>> first;
+  std::vector<std::pair<MessagePosition, std::string>> first;
   recording.for_each_message([&](const RecordedMessage& message) {
     if (first.size() < kAgain) first.emplace_back(message.place, message.bytes);
   });
@@ -100,7 +100,7 @@ void survey_clouds(const Input& input) {
 
 void read_capture(const Input& input) {
   DatagramReader reader(input.file);
-  CapturePlace place;
+  CapturePosition place;
   std::string first;
   std::uint64_t datagrams = 0;
   while (const auto datagram = reader.next()) {

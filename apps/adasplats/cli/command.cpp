@@ -40,7 +40,7 @@ void Command::check_required() const {
   }
 }
 
-void Command::refuse(std::initializer_list<const char*> names, const std::string& why) const {
+void Command::reject(std::initializer_list<const char*> names, const std::string& why) const {
   for (const char* name : names) {
     if (is_given(name)) {
       throw Error(ErrorKind::usage, std::string(name) + " has no effect " + why);

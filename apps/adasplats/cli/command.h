@@ -50,7 +50,7 @@ class Command {
   bool is_given(const std::string& name) const { return options_.is_given(name); }
   /// Throws a usage Error if one of these options is given: "--x has no effect " and `why`. For
   /// options that only apply in some cases.
-  void refuse(std::initializer_list<const char*> names, const std::string& why) const;
+  void reject(std::initializer_list<const char*> names, const std::string& why) const;
   /// Makes an option required, on the command line or in a configuration file.
   void require(Option* option) { required_.push_back(option); }
   /// Marks an option as the name of an output file, which must end with one of `endings`.

@@ -93,7 +93,7 @@ class CompareCommand final : public Command {
 
   void run(Session& session) override {
     for (const UnusedSetting& unused : unused_settings(job_)) {
-      refuse({option_of(unused.setting).c_str()}, unused.why);
+      reject({option_of(unused.setting).c_str()}, unused.why);
     }
     job_.program = kOwnProgram;
     job_.threads = common().threads;
@@ -136,7 +136,7 @@ class CompareCommand final : public Command {
     for (const std::string& text : given) {
       const std::size_t at = text.find('=');
       if (at == 0 || at == std::string::npos || at + 1 == text.size()) {
-        refuse_value("--mesh", "'" + text + "' is not NAME=FILE");
+        reject_value("--mesh", "'" + text + "' is not NAME=FILE");
       }
       job_.meshes.emplace_back(text.substr(0, at), text.substr(at + 1));
     }

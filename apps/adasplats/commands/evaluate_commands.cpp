@@ -89,9 +89,9 @@ class EvaluateC2cCommand final : public ResultCommand {
 
  private:
   std::string make_result(Session& session) override {
-    if (!by_class_) refuse({"--labels", "--nearest-classes"}, "without --by-class");
+    if (!by_class_) reject({"--labels", "--nearest-classes"}, "without --by-class");
     if (by_class_) job_.by_class = nearest_classes_ ? ByClass::nearest : ByClass::own;
-    if (job_.picture.empty()) refuse({"--eye", "--target", "--picture-width"}, "without --picture");
+    if (job_.picture.empty()) reject({"--eye", "--target", "--picture-width"}, "without --picture");
     job_.view.height = job_.view.width * 9 / 16;
     const CloudComparison comparison = evaluate_clouds(job_, session);
     session.report.update(to_json(comparison));
@@ -220,7 +220,7 @@ class EvaluateResimulateCommand final : public ResultCommand {
 
  private:
   std::string make_result(Session& session) override {
-    if (job_.picture.empty()) refuse({"--picture-width"}, "without --picture");
+    if (job_.picture.empty()) reject({"--picture-width"}, "without --picture");
     require_one_removal(keep_moving_, job_.options.drop_movable);
     job_.options.drop_moving = !keep_moving_;
     const HeldOutResult result = evaluate_resimulation(job_, session);

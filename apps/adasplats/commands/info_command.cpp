@@ -89,9 +89,9 @@ class InfoCommand final : public Command {
 
   void run(Session& session) override {
     if (inputs_.empty()) {
-      refuse({"--labels", "--verify"}, "without a file");
+      reject({"--labels", "--verify"}, "without a file");
       const std::string option = given_load_option(options());
-      if (!option.empty()) refuse({option.c_str()}, "without a file");
+      if (!option.empty()) reject({option.c_str()}, "without a file");
     }
     session.report["files"] = nlohmann::ordered_json::array();
     std::string text;
@@ -124,18 +124,18 @@ class InfoCommand final : public Command {
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
     if (kinds.empty() || kinds.contains("capture")) return;
     const std::string why = "on a " + *kinds.begin();
-    if (!kinds.contains("city of splats")) refuse({"--verify"}, why);
-    refuse({"--packet-sensor"}, why);
+    if (!kinds.contains("city of splats")) reject({"--verify"}, why);
+    reject({"--packet-sensor"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
         kinds.contains("nuScenes scene"))
       return;
-    refuse(
+    reject(
         {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
          "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses", "--salvage",
          "--scene", "--topic", "--poses-topic", "--extent", "--level", "--resolution"},
         why);
-    if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
+    if (!kinds.contains("sequence")) reject({"--scans", "--strict"}, why);
   }
 
   /// The inputs, with trees replaced by their sequences.

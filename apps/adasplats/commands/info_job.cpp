@@ -449,7 +449,7 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   if (tree != nullptr || !options.trajectory.empty()) {
     const auto scheme = label_scheme_for(labels, std::span(&input, tree == nullptr ? 0 : 1));
     const auto drive =
-        open_frame_drive(drive_of(input, options), session.executor, session.progress);
+        open_drive(drive_of(input, options), session.executor, session.progress);
     if (drive)
       return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name, scheme,
                             options, session);
@@ -458,7 +458,7 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
   if (is_kitti_sequence(resolved)) {
     KittiSequence sequence = open_kitti_sequence(resolved);
-    sequence.facts.unchecked = require_poses_that_fit(sequence, session.executor);
+    sequence.facts.unchecked = verify_poses(sequence, session.executor);
     sequence.beams = recognize_beams(sequence, session.executor);
     return sequence_facts(sequence, "sequence", scheme, options, session);
   }

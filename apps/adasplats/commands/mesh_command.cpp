@@ -39,7 +39,7 @@ class MeshCommand final : public Command {
 
   void run(Session& session) override {
     for (const UnusedSetting& unused : unused_settings(job_)) {
-      refuse({option_of(unused.setting).c_str()}, unused.why);
+      reject({option_of(unused.setting).c_str()}, unused.why);
     }
     job_.removal_is_asked = is_given("--remove");
     const MeshResult result = run_mesh(job_, output_, session);

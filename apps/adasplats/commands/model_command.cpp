@@ -124,16 +124,16 @@ class ModelCommand final : public Command {
   void run(Session& session) override {
     for (const auto& list : {unused_settings(recipe_), unused_settings(job_.segment)}) {
       for (const UnusedSetting& unused : list)
-        refuse({option_of(unused.setting).c_str()}, unused.why);
+        reject({option_of(unused.setting).c_str()}, unused.why);
     }
     job_.build.recipe = recipe_.recipe();
     job_.removal_is_asked = is_given("--remove");
     // OptiX only casts rays; models are made on CUDA.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     if (job_.add_to.empty())
-      refuse({"--max-shift"}, "without --add-to");
+      reject({"--max-shift"}, "without --add-to");
     else if (is_given("--tile") && job_.tiles.tile_m == 0)
-      refuse({"--add-to"}, "with --tile 0");
+      reject({"--add-to"}, "with --tile 0");
     if (!job_.add_to.empty())
       take_tiles_of_city();
     else if (!is_given("--tile") && !only_tile_)
@@ -151,7 +151,7 @@ class ModelCommand final : public Command {
       return;
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
-      refuse({"--halo", "--overwrite", "--plan", "--only-tile", "--keep-points"}, "without --tile");
+      reject({"--halo", "--overwrite", "--plan", "--only-tile", "--keep-points"}, "without --tile");
     // If the output exists and is no regular file, run_model reports that instead.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
@@ -221,7 +221,7 @@ class ModelCommand final : public Command {
   static TileKey parse_tile(const std::string& name) {
     const std::optional<TileKey> tile = tile_named(name);
     if (!tile)
-      refuse_value("--only-tile",
+      reject_value("--only-tile",
                    "expected the name of a tile such as x3_y-2, found '" + name + "'");
     return *tile;
   }
@@ -238,7 +238,7 @@ class ModelCommand final : public Command {
   }
 
   void run_tile(Session& session) {
-    refuse({"--plan"}, "with --only-tile");
+    reject({"--plan"}, "with --only-tile");
     const CityTaskResult result = make_city_tile(job_, *only_tile_, session);
     session.report["tile"] = name_of(*only_tile_);
     session.report["was_done"] = result.was_done;

@@ -73,18 +73,18 @@ class RenderCommand final : public Command {
   }
 
   void run(Session& session) override {
-    if (job_.view.trajectory.empty()) refuse({"--pose"}, "without --trajectory");
-    if (turntable_ && drive_) refuse({"--drive"}, "with --turntable");
+    if (job_.view.trajectory.empty()) reject({"--pose"}, "without --trajectory");
+    if (turntable_ && drive_) reject({"--drive"}, "with --turntable");
     if (turntable_ || drive_) {
-      refuse({"--pose", "--repeat"}, "with a film");
+      reject({"--pose", "--repeat"}, "with a film");
       job_.film = turntable_ ? Film::turntable : Film::drive;
       if (!is_given("--width") && !is_given("--height"))
         job_.view.width = 1280, job_.view.height = 720;
     } else {
-      refuse({"--seconds", "--frames-per-s"}, "without --turntable or --drive");
+      reject({"--seconds", "--frames-per-s"}, "without --turntable or --drive");
     }
-    if (job_.view.birds_eye) refuse({"--fov"}, "with --birds-eye");
-    if (!draws_a_model(job_)) refuse({"--samples"}, "on points, only on models and meshes");
+    if (job_.view.birds_eye) reject({"--fov"}, "with --birds-eye");
+    if (!draws_a_model(job_)) reject({"--samples"}, "on points, only on models and meshes");
     const RenderResult result = run_render(job_, session);
     const double rate = static_cast<double>(result.images) / result.seconds_rendered;
     session.report["images_per_second"] = rate;

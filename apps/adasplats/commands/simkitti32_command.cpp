@@ -53,7 +53,7 @@ class SimKitti32Command final : public Command {
 
   void run(Session& session) override {
     for (const UnusedSetting& unused : unused_settings(job_)) {
-      refuse({option_of(unused.setting).c_str()}, unused.why);
+      reject({option_of(unused.setting).c_str()}, unused.why);
     }
     if (is_given("--fog") && !(job_.weather.fog_visibility_m > 0))
       throw Error(ErrorKind::usage, "--fog must be greater than 0");

@@ -106,8 +106,8 @@ class SimulateCommand final : public Command {
   }
 
   void run_span(Session& session) {
-    refuse({"--plan"}, "with --only-scans");
-    if (span_->stride != 1) refuse_value("--only-scans", "expected FIRST:COUNT");
+    reject({"--plan"}, "with --only-scans");
+    if (span_->stride != 1) reject_value("--only-scans", "expected FIRST:COUNT");
     const SpanResult result = simulate_span(job_, {span_->first, span_->count}, session);
     session.report["rays"] = result.rays;
     session.report["hits"] = result.hits;
@@ -130,10 +130,10 @@ class SimulateCommand final : public Command {
   }
 
   void check_options() const {
-    if (!job_.scan.noise) refuse({"--range-noise"}, "with --no-noise");
-    if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
+    if (!job_.scan.noise) reject({"--range-noise"}, "with --no-noise");
+    if (!job_.drive.rolling_shutter) reject({"--points"}, "without --rolling-shutter");
     if (!is_tree(job_.format))
-      refuse({"--point-order"}, "with formats that are not trees of a data set");
+      reject({"--point-order"}, "with formats that are not trees of a data set");
     const auto require_positive = [this](const char* name, double value) {
       if (is_given(name) && !(value > 0)) {
         throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");

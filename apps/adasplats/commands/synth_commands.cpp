@@ -61,7 +61,7 @@ class SynthStreetCommand final : public Command {
   void run(Session& session) override {
     const Stopwatch watch;
     if (job_.scan.driving_spacing_m == 0) {
-      refuse({"--max-driving-scans"}, "with --driving-spacing 0, which makes no sequence");
+      reject({"--max-driving-scans"}, "with --driving-spacing 0, which makes no sequence");
     }
     const StreetReport report = run_synth_street(job_, session);
     session.report.update(to_json(report));

@@ -195,7 +195,7 @@ class Loading {
     scene.layers.push_back(
         splats != nullptr
             ? splat_layer(name, *splats, errors_of_splats(*splats), scene.origin, session_.executor)
-            : place_layer(name, view_.model->model(), scene.origin, session_.executor));
+            : model_layer(name, view_.model->model(), scene.origin, session_.executor));
     add_world(scene, session_.executor);
     session_.progress.end_step();
   }
@@ -208,7 +208,7 @@ class Loading {
     if (view_.scene.layers.empty()) set_place(origin_of(place), world_box_of(place));
     session_.progress.begin_step("levels of detail", 0);
     view_.scene.layers.push_back(
-        place_layer(name_of(path), place, view_.scene.origin, session_.executor));
+        model_layer(name_of(path), place, view_.scene.origin, session_.executor));
     session_.progress.end_step();
   }
 
@@ -218,7 +218,7 @@ class Loading {
     bool any = false;
     for (std::size_t i = 0; i < errors_.size(); ++i) {
       const fs::path& file = sorted_.errors[i];
-      if (tells_of_splats(errors_[i])) {
+      if (has_splat_hits(errors_[i])) {
         errors.add(errors_[i], file);
         any = true;
       } else {

@@ -143,7 +143,7 @@ PoissonPrograms find_poisson_programs(PoissonProvider wanted) {
     if (reconstruct && trim) return {PoissonProvider::poisson_recon, *reconstruct, *trim};
   }
   if (wanted != PoissonProvider::poisson_recon) {
-    if (const auto own = find_beside_own("adasplats-poisson"))
+    if (const auto own = find_next_to_program("adasplats-poisson"))
       return {PoissonProvider::open3d, *own, {}};
   }
   throw Error(ErrorKind::unavailable,

@@ -228,7 +228,7 @@ class WindowedCalibrator {
       finding.lasers = std::move(calibration.lasers);
       finding.weight = static_cast<double>(report.points);
     }
-    window.tells_lasers = !finding.lasers.empty();
+    window.constrains_lasers = !finding.lasers.empty();
     if (!options_.poses) note(report, window);
     return finding;
   }

@@ -24,7 +24,7 @@ struct WindowReport {
   /// mount; with the window's own poses. 0: not measured.
   double given_m = 0, common_m = 0, calibrated_m = 0;
   double weakest_share = 0;
-  bool tells_lasers = false;  ///< its laser offsets were pooled
+  bool constrains_lasers = false;  ///< its laser offsets were pooled
   std::string objection;      ///< why the poses of its scans are not corrected; empty if they are
   /// Differences from the previous window, if both have pose corrections, after their alignment.
   PoseDisagreement overlap;

@@ -68,7 +68,7 @@ struct TileStream::Impl {
   }
 
   std::size_t bytes_of(std::size_t tile) const {
-    return city.tiles[tile].splats * holder.bytes_a_splat();
+    return city.tiles[tile].splats * holder.bytes_per_splat();
   }
 
   // ---- the loading thread

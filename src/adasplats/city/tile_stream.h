@@ -29,7 +29,7 @@ class TileHolder {
   virtual ~TileHolder() = default;
 
   /// Approximate memory per splat, bytes.
-  virtual std::size_t bytes_a_splat() const = 0;
+  virtual std::size_t bytes_per_splat() const = 0;
   /// Receives a loaded tile. Called on the loading thread while other tiles are in use.
   virtual void load(std::size_t tile, SplatModel&& model, const Executor& executor) = 0;
   /// Releases a tile. Like show(), never called while scans are cast.
@@ -41,7 +41,7 @@ class TileHolder {
 /// Figures of a stream.
 struct TileStreamCounts {
   std::size_t loaded = 0;     ///< loaded tiles, counting repeated loads
-  std::size_t max_bytes = 0;  ///< maximum memory of tiles, from bytes_a_splat()
+  std::size_t max_bytes = 0;  ///< maximum memory of tiles, from bytes_per_splat()
   double waited_s = 0;        ///< time spent waiting for tiles
 };
 

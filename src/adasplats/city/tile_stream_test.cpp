@@ -45,7 +45,7 @@ CityManifest write_row(const std::filesystem::path& folder) {
 /// Records its calls and checks their arguments.
 class CheckingHolder final : public TileHolder {
  public:
-  std::size_t bytes_a_splat() const override { return kBytesASplat; }
+  std::size_t bytes_per_splat() const override { return kBytesASplat; }
   void load(std::size_t tile, SplatModel&& model, const Executor&) override {
     const std::lock_guard lock(mutex_);
     EXPECT_TRUE(loaded.insert(tile).second);

@@ -236,7 +236,7 @@ std::optional<fs::path> find_on_path(const std::string& name) {
   return std::nullopt;
 }
 
-std::optional<fs::path> find_beside_own(const std::string& name) {
+std::optional<fs::path> find_next_to_program(const std::string& name) {
   std::error_code failure;
   const fs::path own = fs::read_symlink("/proc/self/exe", failure);
   if (failure) return std::nullopt;

@@ -17,7 +17,7 @@ namespace adasplats {
 std::optional<std::filesystem::path> find_on_path(const std::string& name);
 
 /// A program of that name in the folder of the running program.
-std::optional<std::filesystem::path> find_beside_own(const std::string& name);
+std::optional<std::filesystem::path> find_next_to_program(const std::string& name);
 
 /// Limits of a child and all processes that it starts.
 struct ChildLimits {

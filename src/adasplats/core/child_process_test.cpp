@@ -83,7 +83,7 @@ TEST_F(ChildProcess, FoundOnPath) {
   EXPECT_FALSE(not_executable);
   EXPECT_EQ(found, program);
   EXPECT_FALSE(other);
-  EXPECT_FALSE(find_beside_own("other"));
+  EXPECT_FALSE(find_next_to_program("other"));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ int exit_code(ErrorKind kind) {
   return 70;
 }
 
-Error data_error(const FilePlace& place, const std::string& message) {
+Error data_error(const FilePosition& place, const std::string& message) {
   std::string text = place.file.string() + ":";
   if (place.line) text += std::to_string(*place.line) + ":";
   if (place.byte_offset) text += " byte " + std::to_string(*place.byte_offset) + ":";

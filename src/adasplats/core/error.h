@@ -39,14 +39,14 @@ class Error : public std::runtime_error {
 };
 
 /// A position in a file.
-struct FilePlace {
+struct FilePosition {
   std::filesystem::path file;
   std::optional<std::uint64_t> byte_offset;
   std::optional<std::uint64_t> line;  ///< from 1
 };
 
 /// "FILE:LINE: MESSAGE" or "FILE: byte OFFSET: MESSAGE" as an ErrorKind::data error.
-Error data_error(const FilePlace& place, const std::string& message);
+Error data_error(const FilePosition& place, const std::string& message);
 
 /// An error of the given kind with strerror(errno_value) appended: "FILE: MESSAGE: No space left".
 Error system_error(ErrorKind kind, const std::filesystem::path& file, const std::string& message,

@@ -128,7 +128,7 @@ constexpr double kMaxError_m = 0.5;  // limit for one beam
 /// Throws data unless the beams are of a model with `splats`.
 void require_model(const ErrorPoints& points, std::size_t splats,
                    const std::filesystem::path& path) {
-  if (!tells_of_splats(points))
+  if (!has_splat_hits(points))
     throw Error(ErrorKind::data, path.string() +
                                      ": has no column 'splat' for the splats that its beams "
                                      "hit; write it again with 'evaluate resimulate --errors'");

@@ -56,7 +56,7 @@ ErrorPoints read_error_points(const std::filesystem::path& path);
 
 /// Whether a file of errors contains the splat that each beam hit. Distances of clouds and files of
 /// other programs do not.
-inline bool tells_of_splats(const ErrorPoints& points) { return !points.primitives.empty(); }
+inline bool has_splat_hits(const ErrorPoints& points) { return !points.primitives.empty(); }
 
 /// The mean error of each splat of a model over the beams that hit it.
 class SplatErrors {

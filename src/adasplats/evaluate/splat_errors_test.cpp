@@ -52,7 +52,7 @@ TEST(SplatErrors, RejectBeamsOfOtherModels) {
   expect_error(ErrorKind::data, {"e.ply", "adasplats.splats"},
                [&] { errors.add(beams({0.1F}, {0}, 0), "e.ply"); });
   const ErrorPoints old = beams({0.1F}, {}, 0);
-  EXPECT_FALSE(tells_of_splats(old));
+  EXPECT_FALSE(has_splat_hits(old));
   expect_error(ErrorKind::data, {"e.ply", "'splat'"}, [&] { errors.add(old, "e.ply"); });
   for (const float mean_m : errors.means_m()) EXPECT_TRUE(std::isnan(mean_m)) << "nothing counts";
 }

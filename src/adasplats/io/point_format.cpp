@@ -36,7 +36,7 @@ constexpr PointFormat kFormats[] = {
     {.name = "PLY",
      .extensions = kPly,
      .beginnings = kPlyStarts,
-     .means = ExtensionMeans::geometry,
+     .means = ExtensionMeaning::geometry,
      .read = [](const Path& path,
                 const Options& options) { return read_ply(path, options.selection.records); },
      .read_crs = &read_ply_crs,
@@ -62,7 +62,7 @@ constexpr PointFormat kFormats[] = {
      .read = [](const Path& path, const Options&) { return read_bin(path); }},
     {.name = "text",
      .extensions = kText,
-     .means = ExtensionMeans::text,
+     .means = ExtensionMeaning::text,
      .read = [](const Path& path, const Options&) { return read_text_points(path); }},
     {.name = "PTX",
      .extensions = kPtx,
@@ -148,7 +148,7 @@ Crs read_crs(const Path& path) {
   return format.read_crs == nullptr ? Crs() : format.read_crs(path);
 }
 
-std::optional<std::uint64_t> records_at_random(const Path& path, bool salvage) {
+std::optional<std::uint64_t> random_access_records(const Path& path, bool salvage) {
   const PointFormat& format = format_of_file(path);
   return format.records == nullptr ? std::nullopt : format.records(path, salvage);
 }

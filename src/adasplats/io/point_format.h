@@ -14,7 +14,7 @@
 namespace adasplats {
 
 /// What the extension of a file implies about its content.
-enum class ExtensionMeans : std::uint8_t {
+enum class ExtensionMeaning : std::uint8_t {
   points,
   geometry,  ///< points or a surface, depending on the header
   text,      ///< points, poses or prose, depending on the lines
@@ -26,11 +26,11 @@ struct PointFormat {
   std::string_view name;                         ///< "LAS or LAZ", as in help
   std::span<const std::string_view> extensions;  ///< ".las", ".laz"
   std::span<const std::string_view> beginnings;  ///< alternative first bytes; empty: none defined
-  ExtensionMeans means = ExtensionMeans::points;
+  ExtensionMeaning means = ExtensionMeaning::points;
   std::string_view remark;  ///< after the last extension in messages
   Table (*read)(const std::filesystem::path& path, const LasReadOptions& options);
   Crs (*read_crs)(const std::filesystem::path& path) = nullptr;  ///< null: the format has none
-  /// As records_at_random(), if `read` supports PointSelection::records; null: no random access.
+  /// As random_access_records(), if `read` supports PointSelection::records; null: no random access.
   std::optional<std::uint64_t> (*records)(const std::filesystem::path& path,
                                           bool salvage) = nullptr;
 };

@@ -88,7 +88,7 @@ TEST(RandomAccess, SpansThatCoverAFileGiveEachPointOnce) {
   write_ply(folder.path() / "a.ply", kRows, line.columns());
   for (const char* name : {"a.las", "a.laz", "a.ply"}) {
     const std::filesystem::path file = folder.path() / name;
-    EXPECT_EQ(records_at_random(file), std::optional<std::uint64_t>(kRows)) << name;
+    EXPECT_EQ(random_access_records(file), std::optional<std::uint64_t>(kRows)) << name;
     for (const std::uint64_t piece : {30'000U, 49'999U, 50'000U, 100'001U, 1'000'000U})
       expect_pieces(file, piece);
     EXPECT_EQ(read(file, {kRows, 5}).rows, 0U) << name;
@@ -126,7 +126,7 @@ TEST(RandomAccess, SomeFilesAreReadAtOnce) {
       folder.file("b.ply", "ply\nformat binary_little_endian 1.0\n" + head +
                                "property list uchar int k\nend_header\n" + std::string(18, '\0'))};
   for (const std::filesystem::path& file : files) {
-    EXPECT_EQ(records_at_random(file), std::nullopt) << file;
+    EXPECT_EQ(random_access_records(file), std::nullopt) << file;
     EXPECT_EQ(read_points(file).rows, 2U) << file;
     EXPECT_THROW(read(file, {0, 1}), std::logic_error) << file;
   }
@@ -144,7 +144,7 @@ TEST(RandomAccess, FilesThatEndEarlyAreErrorsInEveryPiece) {
     std::filesystem::resize_file(file, std::filesystem::file_size(file) - 100);
     expect_error(ErrorKind::data, {name}, [&] { read(file, {0, 10}); });
   }
-  EXPECT_LT(records_at_random(folder.path() / "a.las", true), std::optional<std::uint64_t>(1000));
+  EXPECT_LT(random_access_records(folder.path() / "a.las", true), std::optional<std::uint64_t>(1000));
   LasReadOptions options;
   options.salvage = true;
   options.selection.records = {990, 10};

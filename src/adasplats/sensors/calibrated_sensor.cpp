@@ -116,7 +116,7 @@ std::string rows_text(const char* key, std::span<const float> values, std::size_
 }
 
 /// The table [intensity], which must follow all keys.
-std::string intensity_text(const UnitIntensity& unit) {
+std::string intensity_text(const SensorIntensity& unit) {
   std::string text = "\n[intensity]\n";
   text += "step = " + exact_text(unit.step) + "\nhighest = " + exact_text(unit.highest) + "\n";
   if (unit.ring_nodes > 0) {
@@ -133,7 +133,7 @@ std::string intensity_text(const UnitIntensity& unit) {
 }
 
 /// The table [fields], which must follow all keys.
-std::string fields_text(const UnitFields& fields) {
+std::string fields_text(const SensorFields& fields) {
   const std::string_view bytes(reinterpret_cast<const char*>(fields.bytes.data()),
                                fields.bytes.size());
   return "\n# Turns of this unit: of every beam four bytes, how early its echo is lost, how much "
@@ -165,8 +165,8 @@ std::vector<SensorEntry> entries_of(std::string_view library_toml) {
 
 }  // namespace
 
-std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets,
-                             const UnitTraits& traits) {
+std::string calibrated_sensor_toml(const std::string& library_name, const SensorOffsets& offsets,
+                             const SensorTraits& traits) {
   const auto library = lidar_library();
   const auto found = std::ranges::find(library, library_name, &LibraryLidar::name);
   if (found == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));

@@ -21,9 +21,9 @@ inline constexpr std::size_t kTextureNodes = 15;
 
 /// How a calibrated sensor turns the intensity that a model of the scene predicts into the one that
 /// it reports: gains of its lasers, returns with intensity zero, the scatter on surfaces of one
-/// level, and the steps of its converter. UnitFields hold which beams report much and which little.
+/// level, and the steps of its converter. SensorFields hold which beams report much and which little.
 /// Fitted by fit_unit(). All values in the sensor's intensity unit.
-struct UnitIntensity {
+struct SensorIntensity {
   double step = 0;     ///< values are multiples of it; 0: any
   double highest = 0;  ///< maximum reported value
 
@@ -39,19 +39,19 @@ struct UnitIntensity {
   std::vector<float> reported;
 };
 
-/// The quantities that UnitFields hold for each beam.
-enum class UnitField : std::uint8_t { drop = 0, intensity = 1, noise = 2, zero = 3 };
-inline constexpr std::size_t kUnitFields = 4;
+/// The quantities that SensorFields hold for each beam.
+enum class SensorField : std::uint8_t { drop = 0, intensity = 1, noise = 2, zero = 3 };
+inline constexpr std::size_t kSensorFields = 4;
 
 /// Some revolutions of a calibrated sensor: for each beam the quantile of its echo, intensity and
 /// range among those that the model of the scene allows. They keep the correlation between
 /// neighbouring beams, whatever its cause: patches of lost beams, the grain of surfaces, noisy
 /// lasers. Fitted by fit_unit(). A simulated scan uses one of the revolutions, turned by some
 /// columns (unit_field_rules.h): it has the texture of measured scans without their scene.
-struct UnitFields {
+struct SensorFields {
   std::uint32_t turns = 0, rings = 0, columns = 0;
-  /// Turn t, ring r (topmost 0) and column c: kUnitFields bytes from ((t * rings + r) * columns +
-  /// c) * kUnitFields on.
+  /// Turn t, ring r (topmost 0) and column c: kSensorFields bytes from ((t * rings + r) * columns +
+  /// c) * kSensorFields on.
   /// - drop: (b + 0.5)^2 / 2^16 of all echoes as likely to be lost are lost earlier than this
   /// - intensity: (b + 0.5) / 256 of all intensities of such surfaces that are not zero are lower
   /// - noise: (b - 128) |b - 128| / 127^2 of kMaxFieldNoise_m, on the range
@@ -63,17 +63,17 @@ inline constexpr double kMaxFieldNoise_m = 0.3;
 
 /// Offsets of a calibrated sensor from the table of its type, per ring (topmost 0), to be added to
 /// the values that it reports; rings past the end have none.
-struct UnitOffsets {
+struct SensorOffsets {
   std::span<const double> range_m;
   std::span<const double> elevation_rad;
 };
 
 /// Other properties of a calibrated sensor (fit_unit()).
-struct UnitTraits {
+struct SensorTraits {
   std::span<const double> ring_noise_m;  ///< topmost first; empty: not measured
   std::optional<double> max_range_m;
-  const UnitIntensity* intensity = nullptr;
-  const UnitFields* fields = nullptr;
+  const SensorIntensity* intensity = nullptr;
+  const SensorFields* fields = nullptr;
   const RayDropModel* drop = nullptr;
   const VehicleBody* body = nullptr;
   std::string fitted_to;  ///< description for the reader of the file
@@ -83,7 +83,7 @@ struct UnitTraits {
 /// the keys of the type with corrected elevations, and range_offsets_m. Elevations to 1e-5 degrees,
 /// ranges to 0.01 mm. Errors: usage (unknown name); std::logic_error for a sensor without beams or
 /// more offsets than beams.
-std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets,
-                             const UnitTraits& traits = {});
+std::string calibrated_sensor_toml(const std::string& library_name, const SensorOffsets& offsets,
+                             const SensorTraits& traits = {});
 
 }  // namespace adasplats

@@ -29,7 +29,7 @@ TEST(CalibratedSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
     const LidarModel known = load_lidar_model(name);
     if (known.rosette) continue;
     const auto elevations_rad = waves(known.rings(), 2e-4), ranges_m = waves(known.rings(), 0.03);
-    const auto file = folder.write("unit.toml", unit_sensor_toml(name, {ranges_m, elevations_rad}));
+    const auto file = folder.write("unit.toml", calibrated_sensor_toml(name, {ranges_m, elevations_rad}));
     const LidarModel unit = load_lidar_model(file.string());
     EXPECT_EQ(unit.name, name + "-unit");
     EXPECT_EQ(unit.max_returns, known.max_returns) << name;
@@ -68,8 +68,8 @@ TEST(CalibratedSensor, OffsetsOfRangesAreOneABeamAndSortedWithThem) {
                [&] { load_lidar_model(short_list.string()); });
 }
 
-UnitIntensity intensity_of_two_levels(std::size_t rings) {
-  UnitIntensity unit;
+SensorIntensity intensity_of_two_levels(std::size_t rings) {
+  SensorIntensity unit;
   unit.step = 0.01;
   unit.highest = 0.99;
   unit.ring_nodes = 2;
@@ -88,15 +88,15 @@ UnitIntensity intensity_of_two_levels(std::size_t rings) {
 TEST(CalibratedSensor, TraitsAreReadBack) {
   const TemporaryFolder folder;
   const std::string name = "velodyne-vlp-16";
-  const UnitIntensity intensity = intensity_of_two_levels(16);
+  const SensorIntensity intensity = intensity_of_two_levels(16);
   std::vector<double> noise_m;
   for (int ring = 0; ring < 16; ++ring) noise_m.push_back(0.001 * (ring + 1));
-  UnitTraits traits;
+  SensorTraits traits;
   traits.ring_noise_m = noise_m;
   traits.max_range_m = 79.5;
   traits.intensity = &intensity;
-  UnitFields fields{2, 16, 5, {}};
-  for (std::size_t i = 0; i < 2 * 16 * 5 * kUnitFields; ++i)
+  SensorFields fields{2, 16, 5, {}};
+  for (std::size_t i = 0; i < 2 * 16 * 5 * kSensorFields; ++i)
     fields.bytes.push_back(static_cast<std::uint8_t>(7 * i));
   traits.fields = &fields;
   RayDropModel drop;
@@ -110,7 +110,7 @@ TEST(CalibratedSensor, TraitsAreReadBack) {
       {{3, 0, 0.5F, 1.5F, 0.25F}, {3, 719, 1, 2.001F, 0}, {4, 5, 0.25F, 3, 1}}};
   traits.body = &body;
   traits.fitted_to = "3 scans of here";
-  const auto file = folder.write("unit.toml", unit_sensor_toml(name, {}, traits));
+  const auto file = folder.write("unit.toml", calibrated_sensor_toml(name, {}, traits));
   const LidarModel unit = load_lidar_model(file.string());
   ASSERT_EQ(unit.ring_noise_m.size(), noise_m.size());
   for (std::size_t k = 0; k < noise_m.size(); ++k)
@@ -219,10 +219,10 @@ TEST(CalibratedSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
 
 TEST(CalibratedSensor, OffsetsOfOtherSensorsAreNoUnit) {
   expect_error(ErrorKind::usage, {"vlp-16", "did you mean"},
-               [] { unit_sensor_toml("vlp-16", {}); });
+               [] { calibrated_sensor_toml("vlp-16", {}); });
   const std::vector<double> many(17);
-  EXPECT_THROW(unit_sensor_toml("velodyne-vlp-16", {many, {}}), std::logic_error);
-  EXPECT_THROW(unit_sensor_toml("livox-mid-40", {}), std::logic_error);
+  EXPECT_THROW(calibrated_sensor_toml("velodyne-vlp-16", {many, {}}), std::logic_error);
+  EXPECT_THROW(calibrated_sensor_toml("livox-mid-40", {}), std::logic_error);
 }
 
 }  // namespace

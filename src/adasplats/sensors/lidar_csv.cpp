@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_d
 constexpr double kLongestScan_s = 86'400;
 constexpr double kMaxScans_hz = 1e6;  // as in TOML files
 
-std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
+std::uint16_t parse_ring(std::string_view text, const FilePosition& place) {
   const std::optional<std::uint16_t> ring = parse_number<std::uint16_t>(text);
   if (!ring)
     throw data_error(place, "ring is " + shown(text) + ", not a whole number from 0 to 65535");
@@ -34,7 +34,7 @@ std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
 using Columns = std::array<int, kFields.size()>;
 
 /// Reads the names of the columns, in any order; nothing if the line is a ray.
-std::optional<Columns> read_header(std::string_view line, const FilePlace& place) {
+std::optional<Columns> read_header(std::string_view line, const FilePosition& place) {
   const std::vector<std::string_view> names = fields_of(line, ',');
   if (parse_number<double>(names.front())) return std::nullopt;
   const auto starts_with_letter = [](std::string_view name) {
@@ -64,7 +64,7 @@ std::optional<Columns> read_header(std::string_view line, const FilePlace& place
 }
 
 Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
-                 const FilePlace& place) {
+                 const FilePosition& place) {
   const std::vector<std::string_view> fields = fields_of(line, ',');
   const auto has = [&](std::size_t field) {
     return columns[field] >= 0 && static_cast<std::size_t>(columns[field]) < fields.size();

@@ -26,7 +26,7 @@ struct Channel {
   double azimuth_deg = 0;
 };
 
-int channel_number(std::string_view text, const FilePlace& place) {
+int channel_number(std::string_view text, const FilePosition& place) {
   const std::optional<int> number = parse_number<int>(text);
   if (!number || *number < 1 || *number > static_cast<int>(kMaxBeams))
     throw data_error(place, "channel is " + shown(text) + ", not a whole number from 1 to 65536");
@@ -39,7 +39,7 @@ struct AngleColumns {
   std::size_t azimuth = 0;
 };
 
-AngleColumns angle_columns(std::string_view header, const FilePlace& place) {
+AngleColumns angle_columns(std::string_view header, const FilePosition& place) {
   AngleColumns columns;
   const auto names = fields_of(header, ',');
   for (std::size_t i = 1; i < names.size(); ++i) {
@@ -57,7 +57,7 @@ AngleColumns angle_columns(std::string_view header, const FilePlace& place) {
 }
 
 double angle_deg(std::string_view text, std::string_view field, double limit,
-                 const FilePlace& place) {
+                 const FilePosition& place) {
   const double angle = finite_number(text, field, place);
   if (!(std::fabs(angle) <= limit))
     throw data_error(place, std::string(field) + " is " + shown(text) + " degrees");
@@ -97,7 +97,7 @@ struct FiringTime {
 
 /// Azimuth states count columns; those of the first operational state form one cycle.
 FiringTime firing_of_states(const std::vector<std::string_view>& fields, std::size_t states,
-                            const FilePlace& place) {
+                            const FilePosition& place) {
   FiringTime firing;
   std::vector<std::uint32_t> fires;
   for (std::size_t state = 0; state < states; ++state) {
@@ -118,7 +118,7 @@ FiringTime firing_of_states(const std::vector<std::string_view>& fields, std::si
 }
 
 /// The number of table columns of the first operational state.
-std::size_t states_of(const std::vector<std::string_view>& operational, const FilePlace& place) {
+std::size_t states_of(const std::vector<std::string_view>& operational, const FilePosition& place) {
   std::size_t states = 0;
   while (states + 1 < operational.size() && operational[states + 1] == operational[1]) ++states;
   if (states == 0) throw data_error(place, "no operational states");

@@ -86,19 +86,19 @@ TEST_F(HesaiCsv, WrongFilesAreRefusedWithTheLine) {
 }
 
 TEST_F(HesaiCsv, WrongFiringTimesAreRefusedWithTheLine) {
-  const auto refuse = [&](const std::string& times, const std::string& says) {
+  const auto reject = [&](const std::string& times, const std::string& says) {
     folder_.write("my_firetime.csv", times);
     expect_error(ErrorKind::data, {"my_firetime.csv", says}, [&] { load(kThree); });
   };
-  refuse("", "expected the columns");
-  refuse("Channel,fire time(us)\n1,0\n2,0\n", "no channel 3");
-  refuse("Channel,fire time(us)\n1,-1e300\n2,-1e300\n3,-1e300\n", "more than a revolution");
-  refuse("Channel,fire time(us)\n1,nan\n", "my_firetime.csv:2: fire time is 'nan'");
-  refuse("Operational State,0,0\nAzimuth State,0,1\n1,-,-\n", "never fires");
-  refuse("Operational State,0,0,0\nAzimuth State,0,1,2\n1,-,1,1\n", "uneven");
-  refuse("Operational State,0,0,0,0\nAzimuth State,0,1,2,3\n1,1,1,-,-\n", "uneven");
-  refuse("Operational State\n", "no operational states");
-  refuse("Channel,fire time(us)\n1,0\n2,0\n3,60\n", "us a column");
+  reject("", "expected the columns");
+  reject("Channel,fire time(us)\n1,0\n2,0\n", "no channel 3");
+  reject("Channel,fire time(us)\n1,-1e300\n2,-1e300\n3,-1e300\n", "more than a revolution");
+  reject("Channel,fire time(us)\n1,nan\n", "my_firetime.csv:2: fire time is 'nan'");
+  reject("Operational State,0,0\nAzimuth State,0,1\n1,-,-\n", "never fires");
+  reject("Operational State,0,0,0\nAzimuth State,0,1,2\n1,-,1,1\n", "uneven");
+  reject("Operational State,0,0,0,0\nAzimuth State,0,1,2,3\n1,1,1,-,-\n", "uneven");
+  reject("Operational State\n", "no operational states");
+  reject("Channel,fire time(us)\n1,0\n2,0\n3,60\n", "us a column");
 }
 
 }  // namespace

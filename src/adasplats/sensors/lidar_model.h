@@ -76,9 +76,9 @@ struct LidarModel {
   /// Standard deviation of the range noise of each ring; replaces range_noise_m if not empty.
   std::vector<double> ring_noise_m;
   /// Response of this sensor; without it intensities are reported as the scene has them.
-  std::optional<UnitIntensity> intensity;
+  std::optional<SensorIntensity> intensity;
   /// Correlation between neighbouring beams; without it beams are independent.
-  std::optional<UnitFields> fields;
+  std::optional<SensorFields> fields;
   /// Ray drop; without it no beam is lost.
   std::optional<RayDropModel> drop;
   /// Returns from the sensor's own vehicle; without it none.

@@ -363,30 +363,30 @@ TEST_F(LidarFiles, WrongLikenessIsRefusedWithItsLine) {
 
 TEST_F(LidarFiles, WrongNewKeysAreRefusedWithTheirLine) {
   const std::string beams = "elevations_deg = [1, 0]\ncolumns = 4\n";
-  const auto refuse = [&](const std::string& line, const std::string& says) {
+  const auto reject = [&](const std::string& line, const std::string& says) {
     expect_contains(toml_failure(beams + line + "\n"), says);
   };
-  refuse("firing_times_us = [1]", "bad.toml:3: firing_times_us has 1 values, expected 2");
-  refuse("firing_times_us = [1, -1]", "bad.toml:3: firing_times_us");
-  refuse("firing_times_us = [1, nan]", "bad.toml:3: firing_times_us");
-  refuse("firing_times_us = [1, 26000]", "bad.toml:2: columns leave 25000 us a column");
-  refuse("beam_origins_m = [1, 2]", "not [x, y, z]");
-  refuse("beam_origins_m = [[1, 2, 3]]", "has 1 values, expected 2");
-  refuse("beam_origins_m = [[1, 2, 3], 4]", "not a list [x, y, z]");
-  refuse("beam_origins_m = [[1, 2, 3], [1, 2, 'x']]", "bad.toml:3: beam_origins_m");
-  refuse("divergence_deg = [1, 1]", "bad.toml:3: divergence_deg needs divergence_kind");
-  refuse("divergence_deg = [1, 1]\ndivergence_kind = \"FWHM\"", "expected one of 'fwhm', '1/e2'");
-  refuse("divergence_deg = [1, 1]\ndivergence_kind = 1", "bad.toml:4: divergence_kind");
-  refuse("divergence_kind = \"fwhm\"", "bad.toml:3: divergence_kind needs divergence_deg");
-  refuse("divergence_deg = [60, 1]\ndivergence_kind = \"1/e2-half\"", "wider than 90 degrees");
-  refuse("divergence_deg = [1]", "is not [horizontal, vertical]");
-  refuse("divergence_deg = []", "is not a list of numbers");
-  refuse("most_returns = 0", "bad.toml:3: most_returns");
-  refuse("column_steps = [0, 1]", "bad.toml:3: column_steps");
-  refuse("column_phases = [0, 1]", "needs column_steps");
-  refuse("column_steps = [2, 2]\ncolumn_phases = [0, 2]", "not below its step");
-  refuse("[rosette]\npoints_per_s = 1", "cannot be combined with a rosette");
-  refuse("rosette = 1", "cannot be combined with a rosette");
+  reject("firing_times_us = [1]", "bad.toml:3: firing_times_us has 1 values, expected 2");
+  reject("firing_times_us = [1, -1]", "bad.toml:3: firing_times_us");
+  reject("firing_times_us = [1, nan]", "bad.toml:3: firing_times_us");
+  reject("firing_times_us = [1, 26000]", "bad.toml:2: columns leave 25000 us a column");
+  reject("beam_origins_m = [1, 2]", "not [x, y, z]");
+  reject("beam_origins_m = [[1, 2, 3]]", "has 1 values, expected 2");
+  reject("beam_origins_m = [[1, 2, 3], 4]", "not a list [x, y, z]");
+  reject("beam_origins_m = [[1, 2, 3], [1, 2, 'x']]", "bad.toml:3: beam_origins_m");
+  reject("divergence_deg = [1, 1]", "bad.toml:3: divergence_deg needs divergence_kind");
+  reject("divergence_deg = [1, 1]\ndivergence_kind = \"FWHM\"", "expected one of 'fwhm', '1/e2'");
+  reject("divergence_deg = [1, 1]\ndivergence_kind = 1", "bad.toml:4: divergence_kind");
+  reject("divergence_kind = \"fwhm\"", "bad.toml:3: divergence_kind needs divergence_deg");
+  reject("divergence_deg = [60, 1]\ndivergence_kind = \"1/e2-half\"", "wider than 90 degrees");
+  reject("divergence_deg = [1]", "is not [horizontal, vertical]");
+  reject("divergence_deg = []", "is not a list of numbers");
+  reject("most_returns = 0", "bad.toml:3: most_returns");
+  reject("column_steps = [0, 1]", "bad.toml:3: column_steps");
+  reject("column_phases = [0, 1]", "needs column_steps");
+  reject("column_steps = [2, 2]\ncolumn_phases = [0, 2]", "not below its step");
+  reject("[rosette]\npoints_per_s = 1", "cannot be combined with a rosette");
+  reject("rosette = 1", "cannot be combined with a rosette");
 }
 
 TEST_F(LidarFiles, TooManyRaysAreRefused) {

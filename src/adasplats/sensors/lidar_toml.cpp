@@ -122,10 +122,10 @@ std::vector<float> floats_of(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
-UnitIntensity read_intensity(const TomlTable& sensor, std::size_t rings) {
+SensorIntensity read_intensity(const TomlTable& sensor, std::size_t rings) {
   const TomlTable table = sensor.table("intensity", intensity_keys());
   for (const char* key : {"highest", "levels", "zero_share", "reported"}) table.require(key);
-  UnitIntensity unit;
+  SensorIntensity unit;
   unit.step = table.number("step", 0, 0, kMaxIntensity);
   unit.highest = table.number("highest", 0, 0, kMaxIntensity);
   if (table.has("ring_expected") != table.has("ring_level"))
@@ -150,16 +150,16 @@ UnitIntensity read_intensity(const TomlTable& sensor, std::size_t rings) {
   return unit;
 }
 
-UnitFields read_fields(const TomlTable& sensor, std::size_t rings) {
+SensorFields read_fields(const TomlTable& sensor, std::size_t rings) {
   constexpr std::int64_t kMaxTurns = 64, kMaxFieldColumns = 1 << 16;
   const TomlTable table = sensor.table("fields", field_keys());
-  UnitFields fields;
+  SensorFields fields;
   fields.rings = static_cast<std::uint32_t>(rings);
   fields.turns = static_cast<std::uint32_t>(table.whole_number("turns", 1, kMaxTurns));
   fields.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMaxFieldColumns));
   const std::optional<std::string> bytes = from_base64(table.text("bytes", ""));
   if (!bytes) throw table.error("bytes", "is not base64");
-  const std::size_t expected = std::size_t{fields.turns} * rings * fields.columns * kUnitFields;
+  const std::size_t expected = std::size_t{fields.turns} * rings * fields.columns * kSensorFields;
   if (bytes->size() != expected)
     throw table.error("bytes", "has " + std::to_string(bytes->size()) + " bytes, expected " +
                                    std::to_string(expected) + ", four per beam");

@@ -33,7 +33,7 @@ const std::vector<std::string>& laser_keys() {
 
 struct Laser {
   std::map<std::string, double, std::less<>> values;
-  FilePlace place;
+  FilePosition place;
 
   double value(std::string_view key, double otherwise) const {
     const auto found = values.find(key);
@@ -245,7 +245,7 @@ pugi::xml_node required_child(pugi::xml_node parent, const char* name,
 
 /// Stores the number of a child, if it exists, scaled by `unit`.
 void put_xml_number(pugi::xml_node parent, const char* child_name, double unit, const char* key,
-                    const FilePlace& place, std::map<std::string, double, std::less<>>& values) {
+                    const FilePosition& place, std::map<std::string, double, std::less<>>& values) {
   if (const pugi::xml_node child = parent.child(child_name))
     values[key] = unit * finite_number(child.text().get(), child_name, place);
 }
@@ -253,7 +253,7 @@ void put_xml_number(pugi::xml_node parent, const char* child_name, double unit, 
 /// The enabled lasers of db.xml.
 Calibration xml_calibration(const std::string& text, const std::filesystem::path& path) {
   constexpr double kCentimetre_m = 0.01, kDegree_rad = std::numbers::pi / 180;
-  const FilePlace place{path, std::nullopt, std::nullopt};
+  const FilePosition place{path, std::nullopt, std::nullopt};
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(
       text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata, pugi::encoding_utf8);
@@ -287,7 +287,7 @@ Calibration xml_calibration(const std::string& text, const std::filesystem::path
 }
 
 LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesystem::path& path) {
-  const FilePlace place{path, std::nullopt, std::nullopt};
+  const FilePosition place{path, std::nullopt, std::nullopt};
   if (calibration.lasers.empty()) throw data_error(place, "the calibration has no lasers");
   const auto count = calibration.header.find("num_lasers");
   if (count != calibration.header.end() &&

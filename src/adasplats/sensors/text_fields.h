@@ -41,7 +41,7 @@ inline std::vector<std::string_view> fields_of(std::string_view line, char separ
   return fields;
 }
 
-inline double finite_number(std::string_view text, std::string_view field, const FilePlace& place) {
+inline double finite_number(std::string_view text, std::string_view field, const FilePosition& place) {
   const std::optional<double> value = parse_number<double>(text);
   if (!value || !std::isfinite(*value))
     throw data_error(place, std::string(field) + " is " + shown(text) + ", not a finite number");
@@ -66,11 +66,11 @@ class FilledLines {
     }
     return std::nullopt;
   }
-  const FilePlace& place() const { return place_; }
+  const FilePosition& place() const { return place_; }
 
  private:
   std::string_view rest_;
-  FilePlace place_;
+  FilePosition place_;
 };
 
 }  // namespace adasplats

@@ -59,7 +59,7 @@ class TiledTracer : public Tracer {
 };
 
 /// Approximate memory of a tile per splat, bytes.
-inline constexpr std::size_t kTiledTracerBytesASplat = 80;
+inline constexpr std::size_t kTiledTracerBytesPerSplat = 80;
 
 /// `splats`: number of splats of each tile. Errors: data (more than 2^30 splats), unavailable (no
 /// address space).

@@ -138,7 +138,7 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
           {}};
 }
 
-ViewLayer place_layer(std::string name, const AnyModel& model, Vec3d origin,
+ViewLayer model_layer(std::string name, const AnyModel& model, Vec3d origin,
                       const Executor& executor) {
   if (const auto* const splats = std::get_if<SplatModel>(&model))
     return splat_layer(std::move(name), *splats, {}, origin, executor);
@@ -175,7 +175,7 @@ void add_world(ViewScene& scene, const Executor& executor) {
     if (number == world->geometry_count()) {
       const AnyModel& geometry = world->geometry(object.geometry);
       number = scene.geometries.size();
-      scene.geometries.push_back(place_layer(object.name, geometry, {}, executor));
+      scene.geometries.push_back(model_layer(object.name, geometry, {}, executor));
     }
     scene.objects.push_back({object.name, i, number});
   }

@@ -55,7 +55,7 @@ ViewLayer city_layer(std::string name, std::shared_ptr<const CityLevels> levels)
 ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
                      Vec3d origin);
 /// A layer of splats or triangles.
-ViewLayer place_layer(std::string name, const AnyModel& model, Vec3d origin,
+ViewLayer model_layer(std::string name, const AnyModel& model, Vec3d origin,
                       const Executor& executor);
 
 /// `errors_m`: empty, or one per splat.

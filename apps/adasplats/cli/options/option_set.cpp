@@ -121,7 +121,7 @@ std::string OptionSet::first_given(const std::string& group) const {
   return given.empty() ? "" : given.front()->get_name();
 }
 
-void refuse_value(const std::string& option, const std::string& message) {
+void reject_value(const std::string& option, const std::string& message) {
   throw CLI::ValidationError(option, message);
 }
 

@@ -72,7 +72,7 @@ class OptionSet {
   /// lists of text or paths, and std::optional of those; see option_set.cpp.
   template <class T>
   Option* add_option(const std::string& names, T& target, const std::string& help);
-  /// For std::string and std::vector<std::string>; `take` may call refuse_value().
+  /// For std::string and std::vector<std::string>; `take` may call reject_value().
   template <class T>
   Option* add_option_function(const std::string& names, const std::function<void(const T&)>& take,
                               const std::string& help);
@@ -105,6 +105,6 @@ class OptionSet {
 };
 
 /// Rejects the value of an option: "OPTION: MESSAGE", a usage error.
-[[noreturn]] void refuse_value(const std::string& option, const std::string& message);
+[[noreturn]] void reject_value(const std::string& option, const std::string& message);
 
 }  // namespace adasplats::app

@@ -46,7 +46,7 @@ std::array<double, 3> parse_three(const std::string& option, const std::string& 
     good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
   }
   if (!good) {
-    refuse_value(option, "expected three numbers with commas between them, found '" + text + "'");
+    reject_value(option, "expected three numbers with commas between them, found '" + text + "'");
   }
   return numbers;
 }
@@ -62,7 +62,7 @@ SensorPlace parse_place(const std::string& option, const std::string& text) {
     good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
   }
   if (!good)
-    refuse_value(option, "expected X,Y, X,Y,Z, X,Y,Z,YAW or X,Y,,YAW, found '" + text + "'");
+    reject_value(option, "expected X,Y, X,Y,Z, X,Y,Z,YAW or X,Y,,YAW, found '" + text + "'");
   SensorPlace place{numbers[0], numbers[1], {}, numbers[3]};
   if (has_z) place.z_m = numbers[2];
   return place;
@@ -77,7 +77,7 @@ ScanRange parse_scan_range(const std::string& option, const std::string& text) {
   good = good && parse_whole(parts[0], range.first) && parse_whole(parts[1], range.count);
   if (good && parts.size() == 3) good = parse_whole(parts[2], range.stride);
   if (!good || range.count == 0 || range.stride == 0) {
-    refuse_value(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
+    reject_value(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
   }
   return range;
 }
@@ -149,7 +149,7 @@ Option* add_extent(OptionSet& app, const std::string& name, std::optional<Extent
     for (std::size_t i = 0; good && i < parts.size(); ++i)
       good = parse_whole(parts[i], n[i]) && std::isfinite(n[i]);
     if (!good || n[0] > n[2] || n[1] > n[3] || n[4] > n[5])
-      refuse_value(name, "expected XMIN,YMIN,XMAX,YMAX or XMIN,YMIN,XMAX,YMAX,ZMIN,ZMAX, found '" +
+      reject_value(name, "expected XMIN,YMIN,XMAX,YMAX or XMIN,YMIN,XMAX,YMAX,ZMIN,ZMAX, found '" +
                              text + "'");
     target = extent_of(std::span(n).first(parts.size()));
   };
@@ -182,12 +182,12 @@ Option* add_with_unit(OptionSet& app, const Setting& setting, double& target, Un
       double number = 0;
       if (!parse_whole(text.substr(0, text.size() - ending.size()), number)) break;
       if (!is_in_range(setting, number * size))
-        refuse_value(option_of(setting),
+        reject_value(option_of(setting),
                      "expected " + range_text(setting) + " (" + unit + "), found '" + text + "'");
       target = number * size;
       return;
     }
-    refuse_value(option_of(setting), "expected " + examples + ", found '" + text + "'");
+    reject_value(option_of(setting), "expected " + examples + ", found '" + text + "'");
   };
   return app.add_option_function<std::string>(option_of(setting), take, setting.help)
       ->type_name(setting.value);
@@ -214,7 +214,7 @@ Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCor
     for (const std::string& corner : split(text, ';')) {
       const SensorPlace place = parse_place(name, corner);
       if (std::ranges::count(corner, ',') != 1)
-        refuse_value(name, "expected X,Y;X,Y;..., found '" + text + "'");
+        reject_value(name, "expected X,Y;X,Y;..., found '" + text + "'");
       target.push_back({place.x_m, place.y_m});
     }
   };

@@ -22,7 +22,7 @@
 
 namespace adasplats::app {
 
-/// Parses "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
+/// Parses "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: reject_value().
 ScanRange parse_scan_range(const std::string& option, const std::string& text);
 
 Option* add_scan_range(OptionSet& app, const std::string& name, ScanRange& target,
@@ -89,7 +89,7 @@ Option* add_choice(OptionSet& app, const std::string& name, T& target, Choices<T
         return;
       }
     }
-    refuse_value(name, unknown_word("value", given, words));
+    reject_value(name, unknown_word("value", given, words));
   };
   return app.add_option_function<std::string>(name, choose, help)
       ->type_name(joined)

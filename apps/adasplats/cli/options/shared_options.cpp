@@ -28,10 +28,10 @@ std::vector<int> parse_gpus(const std::string& text) {
     int gpu = 0;
     const auto [stop, failure] = std::from_chars(at, end, gpu);
     if (failure != std::errc() || gpu < 0 || (stop != end && *stop != ','))
-      refuse_value("--gpus", "expected numbers of GPUs with commas between them, or all, found '" +
+      reject_value("--gpus", "expected numbers of GPUs with commas between them, or all, found '" +
                                  text + "'");
     if (std::find(gpus.begin(), gpus.end(), gpu) != gpus.end())
-      refuse_value("--gpus", "expected every GPU once, found '" + text + "'");
+      reject_value("--gpus", "expected every GPU once, found '" + text + "'");
     gpus.push_back(gpu);
     if (stop == end) return gpus;
     at = stop + 1;
@@ -100,7 +100,7 @@ void add_load_options(OptionSet& app, LoadOptions& options) {
     const std::size_t second = text.find(',', first + 1);
     if (first == std::string::npos || second == std::string::npos ||
         text.find(',', second + 1) != std::string::npos) {
-      refuse_value("--sensor-fields", "expected three names of columns, found '" + text + "'");
+      reject_value("--sensor-fields", "expected three names of columns, found '" + text + "'");
     }
     options.sensor_x_field = text.substr(0, first);
     options.sensor_y_field = text.substr(first + 1, second - first - 1);

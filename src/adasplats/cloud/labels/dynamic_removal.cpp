@@ -49,7 +49,7 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
   return removed;
 }
 
-std::string why_nothing_is_removed(const PointCloud& cloud, const LabelScheme* labels,
+std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
                                    DynamicRemoval removal) {
   if (removal == DynamicRemoval::none) return "";
   if (cloud.classes.empty()) return "the points have no labels";

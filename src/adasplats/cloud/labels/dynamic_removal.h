@@ -49,7 +49,7 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
 
 /// Why a removal cannot take out a single point whatever the cloud holds, for the user; empty where
 /// it can, and for DynamicRemoval::none.
-std::string why_nothing_is_removed(const PointCloud& cloud, const LabelScheme* labels,
+std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
                                    DynamicRemoval removal);
 
 }  // namespace adasplats

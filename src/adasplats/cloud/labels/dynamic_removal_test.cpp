@@ -52,7 +52,7 @@ TEST(DynamicRemoval, NothingWithoutLabelsOrWhereNothingIsAsked) {
 TEST(DynamicRemoval, SaysWhyNothingCanBeRemoved) {
   const PointCloud cloud = cloud_of({10});
   const auto why = [&](const LabelScheme* labels, DynamicRemoval removal) {
-    return why_nothing_is_removed(cloud, labels, removal);
+    return removal_problem(cloud, labels, removal);
   };
   EXPECT_EQ(why(&paris_carla_3d_labels(), DynamicRemoval::moving),
             "the label scheme 'paris-carla-3d' has no class that is moving, only movable ones "
@@ -63,7 +63,7 @@ TEST(DynamicRemoval, SaysWhyNothingCanBeRemoved) {
   EXPECT_EQ(why(&semantickitti_labels(), DynamicRemoval::moving), "");
   EXPECT_EQ(why(nullptr, DynamicRemoval::none), "");
   EXPECT_NE(why(nullptr, DynamicRemoval::movable).find("`labels`"), std::string::npos);
-  EXPECT_EQ(why_nothing_is_removed({}, nullptr, DynamicRemoval::moving),
+  EXPECT_EQ(removal_problem({}, nullptr, DynamicRemoval::moving),
             "the points have no labels");
   const LabelScheme still("still", {{1, "wall", SemanticGroup::surface, Mobility::fixed, {}}});
   EXPECT_EQ(why(&still, DynamicRemoval::movable),

@@ -158,7 +158,7 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
 
 std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // an unreadable path fails when it is opened as a file
-  if (!fs::is_directory(path, ignored) || is_drive_by_itself(path)) return {{path, false}};
+  if (!fs::is_directory(path, ignored) || is_self_contained_drive(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
   const Folder folder = read_folder(path);
   if (folder.sequences.empty()) return files_of(folder, scans);
@@ -207,7 +207,7 @@ void require_points(const fs::path& file) {
   }
 }
 
-void require_one_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
+void require_same_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
                      ProgressSink& progress) {
   SharedCrs shared;
   for (const auto& [file, crs] : inputs) shared.add(file, crs);

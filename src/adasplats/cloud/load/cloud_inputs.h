@@ -25,7 +25,7 @@ struct CloudInput {
 enum class SensorScans : std::uint8_t { refused, taken };
 
 /// The inputs that a path stands for, for every part of the program that reads points:
-/// - anything that is not a folder, and what is_drive_by_itself(): one file of points;
+/// - anything that is not a folder, and what is_self_contained_drive(): one file of points;
 /// - a sequence folder (with `velodyne`): that sequence;
 /// - a tree of sequences (FOLDER/sequences/NAME or FOLDER/NAME, each with `velodyne`): all of them
 ///   by name;
@@ -54,7 +54,7 @@ void require_points(const std::filesystem::path& file);
 
 /// Throws data if two of the inputs declare different coordinate systems, and warns if one declares
 /// less than another (SharedCrs).
-void require_one_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
+void require_same_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
                      ProgressSink& progress);
 
 }  // namespace adasplats

@@ -41,7 +41,7 @@ const DataTree* data_tree_of(const std::filesystem::path& path) {
   return found == kDataTrees.end() ? nullptr : &*found;
 }
 
-KittiSequence open_data_tree(const DataTree& tree, const FrameDrive& drive,
+KittiSequence open_data_tree(const DataTree& tree, const DriveInput& drive,
                              const Executor& executor, ProgressSink& progress) {
   const bool states_others = !drive.trajectory.empty() || !drive.scan_times.empty() ||
                              !drive.topic.empty() || !drive.poses_topic.empty() ||

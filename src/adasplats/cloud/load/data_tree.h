@@ -23,7 +23,7 @@ using ClassNames = std::vector<std::pair<std::uint16_t, std::string>>;
 struct DataTree {
   const char* name;  ///< "PandaSet sequence"
   bool (*is_one)(const std::filesystem::path& folder);
-  KittiSequence (*open)(const FrameDrive& drive, const Executor& executor, ProgressSink& progress);
+  KittiSequence (*open)(const DriveInput& drive, const Executor& executor, ProgressSink& progress);
   /// Empty without labels.
   ClassNames (*class_names)(const std::filesystem::path& folder);
 };
@@ -33,7 +33,7 @@ const DataTree* data_tree_of(const std::filesystem::path& path);
 
 /// Opens a data set as a drive. Errors: usage for settings of other drives, and those of the data
 /// set.
-KittiSequence open_data_tree(const DataTree& tree, const FrameDrive& drive,
+KittiSequence open_data_tree(const DataTree& tree, const DriveInput& drive,
                              const Executor& executor, ProgressSink& progress);
 
 /// The one of known_label_schemes() that has all classes of a data set by id and name; nothing if

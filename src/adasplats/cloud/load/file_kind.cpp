@@ -163,9 +163,9 @@ FileKind kind_of_file(const std::filesystem::path& file) {
   if (is_one_of(lower_case(file.extension().string()), kMeshes)) return FileKind::mesh;
   const PointFormat* const format = format_of_extension(file);
   // Reading a damaged file reports the error.
-  if (format != nullptr && format->means == ExtensionMeans::points) return FileKind::points;
+  if (format != nullptr && format->means == ExtensionMeaning::points) return FileKind::points;
   const auto lines = first_lines(file);
-  if (format != nullptr && format->means == ExtensionMeans::text)
+  if (format != nullptr && format->means == ExtensionMeaning::text)
     return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
   const FileKind kind = is_ply ? kind_of_ply(*lines) : FileKind::points;

@@ -499,7 +499,7 @@ std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
                                                    ProgressSink& progress) const {
   const PieceContext context = {options_.selection.is_all(), {}};
   auto loaded = load_open(inputs_, options_, name_, context, executor, progress);
-  if (loaded.second.points_read == 0 && options_.selection.extent) throw nothing_within_extent();
+  if (loaded.second.points_read == 0 && options_.selection.extent) throw empty_extent_error();
   return loaded;
 }
 

@@ -532,20 +532,20 @@ TEST(LoadCloud, OptionsThatFitNothing) {
   write_sequence(folder, 1);
   const std::vector<std::filesystem::path> sequence = {folder.path()};
   const std::vector<std::filesystem::path> file = {folder.write("a.xyz", "1 2 3\n")};
-  const auto refuse = [](const std::vector<std::filesystem::path>& inputs, auto&& change) {
+  const auto reject = [](const std::vector<std::filesystem::path>& inputs, auto&& change) {
     LoadOptions options;
     change(options);
     expect_error(ErrorKind::usage, {}, [&] { load(inputs, options); });
   };
-  refuse({}, [](LoadOptions&) {});
-  refuse(file, [](LoadOptions& o) { o.first_scan = 1; });
-  refuse(file, [](LoadOptions& o) { o.scan_stride = 2; });
-  refuse(sequence, [](LoadOptions& o) { o.scan_stride = 0; });
-  refuse(sequence, [](LoadOptions& o) { o.scan_count = 0; });
-  refuse(sequence, [](LoadOptions& o) { o.label_field = "label"; });
-  refuse(sequence, [](LoadOptions& o) { o.viewpoint = Vec3d{}; });
-  refuse(file, [](LoadOptions& o) { o.viewpoint = Vec3d{NAN, 0, 0}; });
-  refuse(file, [](LoadOptions& o) { o.max_distance_m = NAN; });
+  reject({}, [](LoadOptions&) {});
+  reject(file, [](LoadOptions& o) { o.first_scan = 1; });
+  reject(file, [](LoadOptions& o) { o.scan_stride = 2; });
+  reject(sequence, [](LoadOptions& o) { o.scan_stride = 0; });
+  reject(sequence, [](LoadOptions& o) { o.scan_count = 0; });
+  reject(sequence, [](LoadOptions& o) { o.label_field = "label"; });
+  reject(sequence, [](LoadOptions& o) { o.viewpoint = Vec3d{}; });
+  reject(file, [](LoadOptions& o) { o.viewpoint = Vec3d{NAN, 0, 0}; });
+  reject(file, [](LoadOptions& o) { o.max_distance_m = NAN; });
 }
 
 /// Cancels at the first step forward.

@@ -306,7 +306,7 @@ ClassNames nuscenes_class_names(const fs::path& folder) {
   return names;
 }
 
-KittiSequence open_nuscenes_drive(const FrameDrive& drive, const Executor& executor,
+KittiSequence open_nuscenes_drive(const DriveInput& drive, const Executor& executor,
                                   ProgressSink& progress) {
   if (drive.given_mount() || drive.time_offset_s)
     throw Error(ErrorKind::usage, drive.folder.string() +

@@ -43,7 +43,7 @@ bool is_nuscenes_root(const std::filesystem::path& folder);
 /// so the sensor is assumed to be at rest during a scan. If keyframes have labels, points of sweeps
 /// are kNuscenesUnlabeled. Errors: usage (`mount` and `time_offset`, which the tables define), data
 /// with the file (a missing frame, or a wrong number of labels), and those of the two functions.
-KittiSequence open_nuscenes_drive(const FrameDrive& drive, const Executor& executor,
+KittiSequence open_nuscenes_drive(const DriveInput& drive, const Executor& executor,
                                   ProgressSink& progress);
 
 /// category.json by index, for a root with lidarseg.json; else empty.

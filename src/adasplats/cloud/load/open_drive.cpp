@@ -52,7 +52,7 @@ bool are_of_the_points(const SensorFrames& frames, double apart_s) {
 }
 
 /// The files with their poses and the meaning of their times; nothing if they have no poses.
-std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
+std::optional<SensorFrames> sensor_frames_of(const DriveInput& drive,
                                              std::vector<std::filesystem::path> files,
                                              const Executor& executor, ProgressSink& progress) {
   SensorFrames frames;
@@ -88,7 +88,7 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
 
 }  // namespace
 
-bool is_drive_by_itself(const std::filesystem::path& path) {
+bool is_self_contained_drive(const std::filesystem::path& path) {
   return is_recording(path) || is_capture(path) || data_tree_of(path) != nullptr;
 }
 
@@ -113,7 +113,7 @@ Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& 
 }
 
 /// Opens a folder of files, one per scan.
-std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor& executor,
+std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor& executor,
                                         ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
@@ -172,7 +172,7 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
 
 }  // namespace
 
-std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
+std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor& executor,
                                               ProgressSink& progress) {
   if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
     throw Error(ErrorKind::usage,

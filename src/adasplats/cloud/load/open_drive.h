@@ -16,21 +16,21 @@
 namespace adasplats {
 
 /// A drive to open: where its scans are, and how to read them.
-struct FrameDrive : DriveSettings {
+struct DriveInput : DriveSettings {
   /// A folder of files, one per scan (scan_files()), a recording (is_recording()), a capture
   /// (is_capture()), or the root of a data set (data_tree_of()).
   std::filesystem::path folder;
   bool with_classes = true;  ///< read the classes that the files have
 };
 
-inline FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
+inline DriveInput drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
   return {settings, folder};
 }
 
 /// Whether a path is a drive without a trajectory file or a folder of scan files: a recording, a
 /// packet capture, or the root of a data set. Recordings and data sets contain the poses of their
 /// scans.
-bool is_drive_by_itself(const std::filesystem::path& path);
+bool is_self_contained_drive(const std::filesystem::path& path);
 
 /// Whether a folder contains point files of one extension, and the times of the first span at most
 /// a second: scans, not tiles of a recording.
@@ -48,7 +48,7 @@ bool has_timed_frames(const std::filesystem::path& folder);
 ///   times, a stated mount, or (with a warning) a sensor that is not recognised. Errors: data if
 ///   the trajectory does not cover the times (up to one step of its poses), if the poses contradict
 ///   the points, and if the frame is undetermined.
-std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
+std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor& executor,
                                               ProgressSink& progress);
 
 }  // namespace adasplats

@@ -99,7 +99,7 @@ class Drive {
 };
 
 // Oracle: where the sensor was when each point was made.
-TEST(FrameDrive, BeamsBeginWhereTheSensorWasAtTheirTime) {
+TEST(DriveInput, BeamsBeginWhereTheSensorWasAtTheirTime) {
   const Drive drive;
   ProgressSink quiet;
   LoadOptions options;
@@ -126,7 +126,7 @@ TEST(FrameDrive, BeamsBeginWhereTheSensorWasAtTheirTime) {
   EXPECT_GT(of_laser, 480U);
 }
 
-TEST(FrameDrive, TheCoordinateSystemIsThatOfItsFiles) {
+TEST(DriveInput, TheCoordinateSystemIsThatOfItsFiles) {
   ProgressSink quiet;
   const auto load = [&quiet](const Drive& drive) {
     LoadOptions options;
@@ -139,7 +139,7 @@ TEST(FrameDrive, TheCoordinateSystemIsThatOfItsFiles) {
                [&] { load(Drive("EPSG:32633")); });
 }
 
-TEST(FrameDrive, AnotherClockIsAnError) {
+TEST(DriveInput, AnotherClockIsAnError) {
   const Drive drive;
   ProgressSink quiet;
   const auto late = drive.folder().write(
@@ -148,11 +148,11 @@ TEST(FrameDrive, AnotherClockIsAnError) {
   expect_error(ErrorKind::data, {"0.ply", "the clocks differ", "late.csv"}, [&] {
     DriveSettings settings;
     settings.trajectory = late;
-    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
+    open_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 
-TEST(FrameDrive, AnotherClockCanBeStated) {
+TEST(DriveInput, AnotherClockCanBeStated) {
   const Drive drive;
   ProgressSink quiet;
   Trajectory late = read_trajectory(drive.poses());
@@ -168,7 +168,7 @@ TEST(FrameDrive, AnotherClockCanBeStated) {
   EXPECT_FALSE(report.timed.has_value());
 }
 
-TEST(FrameDrive, AStatedMountTakesThePlaceOfRecognition) {
+TEST(DriveInput, AStatedMountTakesThePlaceOfRecognition) {
   const Drive drive;
   ProgressSink quiet;
   LoadOptions options;
@@ -201,7 +201,7 @@ std::filesystem::path frames_of_nothing(const TemporaryFolder& folder) {
   return folder.path() / "frames";
 }
 
-TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
+TEST(DriveInput, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   const TemporaryFolder folder;
   const std::filesystem::path frames = frames_of_nothing(folder);
   class Listener : public ProgressSink {
@@ -231,7 +231,7 @@ TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
 }
 
-TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
+TEST(DriveInput, BoxesOfAnotherClockAreAnError) {
   const Drive drive;
   ProgressSink quiet;
   const auto boxes = drive.folder().write(
@@ -241,11 +241,11 @@ TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
     DriveSettings settings;
     settings.trajectory = drive.poses();
     settings.boxes = boxes;
-    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
+    open_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 
-TEST(FrameDrive, FilesWithoutTimesAreNone) {
+TEST(DriveInput, FilesWithoutTimesAreNone) {
   const TemporaryFolder folder;
   folder.write("a.xyz", std::string("x y z\n1 2 3\n"));
   folder.write("b.xyz", std::string("x y z\n1 2 3\n"));

@@ -44,8 +44,8 @@ std::vector<OpenInput> opened(std::span<const std::filesystem::path> paths,
   std::vector<OpenInput> inputs;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() || is_drive_by_itself(path))
-      drive = open_frame_drive(drive_of(path, options), executor, progress);
+    if (!options.trajectory.empty() || is_self_contained_drive(path))
+      drive = open_drive(drive_of(path, options), executor, progress);
     if (drive)
       inputs.push_back({{path, true}, std::move(drive), true});
     else
@@ -176,7 +176,7 @@ PathBeyond OpenInputs::path_beyond(const InputPiece& piece) const {
   return beyond;
 }
 
-Error OpenInputs::nothing_within_extent() const {
+Error OpenInputs::empty_extent_error() const {
   const std::filesystem::path& first = inputs_.front().input.path;
   std::string message = "no point of " + first.string();
   if (inputs_.size() > 1) message += " and " + std::to_string(inputs_.size() - 1) + " more inputs";
@@ -309,7 +309,7 @@ std::vector<InputPiece> file_pieces(const OpenInputs& inputs, std::uint64_t reco
     const CloudInput& input = inputs.inputs()[k].input;
     if (input.is_sequence) throw std::logic_error("file_pieces: a drive");
     const LoadOptions& options = inputs.options();
-    const std::optional<std::uint64_t> all = records_at_random(input.path, options.salvage);
+    const std::optional<std::uint64_t> all = random_access_records(input.path, options.salvage);
     if (!all || *all <= records) {
       pieces.push_back({.input = k});
       continue;

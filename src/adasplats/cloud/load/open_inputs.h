@@ -26,7 +26,7 @@ namespace adasplats {
 struct OpenInput {
   CloudInput input;
   std::optional<KittiSequence> sequence;  ///< of a drive, with recognised beams
-  bool is_frame_drive = false;            ///< opened by open_frame_drive()
+  bool is_frame_drive = false;            ///< opened by open_drive()
 };
 
 /// A part of one input that is loaded at once.
@@ -59,12 +59,12 @@ class OpenInputs {
   std::pair<PointCloud, LoadReport> load(const Executor& executor, ProgressSink& progress) const;
   /// The same for a part of one input. The cloud has its own origin, and scans of drives are
   /// numbered from 0; only the driven path includes the rest of the drive. Records are those of a
-  /// file with random access (records_at_random()), or all.
+  /// file with random access (random_access_records()), or all.
   std::pair<PointCloud, LoadReport> load(const InputPiece& piece, const Executor& executor,
                                          ProgressSink& progress) const;
 
   /// The error for an extent without points. Errors: as read_las_facts().
-  Error nothing_within_extent() const;
+  Error empty_extent_error() const;
 
  private:
   PathBeyond path_beyond(const InputPiece& piece) const;
@@ -74,7 +74,7 @@ class OpenInputs {
   std::vector<OpenInput> inputs_;
 };
 
-/// Cuts files with random access (records_at_random()) into pieces of at most `records`; other
+/// Cuts files with random access (random_access_records()) into pieces of at most `records`; other
 /// files are one piece. Files with sensor positions and ascending scan numbers are cut between
 /// scans, which takes another pass; scans of up to twice `records` are not cut. Such pieces have
 /// whole scans and the path beyond. Warns if the numbers do not ascend or a scan is longer. Errors:

@@ -374,7 +374,7 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
   return drive;
 }
 
-void require_options_of_captures(const FrameDrive& drive) {
+void require_options_of_captures(const DriveInput& drive) {
   const std::string path = drive.folder.string();
   if (!drive.poses_topic.empty() || !drive.scan_times.empty())
     throw Error(ErrorKind::usage, path +
@@ -398,9 +398,9 @@ std::shared_ptr<const PacketDecoder> decoder_of_capture(const fs::path& capture,
   return std::make_shared<const PacketDecoder>(packet_sensor(load_lidar_model(sensor)));
 }
 
-KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& survey,
+KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& survey,
                                 const Executor& executor, ProgressSink& progress) {
-  FrameDrive drive = given;
+  DriveInput drive = given;
   if (!survey.decoder)
     throw Error(ErrorKind::usage,
                 survey.path.string() +

@@ -18,7 +18,7 @@ namespace adasplats {
 
 /// One turn of a sensor's head in a capture.
 struct Revolution {
-  CapturePlace place;         ///< of the packet that it begins in
+  CapturePosition place;         ///< of the packet that it begins in
   std::size_t skipped = 0;    ///< columns of that packet that belong to the previous revolution
   std::size_t columns = 0;    ///< captured ones
   double share = 0;           ///< fraction of a full turn, from its first to its last column
@@ -86,7 +86,7 @@ std::shared_ptr<const PacketDecoder> decoder_of_capture(const std::filesystem::p
 /// revolution, without times). Revolutions without poses or points are skipped. Errors: usage (no
 /// trajectory, an unknown sensor, several sources and no `topic`), data (no packets of the sensor),
 /// those of survey_packets() and open_sensor_frames().
-KittiSequence open_packet_drive(const FrameDrive& drive, const PacketSurvey& survey,
+KittiSequence open_packet_drive(const DriveInput& drive, const PacketSurvey& survey,
                                 const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

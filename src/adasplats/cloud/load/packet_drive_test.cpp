@@ -59,7 +59,7 @@ class SentDrive {
     return path;
   }
   void add_to(CaptureWriter& writer, std::int64_t captured_later_ns, std::uint8_t sender) const {
-    const UdpEnd from{{}, {10, 0, 0, sender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+    const UdpEndpoint from{{}, {10, 0, 0, sender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
     for (std::size_t k = 0; k < payloads.size(); ++k)
       writer.add(static_cast<std::uint64_t>(times_ns[k] + captured_later_ns) / 1000, from, to,
                  payloads[k]);
@@ -180,7 +180,7 @@ class OpenedCapture : public testing::Test {
   };
   KittiSequence open(const SentDrive& sent, const std::string& topic = "",
                      std::vector<std::string>* warnings = nullptr) const {
-    FrameDrive drive;
+    DriveInput drive;
     drive.folder = folder_.path() / "sent.pcap";
     drive.trajectory = folder_.write(
         "poses.csv", "time,x,y,z,qw,qx,qy,qz\n" + std::to_string(kDriveBegin_ns / 1e9 - 1) +

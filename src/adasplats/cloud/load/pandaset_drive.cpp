@@ -167,7 +167,7 @@ class PandaFrames final : public ScanSource {
   std::optional<IntensityScale> scale_;
 };
 
-std::map<fs::path, fs::path> class_files_of(const FrameDrive& drive,
+std::map<fs::path, fs::path> class_files_of(const DriveInput& drive,
                                             const std::vector<fs::path>& files) {
   std::map<fs::path, fs::path> classes;
   const fs::path folder = drive.folder / "annotations" / "semseg";
@@ -205,7 +205,7 @@ ClassNames pandaset_class_names(const fs::path& folder) {
   return names;
 }
 
-KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& executor,
+KittiSequence open_pandaset_drive(const DriveInput& drive, const Executor& executor,
                                   ProgressSink& progress) {
   const fs::path lidar = drive.folder / "lidar";
   WorldFrames frames;

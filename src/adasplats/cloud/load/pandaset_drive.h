@@ -20,7 +20,7 @@ bool is_pandaset_sequence(const std::filesystem::path& folder);
 /// are not recognised, the poses are assumed to be the LiDAR's, with the stated mount. Errors: data
 /// with the file (a frame that is missing, has no pose, or has fewer or more labels than points; a
 /// wrong number of times; an invalid heading).
-KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& executor,
+KittiSequence open_pandaset_drive(const DriveInput& drive, const Executor& executor,
                                   ProgressSink& progress);
 
 /// annotations/semseg/classes.json; empty without labels.

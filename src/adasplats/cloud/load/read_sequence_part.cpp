@@ -68,7 +68,7 @@ void store_scan(const PartRun& run, const KittiScan& scan, PointCloud& cloud) {
 KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options,
                             const Executor& executor) {
   KittiSequence sequence = open_kitti_sequence(folder);
-  sequence.facts.unchecked = require_poses_that_fit(sequence, executor);
+  sequence.facts.unchecked = verify_poses(sequence, executor);
   if (!options.beams_from_poses) sequence.beams = recognize_beams(sequence, executor);
   return sequence;
 }

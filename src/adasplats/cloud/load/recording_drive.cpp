@@ -123,7 +123,7 @@ namespace fs = std::filesystem;
 class RecordedScans final : public ScanSource {
  public:
   RecordedScans(std::shared_ptr<const Recording> recording, MessageEncoding encoding,
-                std::map<fs::path, MessagePlace> places)
+                std::map<fs::path, MessagePosition> places)
       : recording_(std::move(recording)), encoding_(encoding), places_(std::move(places)) {}
   FileScan read(const fs::path& scan) const override {
     return scan_of_table(scan, ros_points(recording_->message(places_.at(scan)), encoding_,
@@ -133,7 +133,7 @@ class RecordedScans final : public ScanSource {
  private:
   std::shared_ptr<const Recording> recording_;
   MessageEncoding encoding_;
-  std::map<fs::path, MessagePlace> places_;
+  std::map<fs::path, MessagePosition> places_;
 };
 
 /// "drive.mcap/000012": by its number among the clouds of the topic.
@@ -198,7 +198,7 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
                        ProgressSink& progress) {
   const fs::path& path = survey.recording->path();
   RecordedDrive scans;
-  std::map<fs::path, MessagePlace> places;
+  std::map<fs::path, MessagePosition> places;
   for (std::size_t k = 0; k < topic.clouds.size(); ++k) {
     const CloudMessage& cloud = topic.clouds[k];
     if (cloud.points == 0) continue;
@@ -259,7 +259,7 @@ TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path&
           std::max(from_stamp(first, first.times.last), from_stamp(last, last.times.last))};
 }
 
-void require_options_of_recordings(const FrameDrive& drive) {
+void require_options_of_recordings(const DriveInput& drive) {
   if (!drive.scan_times.empty())
     throw Error(ErrorKind::usage, drive.folder.string() +
                                       ": the clouds of a recording have times in their headers; "
@@ -276,9 +276,9 @@ void require_options_of_recordings(const FrameDrive& drive) {
 
 }  // namespace
 
-KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurvey& survey,
+KittiSequence open_recording_drive(const DriveInput& given, const RecordingSurvey& survey,
                                    const Executor& executor, ProgressSink& progress) {
-  FrameDrive drive = given;
+  DriveInput drive = given;
   require_options_of_recordings(drive);
   const TopicSurvey& topic = topic_of_clouds(survey, drive.topic);
   RecordedDrive scans = scans_of(survey, topic, progress);

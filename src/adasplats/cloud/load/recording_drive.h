@@ -21,7 +21,7 @@ namespace adasplats {
 struct CloudMessage {
   double stamp_s = 0;  ///< of its header
   std::uint64_t points = 0;
-  MessagePlace place;
+  MessagePosition place;
 };
 
 /// The contents of one topic of a recording.
@@ -57,7 +57,7 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
 /// from the header's time or in its clock, in s, ms, us or ns; else an error. Errors: usage
 /// (ambiguous topics, options of folders), data (frames that no transforms connect, different
 /// clocks), those of survey_recording() and open_sensor_frames().
-KittiSequence open_recording_drive(const FrameDrive& drive, const RecordingSurvey& survey,
+KittiSequence open_recording_drive(const DriveInput& drive, const RecordingSurvey& survey,
                                    const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

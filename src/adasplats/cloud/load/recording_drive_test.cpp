@@ -292,7 +292,7 @@ TEST(RecordingDrive, ScansInGapsOfPosesAreLeftOut) {
 
 TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
   const TemporaryFolder folder;
-  const auto refuse = [&](const std::vector<std::string>& parts, CloudWords cloud) {
+  const auto reject = [&](const std::vector<std::string>& parts, CloudWords cloud) {
     std::vector<Said> messages = clouds_with_a_gap_of_poses();
     cloud.fields = {{"x", 0, 7}};
     cloud.width = 1;
@@ -301,9 +301,9 @@ TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
     messages.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
     expect_error(ErrorKind::data, parts, [&] { load_messages(folder, messages); });
   };
-  refuse({"message 7", "'rear'", "'lidar'"}, {.stamp_ns = stamp_of(5.6), .frame = "rear"});
-  refuse({"the same time"}, {.stamp_ns = stamp_of(4.5)});
-  refuse({"000006", "no columns x, y and z"}, {.stamp_ns = stamp_of(5.8)});
+  reject({"message 7", "'rear'", "'lidar'"}, {.stamp_ns = stamp_of(5.6), .frame = "rear"});
+  reject({"the same time"}, {.stamp_ns = stamp_of(4.5)});
+  reject({"000006", "no columns x, y and z"}, {.stamp_ns = stamp_of(5.8)});
   // A rotation that is none, of a transform that is needed.
   std::vector<Said> messages = clouds_with_a_gap_of_poses();
   messages.push_back(

@@ -66,7 +66,7 @@ std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
 }
 
 /// The poses of a topic with one pair of frames.
-RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
+RecordedPoses poses_of_topic(const DriveInput& drive, const FrameTree& tree,
                              const TopicSurvey& topic, const TopicSurvey& clouds) {
   const std::string& name = topic.topic.name;
   const FrameEdge& edge = edge_of_topic(topic);
@@ -91,7 +91,7 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
   return found;
 }
 
-RecordedPoses poses_of_tree(const FrameDrive& drive, const FrameTree& tree,
+RecordedPoses poses_of_tree(const DriveInput& drive, const FrameTree& tree,
                             const std::string& frame) {
   if (drive.given_mount())
     throw Error(ErrorKind::usage,
@@ -141,7 +141,7 @@ const TopicSurvey* only_topic_of_poses(const RecordingSurvey& survey) {
   return only;
 }
 
-RecordedPoses poses_within(const FrameDrive& drive, const RecordingSurvey& survey,
+RecordedPoses poses_within(const DriveInput& drive, const RecordingSurvey& survey,
                            const TopicSurvey& clouds) {
   const FrameTree tree = tree_of(survey);
   if (!drive.poses_topic.empty()) {
@@ -187,7 +187,7 @@ RecordedPoses poses_without_clouds(const RecordingSurvey& survey, const std::str
 /// poses_within(), or those of a vehicle that no transforms connect to the clouds.
 RecordedPoses poses_of_clouds_or_vehicle(const RecordingSurvey& survey, const TopicSurvey& clouds,
                                          const std::string& poses_topic) {
-  FrameDrive drive;
+  DriveInput drive;
   drive.poses_topic = poses_topic;
   const FrameTree tree = tree_of(survey);
   const bool by_tree = poses_topic.empty()
@@ -247,7 +247,7 @@ const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::str
   return *chosen;
 }
 
-RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<double>& stamps_s,
+RecordedPoses poses_of_trajectory(const DriveInput& drive, const std::vector<double>& stamps_s,
                                   const std::string& scans, const std::string& when) {
   RecordedPoses found;
   found.poses = read_trajectory(drive.trajectory);
@@ -266,7 +266,7 @@ RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<dou
   return found;
 }
 
-RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
+RecordedPoses poses_of_clouds(const DriveInput& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s) {
   if (!drive.trajectory.empty())
     return poses_of_trajectory(drive, stamps_s, "clouds", "at the times of the clouds' headers");

@@ -26,12 +26,12 @@ struct RecordedPoses {
 
 /// Poses of the given trajectory; without times, one pose for each of the `scans` ("clouds") at
 /// their times. `when` describes those times. Errors: data.
-RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<double>& stamps_s,
+RecordedPoses poses_of_trajectory(const DriveInput& drive, const std::vector<double>& stamps_s,
                                   const std::string& scans, const std::string& when);
 
 /// Poses as open_recording_drive() chooses them. `stamps_s`: times of the clouds, for a trajectory
 /// without times. Errors: usage, data.
-RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
+RecordedPoses poses_of_clouds(const DriveInput& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s);
 
 /// Poses to drive the same route again: those of the clouds' frame, or of a vehicle that no

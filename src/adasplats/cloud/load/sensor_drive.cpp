@@ -401,7 +401,7 @@ std::string motion_text(const ScanBeams& beams) {
              : "points as measured, compensated by the poses, which other scans confirm";
 }
 
-KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
+KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& frames,
                                  const std::string& because, const Executor& executor,
                                  ProgressSink& progress) {
   KittiSequence sequence;
@@ -413,7 +413,7 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   sequence.facts.poses =
       frames.poses.by + (drive.given_mount() ? ", with the stated mount"
                                              : ", assumed to be those of the points' frame");
-  sequence.facts.unchecked = require_poses_that_fit(sequence, executor);
+  sequence.facts.unchecked = verify_poses(sequence, executor);
   MovingBoxes boxes;
   if (!drive.boxes.empty()) boxes = MovingBoxes(drive.boxes);
   const bool has_point_times = frames.times.kind != PointTimes::Kind::none;

@@ -62,10 +62,10 @@ std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, Sweep
 std::vector<TimeSpan> spans_of_scans(const SensorFrames& frames, const Executor& executor,
                                      ProgressSink& progress);
 
-/// Opens scans in the sensor frame with their poses as a drive (open_frame_drive()). `because` is
+/// Opens scans in the sensor frame with their poses as a drive (open_drive()). `because` is
 /// the evidence for that frame. Errors: data (poses that do not fit the scans; point times without
 /// a meaning).
-KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
+KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& frames,
                                  const std::string& because, const Executor& executor,
                                  ProgressSink& progress);
 

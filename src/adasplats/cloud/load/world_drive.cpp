@@ -175,7 +175,7 @@ void require_covered(const WorldFrames& frames, const Overview& overview) {
 }
 
 /// Throws data if no box overlaps the times of the scans.
-void require_boxes_of(const FrameDrive& drive, const MovingBoxes& boxes, const Overview& overview) {
+void require_boxes_of(const DriveInput& drive, const MovingBoxes& boxes, const Overview& overview) {
   const auto covered = [&](const std::pair<double, double>& times_s) {
     return boxes.overlaps(times_s.first, times_s.second);
   };
@@ -216,7 +216,7 @@ double residual_of_shift(const Overview& overview, const Trajectory& vehicle,
 /// Checks whether the clocks of points and poses are shifted: if a vehicle turns or changes its
 /// speed, one mount fits the points to the cones only with the right times. Returns the result in
 /// words. Errors: data if another offset is clearly better (a warning if the offset is stated).
-std::string check_clock(const FrameDrive& drive, const Overview& overview,
+std::string check_clock(const DriveInput& drive, const Overview& overview,
                         const Trajectory& vehicle, const Recognition& found,
                         ProgressSink& progress) {
   constexpr std::array kShifts_s = {0.05, 0.1, 0.2, 0.5, 1.0, 2.0};
@@ -271,7 +271,7 @@ void describe_recognised(const Recognition& found, std::string clock, KittiSeque
 }
 
 /// Finds the sensor and its mount; nothing if both are unknown.
-std::optional<WorldSensor> find_sensor(const FrameDrive& drive, const WorldFrames& frames,
+std::optional<WorldSensor> find_sensor(const DriveInput& drive, const WorldFrames& frames,
                                        const Overview& overview, KittiSequence& sequence,
                                        const Executor& executor, ProgressSink& progress) {
   std::optional<Recognition> found;
@@ -297,7 +297,7 @@ std::optional<WorldSensor> find_sensor(const FrameDrive& drive, const WorldFrame
 
 }  // namespace
 
-std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const WorldFrames& frames,
+std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const WorldFrames& frames,
                                                const Executor& executor, ProgressSink& progress) {
   const Overview overview = survey_frames(frames, executor, progress);
   require_covered(frames, overview);

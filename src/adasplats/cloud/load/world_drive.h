@@ -27,10 +27,10 @@ struct WorldFrames {
   bool is_stated = false;  ///< the user gives own_mount, so the sensor is not recognised
 };
 
-/// Opens scans in world coordinates as a drive (open_frame_drive()); nothing, with a warning, if
+/// Opens scans in world coordinates as a drive (open_drive()); nothing, with a warning, if
 /// the mount of the sensor is unknown. A single scan with a single pose within a second of it keeps
 /// that pose all the time.
-std::optional<KittiSequence> open_world_frames(const FrameDrive& drive, const WorldFrames& frames,
+std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const WorldFrames& frames,
                                                const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

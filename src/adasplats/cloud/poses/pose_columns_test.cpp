@@ -111,21 +111,21 @@ TEST(PoseColumns, NamesOfManyProgramsGiveTheSamePoses) {
 
 TEST(PoseColumns, WhatIsNotClearIsAnErrorThatSaysWhatIsExpected) {
   const TemporaryFolder folder;
-  const auto refuse = [&](const std::string& heading, const std::string& letters,
+  const auto reject = [&](const std::string& heading, const std::string& letters,
                           const std::vector<std::string>& parts) {
     const auto path = folder.write("poses.csv", heading + "\n" + rows_of(letters, ','));
     expect_error(ErrorKind::data, parts, [&] { read_trajectory(path); });
   };
-  refuse("time,x,y,z,q0,q1,q2,q3", "txyzabcd", {":1:", "no qw, qx, qy, qz", "scalar", "quat_w"});
-  refuse("time,x,y,z,q1,q2,q3,q4", "txyzbcda", {"scalar"});
-  refuse("x,y,z,qw,qx,qy,qz", "xyzabcd", {"no time", "timestamp_ns"});
-  refuse("time,x,y,z,roll,pitch,yaw", "txyz---", {"no qw, qx, qy, qz"});
-  refuse("time,x,y,z,rot_x,rot_y,rot_z", "txyzbcd", {"no qw;"});
-  refuse("time,stamp,x,y,z,qw,qx,qy,qz", "ttxyzabcd", {"'time' and 'stamp'"});
-  refuse("time,x,y,z,qw,qx,qy,qz,quat_x", "txyzabcd-", {"'qx' and 'quat_x'"});
-  refuse("time,x [ft],y [ft],z [ft],qw,qx,qy,qz", "txyzabcd", {"'ft'", "expected m"});
-  refuse("time [min],x,y,z,qw,qx,qy,qz", "txyzabcd", {"'min'"});
-  refuse("secs,nsecs,x,y,z,qw,qx,qy,qz", "sTxyzabcd", {":2:", "ns within a second"});
+  reject("time,x,y,z,q0,q1,q2,q3", "txyzabcd", {":1:", "no qw, qx, qy, qz", "scalar", "quat_w"});
+  reject("time,x,y,z,q1,q2,q3,q4", "txyzbcda", {"scalar"});
+  reject("x,y,z,qw,qx,qy,qz", "xyzabcd", {"no time", "timestamp_ns"});
+  reject("time,x,y,z,roll,pitch,yaw", "txyz---", {"no qw, qx, qy, qz"});
+  reject("time,x,y,z,rot_x,rot_y,rot_z", "txyzbcd", {"no qw;"});
+  reject("time,stamp,x,y,z,qw,qx,qy,qz", "ttxyzabcd", {"'time' and 'stamp'"});
+  reject("time,x,y,z,qw,qx,qy,qz,quat_x", "txyzabcd-", {"'qx' and 'quat_x'"});
+  reject("time,x [ft],y [ft],z [ft],qw,qx,qy,qz", "txyzabcd", {"'ft'", "expected m"});
+  reject("time [min],x,y,z,qw,qx,qy,qz", "txyzabcd", {"'min'"});
+  reject("secs,nsecs,x,y,z,qw,qx,qy,qz", "sTxyzabcd", {":2:", "ns within a second"});
   // A name without a unit is of seconds; nanoseconds since 1970 are none.
   const auto path =
       folder.write("poses.csv", "timestamp,x,y,z,qw,qx,qy,qz\n1700000000123456789,0,0,0,1,0,0,0\n");

@@ -57,7 +57,7 @@ std::string short_text(double value) {
   return std::string(buffer.data(), result.ptr);
 }
 
-double finite_number(const FilePlace& place, const std::vector<std::string_view>& fields,
+double finite_number(const FilePosition& place, const std::vector<std::string_view>& fields,
                      std::size_t index) {
   const auto number = parse_number<double>(fields[index]);
   if (!number || !std::isfinite(*number))
@@ -66,7 +66,7 @@ double finite_number(const FilePlace& place, const std::vector<std::string_view>
   return *number;
 }
 
-void require_count(const FilePlace& place, const std::vector<std::string_view>& fields,
+void require_count(const FilePosition& place, const std::vector<std::string_view>& fields,
                    std::size_t expected) {
   if (fields.size() != expected)
     throw data_error(place, "found " + std::to_string(fields.size()) + " values, expected " +
@@ -77,7 +77,7 @@ void require_count(const FilePlace& place, const std::vector<std::string_view>& 
 template <std::size_t N>
 std::array<double, N> finite_numbers(const std::filesystem::path& path, std::uint64_t line,
                                      const std::vector<std::string_view>& fields) {
-  const FilePlace place{path, {}, line};
+  const FilePosition place{path, {}, line};
   require_count(place, fields, N);
   std::array<double, N> numbers;
   for (std::size_t i = 0; i < N; ++i) numbers[i] = finite_number(place, fields, i);
@@ -202,7 +202,7 @@ Heading heading_of(const std::filesystem::path& path, const std::vector<Numbered
 }
 
 /// Seconds; no others have so many digits. Errors: data.
-void require_seconds(const FilePlace& place, double time_s, double unit_s) {
+void require_seconds(const FilePosition& place, double time_s, double unit_s) {
   constexpr double kMaxSeconds = 1e11;  // the year 5138
   if (std::fabs(time_s) <= kMaxSeconds) return;
   throw data_error(place, "a time of " + short_text(time_s / unit_s) +
@@ -211,7 +211,7 @@ void require_seconds(const FilePlace& place, double time_s, double unit_s) {
                                            : " in the unit of its name is none since any epoch"));
 }
 
-double time_of_line(const FilePlace& place, const PoseColumns& columns,
+double time_of_line(const FilePosition& place, const PoseColumns& columns,
                     const std::vector<std::string_view>& fields) {
   constexpr double kNanosecond_s = 1e-9;
   const double time_s = columns.time_unit_s * finite_number(place, fields, columns.of[0]);
@@ -228,7 +228,7 @@ Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns
   Trajectory trajectory;
   std::vector<PlacedQuaternion> placed;
   for (const NumberedLine& line : lines) {
-    const FilePlace place{path, {}, line.number};
+    const FilePosition place{path, {}, line.number};
     const std::vector<std::string_view> fields = split_pose_fields(line.text);
     require_count(place, fields, columns.count);
     std::array<double, 8> v;

@@ -32,7 +32,7 @@ struct DriveFacts {
   std::string poses;      ///< how scans got theirs
   std::string motion;     ///< of the sensor within a sweep
   std::string clock;      ///< whether points and poses share a clock, with the evidence
-  std::string unchecked;  ///< of the poses (require_poses_that_fit())
+  std::string unchecked;  ///< of the poses (verify_poses())
   /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
   /// points of the files are of none of the scans.
   std::string intensities, labels, left_out;

@@ -406,7 +406,7 @@ std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Exe
   return scales;
 }
 
-std::string require_poses_that_fit(const KittiSequence& sequence, const Executor& executor) {
+std::string verify_poses(const KittiSequence& sequence, const Executor& executor) {
   require_times_of_scans(sequence);
   const PoseEvidence evidence = weigh_poses(sequence, executor);
   if (evidence.contradicts()) {

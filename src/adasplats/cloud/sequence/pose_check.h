@@ -66,6 +66,6 @@ std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Exe
 /// factor of weigh_scales(sequence) does; also where the times of the poses are no seconds:
 /// neighbouring scans more than 20 s apart and a vehicle slower than 0.5 m/s, or less than 2 ms and
 /// faster than 150 m/s. Returns in one line what could not be checked; empty: all was.
-std::string require_poses_that_fit(const KittiSequence& sequence, const Executor& executor);
+std::string verify_poses(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats

@@ -77,20 +77,20 @@ TEST(PoseCheck, TrueMotionIsBelieved) {
   EXPECT_EQ(evidence.pairs, 3U);  // none 3 m ahead of scan 9
   EXPECT_GT(evidence.share(0), 0.95);
   EXPECT_FALSE(evidence.contradicts());
-  require_poses_that_fit(sequence, Executor(2));
+  verify_poses(sequence, Executor(2));
 }
 
 TEST(PoseCheck, FaultsAreNamedWithFigures) {
   const TemporaryFolder folder;
-  const auto refuse = [&](const Way& written, const std::string& what, bool in_world = false) {
+  const auto reject = [&](const Way& written, const std::string& what, bool in_world = false) {
     const KittiSequence wrong = drive(folder, street(), 12, written, 1, in_world);
     expect_error(ErrorKind::data, {folder.path().string(), "contradict", " % meet", what},
-                 [&] { require_poses_that_fit(wrong, Executor(2)); });
+                 [&] { verify_poses(wrong, Executor(2)); });
   };
-  refuse([](const RigidTransform& p) { return kCamera * p * kCamera.inverse(); }, "the camera's");
-  refuse([](const RigidTransform& p) { return kCamera.inverse() * p * kCamera; }, "the LiDAR's");
-  refuse([](const RigidTransform& p) { return p.inverse(); }, "inverted");
-  refuse(kHonest, "in world coordinates already", true);
+  reject([](const RigidTransform& p) { return kCamera * p * kCamera.inverse(); }, "the camera's");
+  reject([](const RigidTransform& p) { return kCamera.inverse() * p * kCamera; }, "the LiDAR's");
+  reject([](const RigidTransform& p) { return p.inverse(); }, "inverted");
+  reject(kHonest, "in world coordinates already", true);
 }
 
 Way scaled_by(double factor) {
@@ -101,20 +101,20 @@ Way scaled_by(double factor) {
 
 TEST(PoseCheck, OtherUnitsThanMetresAreNamed) {
   const TemporaryFolder folder;
-  const auto refuse = [&](double factor, const std::string& times) {
+  const auto reject = [&](double factor, const std::string& times) {
     const KittiSequence wrong = drive(folder, street(), 12, scaled_by(factor));
     expect_error(ErrorKind::data,
                  {folder.path().string(), "contradict", "translations times " + times + " ("},
-                 [&] { require_poses_that_fit(wrong, Executor(2)); });
+                 [&] { verify_poses(wrong, Executor(2)); });
   };
-  refuse(1000, "0.001");
-  refuse(100, "0.01");
-  refuse(10, "0.1");
-  refuse(1 / 0.3048, "0.3048");
-  refuse(0.3048, "3.281");
-  refuse(0.1, "10");
-  refuse(0.01, "100");
-  refuse(0.001, "1000");
+  reject(1000, "0.001");
+  reject(100, "0.01");
+  reject(10, "0.1");
+  reject(1 / 0.3048, "0.3048");
+  reject(0.3048, "3.281");
+  reject(0.1, "10");
+  reject(0.01, "100");
+  reject(0.001, "1000");
 }
 
 TEST(PoseCheck, ScalesSayNothingAgainstTruePoses) {
@@ -123,7 +123,7 @@ TEST(PoseCheck, ScalesSayNothingAgainstTruePoses) {
   const auto believed = [](const KittiSequence& sequence) {
     for (const ScaleEvidence& scale : weigh_scales(sequence, Executor(2)))
       EXPECT_FALSE(scale.contradicts()) << scale.factor;
-    require_poses_that_fit(sequence, Executor(2));
+    verify_poses(sequence, Executor(2));
   };
   for (const double apart_m : {0.0, 0.1, 0.3, 1.0, 3.0, 8.0})  // 0: it stands
     believed(drive(folder, street(), 12, kHonest, apart_m));

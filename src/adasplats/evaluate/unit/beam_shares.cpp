@@ -33,7 +33,7 @@ bool are_known(std::span<const float> shares, std::size_t begin, std::size_t end
                      [](float share) { return share == share; });
 }
 
-std::vector<SharedTriple> triples_of(std::span<const UnitBeam> beams,
+std::vector<SharedTriple> triples_of(std::span<const SensorBeam> beams,
                                      std::span<const float> shares) {
   std::vector<SharedTriple> triples;
   for (std::size_t begin = 0, end = 0; begin < beams.size(); begin = end) {
@@ -54,7 +54,7 @@ std::vector<SharedTriple> triples_of(std::span<const UnitBeam> beams,
 
 }  // namespace
 
-double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
+double damp_shares(std::span<const SensorBeam> beams, const SensorIntensity& unit,
                    std::vector<float>& shares) {
   constexpr std::size_t kMinTriples = 1000;
   constexpr int kHalvings = 6;
@@ -63,7 +63,7 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
   if (triples.size() < kMinTriples) return 1;
   std::vector<float> measured;
   for (const SharedTriple& triple : triples) {
-    const UnitBeam* const three = &beams[triple.first];
+    const SensorBeam* const three = &beams[triple.first];
     measured.push_back(
         second_difference(three[0].intensity, three[1].intensity, three[2].intensity));
   }
@@ -74,7 +74,7 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
     for (const SharedTriple& triple : triples) {
       float values[3] = {};
       for (std::size_t k = 0; k < 3; ++k) {
-        const UnitBeam& beam = beams[triple.first + k];
+        const SensorBeam& beam = beams[triple.first + k];
         const float* const share = &shares[triple.other + k];
         values[k] = converted(
             rules,

@@ -19,7 +19,7 @@ struct SharePatch {
 };
 
 /// A random number from 0 to 1, the same for all beams of a patch. `stream`: its purpose.
-inline double common_share(const UnitBeam& beam, SharePatch patch, std::uint64_t stream) {
+inline double common_share(const SensorBeam& beam, SharePatch patch, std::uint64_t stream) {
   const std::uint64_t place =
       std::uint64_t{beam.ring / patch.rings} << 32 | beam.column / patch.columns;
   return Random(beam.scan, stream, place).uniform();
@@ -29,7 +29,7 @@ inline double common_share(const UnitBeam& beam, SharePatch patch, std::uint64_t
 /// below `chance` if the event has happened to this beam, otherwise above; within these bounds it
 /// is random, but the same for neighbours, so runs of events remain runs if the chance is another
 /// one. Uses `stream` and the next one.
-inline double share_by_chance(const UnitBeam& beam, double chance, bool happened,
+inline double share_by_chance(const SensorBeam& beam, double chance, bool happened,
                               SharePatch patch_of_those, SharePatch patch_of_others,
                               std::uint64_t stream) {
   if (happened) return chance * common_share(beam, patch_of_those, stream);
@@ -40,7 +40,7 @@ inline double share_by_chance(const UnitBeam& beam, double chance, bool happened
 /// no more from beam to beam than measured ones: shares applied in another scene add to the jumps
 /// between the surfaces of its model. Returns the remaining contrast, from 1 (unchanged) to 0 (each
 /// share is the mean of three).
-double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
+double damp_shares(std::span<const SensorBeam> beams, const SensorIntensity& unit,
                    std::vector<float>& shares);
 
 }  // namespace adasplats

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kFarthest_m = 4, kBeforeModel_m = 0.5F, kOneRange_m = 0.2F;
 
-bool is_blocked(const UnitBeam& beam) {
+bool is_blocked(const SensorBeam& beam) {
   if (!beam.returned() || beam.range_m > kFarthest_m) return false;
   return !beam.hit || beam.range_m < beam.expected_m - kBeforeModel_m;
 }
@@ -28,7 +28,7 @@ struct CellBeams {
   std::set<std::uint32_t> places, places_with_returns;
   std::vector<float> ranges_m, intensities;  // of blocked beams
 
-  void add(const UnitBeam& beam) {
+  void add(const SensorBeam& beam) {
     ++beams;
     places.insert(beam.place);
     if (!is_blocked(beam)) return;
@@ -51,15 +51,15 @@ float middle_of(std::vector<float>& values) { return values.empty() ? 0 : upper_
 
 }  // namespace
 
-std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams) {
+std::optional<VehicleBody> fit_vehicle_body(std::span<const SensorBeam> beams) {
   std::map<std::pair<std::uint16_t, std::uint32_t>, CellBeams> cells;
   std::set<std::uint32_t> places;
-  for (const UnitBeam& beam : beams) {
+  for (const SensorBeam& beam : beams) {
     places.insert(beam.place);
     if (is_blocked(beam)) cells[{beam.ring, body_column(beam.direction)}];
   }
   if (places.size() < kMinBlockedPlaces) return std::nullopt;
-  for (const UnitBeam& beam : beams) {
+  for (const SensorBeam& beam : beams) {
     const auto cell = cells.find({beam.ring, body_column(beam.direction)});
     if (cell != cells.end()) cell->second.add(beam);
   }

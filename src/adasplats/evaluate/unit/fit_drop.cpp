@@ -24,7 +24,7 @@ struct BeamEnds {
   std::vector<double> edge_runs;  ///< RayDropModel::edge_runs; empty: too few edges
 };
 
-BeamEnds ends_of(std::span<const UnitBeam> beams) {
+BeamEnds ends_of(std::span<const SensorBeam> beams) {
   constexpr double kMinEdges = 1000;
   BeamEnds found;
   found.ends.assign(beams.size(), BeamEnd::returned);
@@ -52,24 +52,24 @@ BeamEnds ends_of(std::span<const UnitBeam> beams) {
   return found;
 }
 
-EchoConditions conditions_of(const UnitBeam& beam) {
+EchoConditions conditions_of(const SensorBeam& beam) {
   return {beam.expected_m, beam.cos_incidence, beam.reflectance, beam.direction};
 }
 
-float drop_share(const UnitBeam& beam, const DropRules& rules) {
+float drop_share(const SensorBeam& beam, const DropRules& rules) {
   const double chance = drop_chance(rules, beam.expected_m, beam.cos_incidence, beam.reflectance);
   return static_cast<float>(share_by_chance(beam, chance, !beam.returned(), {4, 2}, {4, 1}, 1));
 }
 
 }  // namespace
 
-std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max_range_m) {
+std::optional<DropFit> fit_unit_drop(std::span<const SensorBeam> beams, double max_range_m) {
   BeamEnds found = ends_of(beams);
   BeamEchoes all;
   std::vector<std::size_t> numbers;
   std::vector<std::uint16_t> rings;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const UnitBeam& beam = beams[i];
+    const SensorBeam& beam = beams[i];
     if (!beam.hit || !(static_cast<double>(beam.expected_m) < max_range_m)) continue;
     all.echoes.push_back(conditions_of(beam));
     all.hit.push_back(1);

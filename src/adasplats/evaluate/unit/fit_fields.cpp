@@ -18,7 +18,7 @@ constexpr float kUnestimated = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMaxTurns = 2;  // 0.8 MB of an HDL-64E
 
 /// [begin, end) of the beams of each scan.
-std::vector<std::pair<std::size_t, std::size_t>> spans_of_scans(std::span<const UnitBeam> beams) {
+std::vector<std::pair<std::size_t, std::size_t>> spans_of_scans(std::span<const SensorBeam> beams) {
   std::vector<std::pair<std::size_t, std::size_t>> spans;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (i == 0 || beams[i].scan != beams[i - 1].scan) spans.emplace_back(i, i);
@@ -71,58 +71,58 @@ std::uint8_t byte_of(double value) {
 }
 
 /// The inverse of beam_fields().
-std::uint8_t coded(UnitField field, float value) {
+std::uint8_t coded(SensorField field, float value) {
   const auto v = static_cast<double>(value);
-  if (field == UnitField::drop || field == UnitField::zero) return byte_of(256 * std::sqrt(v));
-  if (field == UnitField::intensity) return byte_of(256 * v);
+  if (field == SensorField::drop || field == SensorField::zero) return byte_of(256 * std::sqrt(v));
+  if (field == SensorField::intensity) return byte_of(256 * v);
   const double root = 127 * std::sqrt(std::fabs(v) / kMaxFieldNoise_m);
   return byte_of(128.5 + (v < 0 ? -root : root));
 }
 
 /// Measured less modelled range; NaN if they are of different surfaces.
-float noise_m_of(const UnitBeam& beam) {
+float noise_m_of(const SensorBeam& beam) {
   const float noise_m = beam.range_m - beam.expected_m;
   const bool is_one_surface = beam.hit && std::fabs(noise_m) < static_cast<float>(kMaxFieldNoise_m);
   return is_one_surface ? noise_m : kUnestimated;
 }
 
 /// The value of a field for one beam; NaN if not estimated.
-float number_of(UnitField field, const UnitBeam& beam, std::size_t i, const BeamShares& shares) {
+float number_of(SensorField field, const SensorBeam& beam, std::size_t i, const BeamShares& shares) {
   const auto share = [&](std::span<const float> all) {
     return all.empty() ? kUnestimated : all[i];
   };
   switch (field) {
-    case UnitField::drop: return share(shares.drop);
-    case UnitField::intensity: return share(shares.intensity);
-    case UnitField::zero: return share(shares.zero);
-    case UnitField::noise: break;
+    case SensorField::drop: return share(shares.drop);
+    case SensorField::intensity: return share(shares.intensity);
+    case SensorField::zero: return share(shares.zero);
+    case SensorField::noise: break;
   }
   return noise_m_of(beam);
 }
 
 }  // namespace
 
-UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& pattern,
+SensorFields fit_unit_fields(std::span<const SensorBeam> beams, const UnitPattern& pattern,
                            std::span<const double> ring_noise_m, const BeamShares& shares) {
   const auto spans = spans_of_scans(beams);
   const std::size_t turns = std::min(kMaxTurns, spans.size());
   const std::size_t rings = pattern.rings, columns = pattern.columns;
-  UnitFields fields;
+  SensorFields fields;
   fields.turns = static_cast<std::uint32_t>(turns);
   fields.rings = static_cast<std::uint32_t>(rings);
   fields.columns = static_cast<std::uint32_t>(columns);
-  fields.bytes.resize(turns * rings * columns * kUnitFields);
+  fields.bytes.resize(turns * rings * columns * kSensorFields);
   std::vector<float> numbers(rings * columns);
-  const auto fill_ring = [&](UnitField field, std::size_t ring) {
+  const auto fill_ring = [&](SensorField field, std::size_t ring) {
     const std::span<float> of_ring = std::span(numbers).subspan(ring * columns, columns);
-    fill_gaps(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
-    if (field == UnitField::noise)
+    fill_gaps(of_ring, field == SensorField::noise ? 0.0F : 0.5F);
+    if (field == SensorField::noise)
       scale_noise(of_ring, ring < ring_noise_m.size() ? ring_noise_m[ring] : 0.0);
   };
   for (std::size_t turn = 0; turn < turns; ++turn) {
     const auto [begin, end] = spans[turn * spans.size() / turns];
-    for (const UnitField field :
-         {UnitField::drop, UnitField::intensity, UnitField::noise, UnitField::zero}) {
+    for (const SensorField field :
+         {SensorField::drop, SensorField::intensity, SensorField::noise, SensorField::zero}) {
       std::ranges::fill(numbers, kUnestimated);
       for (std::size_t i = begin; i < end; ++i)
         if (beams[i].ring < rings && beams[i].column < columns)
@@ -130,7 +130,7 @@ UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& p
               number_of(field, beams[i], i, shares);
       for (std::size_t ring = 0; ring < rings; ++ring) fill_ring(field, ring);
       for (std::size_t k = 0; k < numbers.size(); ++k)
-        fields.bytes[(turn * rings * columns + k) * kUnitFields + static_cast<std::size_t>(field)] =
+        fields.bytes[(turn * rings * columns + k) * kSensorFields + static_cast<std::size_t>(field)] =
             coded(field, numbers[k]);
     }
   }

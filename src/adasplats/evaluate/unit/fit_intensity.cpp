@@ -35,10 +35,10 @@ struct KnownReturn {
   float expected, measured;
 };
 
-std::vector<KnownReturn> known_returns(std::span<const UnitBeam> beams, std::size_t rings) {
+std::vector<KnownReturn> known_returns(std::span<const SensorBeam> beams, std::size_t rings) {
   std::vector<KnownReturn> known;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const UnitBeam& beam = beams[i];
+    const SensorBeam& beam = beams[i];
     if (!beam.returned() || !beam.hit || beam.ring >= rings) continue;
     if (!std::isfinite(beam.intensity) || !std::isfinite(beam.expected_intensity)) continue;
     known.push_back(
@@ -95,7 +95,7 @@ PartMeans means_of_parts(std::vector<std::pair<float, float>>& pairs) {
   return means;
 }
 
-void fit_lasers(std::span<const KnownReturn> known, std::size_t rings, UnitIntensity& unit) {
+void fit_lasers(std::span<const KnownReturn> known, std::size_t rings, SensorIntensity& unit) {
   std::vector<std::vector<std::pair<float, float>>> of_ring(rings);
   std::vector<std::pair<float, float>> all;
   for (const KnownReturn& one : known) {
@@ -118,7 +118,7 @@ struct LevelParts {
   std::vector<std::uint32_t> order;
   std::vector<std::size_t> begins;
 
-  LevelParts(std::span<const KnownReturn> known, const UnitIntensity& unit) {
+  LevelParts(std::span<const KnownReturn> known, const SensorIntensity& unit) {
     const IntensityRules rules = intensity_rules(unit);
     levels.reserve(known.size());
     for (const KnownReturn& one : known) levels.push_back(level_of(rules, one.ring, one.expected));
@@ -136,7 +136,7 @@ struct LevelParts {
   }
 };
 
-void fit_zeros(std::span<const KnownReturn> known, const LevelParts& parts, UnitIntensity& unit) {
+void fit_zeros(std::span<const KnownReturn> known, const LevelParts& parts, SensorIntensity& unit) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     double sum = 0, zeros = 0;
     for (const std::uint32_t i : parts.part(k)) {
@@ -168,7 +168,7 @@ void spread_steps(std::vector<double>& values, double step) {
 }
 
 void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
-                  UnitIntensity& unit) {
+                  SensorIntensity& unit) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     std::vector<double> values = reported_values(known, parts.part(k));
     // A level with too few returns gets the values of the level before.
@@ -208,8 +208,8 @@ std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> 
 }
 
 /// For each beam the share of the beams of its level that report zero before it.
-std::vector<float> zero_shares(std::span<const UnitBeam> beams, std::span<const KnownReturn> known,
-                               const LevelParts& parts, const UnitIntensity& unit) {
+std::vector<float> zero_shares(std::span<const SensorBeam> beams, std::span<const KnownReturn> known,
+                               const LevelParts& parts, const SensorIntensity& unit) {
   constexpr SharePatch kPatch = {4, 16};
   const GainTable zeros{unit.levels.data(), unit.zero_share.data(),
                         static_cast<std::uint32_t>(unit.levels.size())};
@@ -224,7 +224,7 @@ std::vector<float> zero_shares(std::span<const UnitBeam> beams, std::span<const 
 
 }  // namespace
 
-std::optional<IntensityFit> fit_unit_intensity(std::span<const UnitBeam> beams, std::size_t rings) {
+std::optional<IntensityFit> fit_unit_intensity(std::span<const SensorBeam> beams, std::size_t rings) {
   const std::vector<KnownReturn> known = known_returns(beams, rings);
   if (known.size() < kMinReturns) return std::nullopt;
   std::vector<float> measured;

@@ -20,14 +20,14 @@ constexpr std::size_t kMinOfRing = 300;
 constexpr double kMiddleHalf = 0.6933 * 2.449489742783178;
 
 /// Whether three beams hit one surface in the model.
-bool is_one_in_model(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
+bool is_one_in_model(const SensorBeam& a, const SensorBeam& b, const SensorBeam& c) {
   return a.hit && b.hit && c.hit && std::fabs(b.expected_m - a.expected_m) < kOneSurface_m &&
          std::fabs(c.expected_m - b.expected_m) < kOneSurface_m;
 }
 
-std::size_t places_of(std::span<const UnitBeam> beams) {
+std::size_t places_of(std::span<const SensorBeam> beams) {
   std::set<std::uint32_t> places;
-  for (const UnitBeam& beam : beams) places.insert(beam.place);
+  for (const SensorBeam& beam : beams) places.insert(beam.place);
   return places.size();
 }
 
@@ -39,11 +39,11 @@ double noise_of_second_differences(std::vector<float>& second) {
   return mean_between(second, 0.25, 0.75) / kMiddleHalf;
 }
 
-std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_t rings) {
+std::vector<double> fit_ring_noise_m(std::span<const SensorBeam> beams, std::size_t rings) {
   constexpr double kMinNoise_m = 1e-4;
   std::vector<std::vector<float>> measured(rings), modelled(rings);
   for (std::size_t i = 0; i + 2 < beams.size(); ++i) {
-    const UnitBeam* const three = &beams[i];
+    const SensorBeam* const three = &beams[i];
     if (three->ring >= rings || !on_one_surface(three[0], three[1], three[2]) ||
         !is_one_in_model(three[0], three[1], three[2]))
       continue;
@@ -71,18 +71,18 @@ std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_
   return noise_m;
 }
 
-std::optional<double> fit_max_range_m(std::span<const UnitBeam> beams) {
+std::optional<double> fit_max_range_m(std::span<const SensorBeam> beams) {
   constexpr std::size_t kMinBeyond = 200;
   float farthest_m = 0;
-  for (const UnitBeam& beam : beams)
+  for (const SensorBeam& beam : beams)
     if (beam.returned()) farthest_m = std::max(farthest_m, beam.range_m);
   const auto beyond = static_cast<std::size_t>(std::ranges::count_if(
-      beams, [&](const UnitBeam& beam) { return beam.hit && beam.expected_m > farthest_m + 1; }));
+      beams, [&](const SensorBeam& beam) { return beam.hit && beam.expected_m > farthest_m + 1; }));
   if (beyond < kMinBeyond) return std::nullopt;
   return std::ceil(static_cast<double>(farthest_m) * 10 - 1e-6) / 10;
 }
 
-UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
+UnitFit fit_unit(std::span<const SensorBeam> beams, const UnitPattern& pattern) {
   UnitFit fit;
   const std::size_t rings = pattern.rings;
   fit.max_range_m = fit_max_range_m(beams);

@@ -21,7 +21,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// A sensor with known parameters.
 struct Truth {
-  UnitIntensity unit;
+  SensorIntensity unit;
   IntensityRules rules;
 
   Truth() {
@@ -49,13 +49,13 @@ double patchy_share(std::uint32_t scan, std::uint16_t ring, std::uint32_t column
 /// Simulated beams of scans: walls with varying reflectance, 10 to 30 m away, and
 /// one in sixteen farther than the unit sees. Every fifty beams a wall steps forward or back: of
 /// these edges some lose one beam.
-std::vector<UnitBeam> measured_by(const Truth& truth) {
-  std::vector<UnitBeam> beams;
+std::vector<SensorBeam> measured_by(const Truth& truth) {
+  std::vector<SensorBeam> beams;
   for (std::uint32_t scan = 0; scan < kScans; ++scan)
     for (std::uint16_t ring = 0; ring < kRings; ++ring)
       for (std::uint32_t column = 0; column < kColumns; ++column) {
         Random random(9, scan, std::uint64_t{ring} * kColumns + column);
-        UnitBeam beam;
+        SensorBeam beam;
         beam.scan = beam.place = scan;
         beam.ring = ring;
         beam.column = column;
@@ -82,12 +82,12 @@ std::vector<UnitBeam> measured_by(const Truth& truth) {
 constexpr UnitPattern kPattern = {kRings, kColumns, 50};
 
 /// Share of the pairs so far apart that are on one side of the half.
-double alike_share(const UnitFields& fields, UnitField field, std::size_t apart) {
+double alike_share(const SensorFields& fields, SensorField field, std::size_t apart) {
   const auto high = [&](std::size_t beam) {
-    return fields.bytes[beam * kUnitFields + static_cast<std::size_t>(field)] >= 128;
+    return fields.bytes[beam * kSensorFields + static_cast<std::size_t>(field)] >= 128;
   };
   double alike = 0, pairs = 0;
-  for (std::size_t beam = 0; beam + apart < fields.bytes.size() / kUnitFields; ++beam) {
+  for (std::size_t beam = 0; beam + apart < fields.bytes.size() / kSensorFields; ++beam) {
     alike += high(beam) == high(beam + apart) ? 1 : 0;
     ++pairs;
   }
@@ -97,7 +97,7 @@ double alike_share(const UnitFields& fields, UnitField field, std::size_t apart)
 class FitUnit : public testing::Test {
  protected:
   Truth truth_;
-  std::vector<UnitBeam> beams_ = measured_by(truth_);
+  std::vector<SensorBeam> beams_ = measured_by(truth_);
 };
 
 // Oracle: the noise that was drawn. 6 %: five deviations of a ring's 7,000 differences, which
@@ -120,7 +120,7 @@ TEST_F(FitUnit, FindsTheIntensityModel) {
   const IntensityRules rules = intensity_rules(fit->unit);
   double zeros[2] = {0, 0}, sums[2] = {0, 0}, squares[2] = {0, 0}, count = 0, errors = 0;
   for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const UnitBeam& beam = beams_[i];
+    const SensorBeam& beam = beams_[i];
     if (!beam.returned()) continue;
     ASSERT_EQ(fit->zeros[i], fit->zeros[i]);
     ASSERT_EQ(fit->shares[i] == fit->shares[i], beam.intensity > 0);
@@ -152,7 +152,7 @@ TEST_F(FitUnit, FindsTheIntensityModel) {
 // measured ones do not: their shares have the opposite jumps, and in another scene both would
 // appear.
 TEST_F(FitUnit, SmoothsSharesWhereTheModelJumps) {
-  const std::vector<UnitBeam> smooth = beams_;
+  const std::vector<SensorBeam> smooth = beams_;
   std::vector<float> shares = fit_unit_intensity(smooth, kRings)->shares;
   const std::vector<float> as_fitted = shares;
   EXPECT_GT(damp_shares(smooth, fit_unit_intensity(smooth, kRings)->unit, shares), 0.8);
@@ -199,10 +199,10 @@ TEST_F(FitUnit, KeepsSimilarityOfNeighbours) {
   EXPECT_EQ(fit.fields->rings, kRings);
   EXPECT_EQ(fit.fields->columns, kColumns);
   ASSERT_EQ(fit.fields->bytes.size(),
-            std::size_t{fit.fields->turns} * kRings * kColumns * kUnitFields);
-  EXPECT_GT(alike_share(*fit.fields, UnitField::intensity, 1), 0.8);
-  EXPECT_NEAR(alike_share(*fit.fields, UnitField::intensity, 8), 0.5, 0.05);
-  EXPECT_NEAR(alike_share(*fit.fields, UnitField::noise, 1), 0.5, 0.05);
+            std::size_t{fit.fields->turns} * kRings * kColumns * kSensorFields);
+  EXPECT_GT(alike_share(*fit.fields, SensorField::intensity, 1), 0.8);
+  EXPECT_NEAR(alike_share(*fit.fields, SensorField::intensity, 8), 0.5, 0.05);
+  EXPECT_NEAR(alike_share(*fit.fields, SensorField::noise, 1), 0.5, 0.05);
 }
 
 // Oracle: the noise that was drawn, from the numbers as a scan reads them.
@@ -227,7 +227,7 @@ TEST_F(FitUnit, FindsTheMaximumRange) {
   ASSERT_TRUE(limit_m.has_value());
   EXPECT_GE(*limit_m, 30);
   EXPECT_LE(*limit_m, 30.2);
-  for (UnitBeam& beam : beams_) beam.expected_m = std::min(beam.expected_m, 30.0F);
+  for (SensorBeam& beam : beams_) beam.expected_m = std::min(beam.expected_m, 30.0F);
   EXPECT_FALSE(fit_max_range_m(beams_).has_value());
 }
 
@@ -240,7 +240,7 @@ TEST_F(FitUnit, FindsTheBodyOfTheVehicle) {
   };
   std::size_t roofs = 0, of_roof = 0;
   for (std::size_t i = 0; i < beams_.size(); ++i) {
-    UnitBeam& beam = beams_[i];
+    SensorBeam& beam = beams_[i];
     beam.direction = look(360.0 * (beam.column + 0.5) / kColumns - 180);
     const bool on_roof = beam.ring == 3 && body_column(beam.direction) == 400;
     if (on_roof) {
@@ -264,12 +264,12 @@ TEST_F(FitUnit, FindsTheBodyOfTheVehicle) {
   EXPECT_NEAR(cell.range_m, 1.505, 0.006);
   EXPECT_EQ(cell.intensity, 0.25F);
   // Two standpoints are not enough: a car behind may be standing, too.
-  for (UnitBeam& beam : beams_) beam.place = beam.scan % 2;
+  for (SensorBeam& beam : beams_) beam.place = beam.scan % 2;
   EXPECT_FALSE(fit_vehicle_body(beams_).has_value());
 }
 
 TEST(FitUnitOfFew, ReportsThatNothingIsEstimated) {
-  const std::vector<UnitBeam> none;
+  const std::vector<SensorBeam> none;
   const UnitFit fit = fit_unit(none, {16, 100, 100});
   EXPECT_TRUE(fit.ring_noise_m.empty());
   EXPECT_FALSE(fit.intensity || fit.drop || fit.fields || fit.max_range_m);

@@ -77,7 +77,7 @@ struct BeamPrediction {
   bool blocked = false;
 };
 
-BeamPrediction prediction_of(const UnitBeam& beam, const LidarModel& unit) {
+BeamPrediction prediction_of(const SensorBeam& beam, const LidarModel& unit) {
   BeamPrediction prediction;
   const bool out_of_range = !beam.hit || static_cast<double>(beam.expected_m) > unit.max_range_m;
   prediction.chance = out_of_range ? 1 : 0;
@@ -118,14 +118,14 @@ double chance_by_rate(std::vector<double> chances) {
 
 }  // namespace
 
-UnitAccuracy unit_accuracy(std::span<const UnitBeam> beams, const LidarModel& unit) {
+UnitAccuracy unit_accuracy(std::span<const SensorBeam> beams, const LidarModel& unit) {
   IntensityRules rules;
   if (unit.intensity) rules = intensity_rules(*unit.intensity);
   MeasuredIntensities all, near;
   DropCount drop, unblocked, by_rate;
   std::vector<double> chances;
   std::vector<std::uint8_t> lost;
-  for (const UnitBeam& beam : beams) {
+  for (const SensorBeam& beam : beams) {
     const BeamPrediction prediction = prediction_of(beam, unit);
     drop.add(!beam.returned(), prediction.chance > 0.5);
     if (!prediction.blocked) {

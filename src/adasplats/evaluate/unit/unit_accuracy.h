@@ -39,6 +39,6 @@ struct UnitAccuracy {
 
 /// Evaluates a calibrated sensor on beams that it was not fitted to. Without fitted intensities, it
 /// predicts those of the model; without a drop model, no lost beams.
-UnitAccuracy unit_accuracy(std::span<const UnitBeam> beams, const LidarModel& unit);
+UnitAccuracy unit_accuracy(std::span<const SensorBeam> beams, const LidarModel& unit);
 
 }  // namespace adasplats

@@ -94,8 +94,8 @@ Vec3d direction_of(const FiredBeam& beam) {
   return {flat * std::cos(azimuth_rad), flat * std::sin(azimuth_rad), std::sin(beam.elevation_rad)};
 }
 
-UnitBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& ray, const Hit& hit) {
-  UnitBeam beam;
+SensorBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& ray, const Hit& hit) {
+  SensorBeam beam;
   beam.ring = fired.ring;
   beam.range_m = fired.range_m;
   beam.intensity = fired.intensity;
@@ -115,11 +115,11 @@ UnitBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& ra
 
 }  // namespace
 
-std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
+std::vector<SensorBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
                                          std::span<const std::size_t> indices,
                                          std::span<const double> heights_m, double step_rad,
                                          const Executor& executor, ProgressSink& progress) {
-  std::vector<UnitBeam> all;
+  std::vector<SensorBeam> all;
   const std::vector<std::uint32_t> places = standpoints_of(sequence, indices);
   progress.begin_step("cast all beams", indices.size());
   for (std::size_t s = 0; s < indices.size(); ++s) {
@@ -137,7 +137,7 @@ std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequ
     });
     scene.tracer.nearest(rays, hits, executor);
     for (std::size_t i = 0; i < fired.size(); ++i) {
-      UnitBeam beam = unit_beam(scene, fired[i], rays[i], hits[i]);
+      SensorBeam beam = unit_beam(scene, fired[i], rays[i], hits[i]);
       beam.scan = static_cast<std::uint32_t>(indices[s]);
       beam.place = places[s];
       const bool goes_on = i > 0 && fired[i - 1].ring == fired[i].ring;

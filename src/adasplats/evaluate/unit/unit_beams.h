@@ -16,7 +16,7 @@
 namespace adasplats {
 
 /// A beam fired by a real sensor, with the prediction of a model of the scene.
-struct UnitBeam {
+struct SensorBeam {
   std::uint32_t scan = 0;    ///< number in the sequence
   std::uint32_t place = 0;   ///< standpoints_of()
   std::uint32_t column = 0;  ///< azimuth step within its ring; the next beam's is one more
@@ -33,13 +33,13 @@ struct UnitBeam {
   bool returned() const { return range_m == range_m; }
 };
 
-inline bool same_ring(const UnitBeam& a, const UnitBeam& b) {
+inline bool same_ring(const SensorBeam& a, const SensorBeam& b) {
   return a.scan == b.scan && a.ring == b.ring;
 }
 
 /// Whether three neighbouring beams of a ring returned from one surface: ranges less than 0.3 m
 /// apart, as in the statistics of the realism test.
-inline bool on_one_surface(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
+inline bool on_one_surface(const SensorBeam& a, const SensorBeam& b, const SensorBeam& c) {
   constexpr float kOneSurface_m = 0.3F;
   return same_ring(a, c) && std::fabs(b.range_m - a.range_m) < kOneSurface_m &&
          std::fabs(c.range_m - b.range_m) < kOneSurface_m;
@@ -52,7 +52,7 @@ inline float second_difference(float a, float b, float c) { return std::fabs(a -
 /// ring, clockwise. Beams without return are inferred from `step_rad` in the gaps between returns
 /// of a ring, and before its first and after its last return within the azimuths of the scan; their
 /// directions are interpolated, or those of the nearest return. Errors: those of read_kitti_scan.
-std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
+std::vector<SensorBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
                                          std::span<const std::size_t> indices,
                                          std::span<const double> heights_m, double step_rad,
                                          const Executor& executor, ProgressSink& progress);

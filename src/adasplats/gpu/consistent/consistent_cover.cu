@@ -36,7 +36,7 @@ struct Grow {
     auto end_m = static_cast<float>(options.largest_radius_m);
     for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
       if (!is_there(keys, size, k, other)) continue;
-      const PlaceAtDisk place = place_at_disk(disk, other.center);
+      const DiskOffset place = disk_offset(disk, other.center);
       if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
     }
     end_m = warp_smallest(end_m);
@@ -44,7 +44,7 @@ struct Grow {
     SectorReach sectors(disk, sector_count);
     for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
       if (!is_there(keys, size, k, other)) continue;
-      const PlaceAtDisk place = place_at_disk(disk, other.center);
+      const DiskOffset place = disk_offset(disk, other.center);
       if (place.along_m < end_m && grows_over(disk, other, place, options)) {
         reach_m = std::max(reach_m, place.along_m);
         sectors.add(other.center, place.along_m);
@@ -64,7 +64,7 @@ struct Grow {
     for (std::uint32_t first = 0; first < size; first += kWarpLanes) {
       const std::uint32_t k = first + lane_of_thread();
       const bool is_covered = is_there(keys, size, k, other) &&
-                              may_cover(place_at_disk(disk, other.center), covered_m, options);
+                              may_cover(disk_offset(disk, other.center), covered_m, options);
       found(is_covered ? static_cast<std::uint32_t>(keys[k]) : 0, is_covered);
     }
   }
@@ -113,7 +113,7 @@ struct ShortenList {
       const std::uint32_t k = first + lane_of_thread();
       const std::uint32_t other = k < size ? list[k] : 0;
       const bool stays = k < size && disk.radius > 0 && cover.seeds[other].radius > 0 &&
-                         place_at_disk(disk, cover.seeds[other].center).along_m <= covered_m;
+                         disk_offset(disk, cover.seeds[other].center).along_m <= covered_m;
       const std::uint32_t lanes = __ballot_sync(kAllLanes, stays);
       if (stays) list[kept + lanes_before(lanes)] = other;
       kept += __popc(lanes);

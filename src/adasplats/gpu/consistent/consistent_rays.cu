@@ -65,9 +65,9 @@ struct EvidenceOfRay {
   /// No hit ends the search.
   __device__ float reach(float t_max) const { return t_max; }
   __device__ void offer(float t, std::uint32_t disk) const {
-    const RayWord word = word_of_ray(disks[disk], ray, t, range_m, options);
-    if (word == RayWord::nothing) return;
-    auto* const rings = word == RayWord::confirms ? counts.confirmed : counts.contradicted;
+    const RayVerdict word = verdict_of_ray(disks[disk], ray, t, range_m, options);
+    if (word == RayVerdict::nothing) return;
+    auto* const rings = word == RayVerdict::confirms ? counts.confirmed : counts.contradicted;
     atomicAdd(rings + disk * EvidenceView::kBins + evidence_ring(disks[disk], ray, t), 1U);
   }
 };

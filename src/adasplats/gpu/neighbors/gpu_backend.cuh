@@ -113,7 +113,7 @@ class GpuBackend {
     return load(cloud, box_of(cloud), removed);
   }
   /// In no other order.
-  DeviceCloud load_as_it_is(const PointCloud& cloud) const {
+  DeviceCloud load_in_given_order(const PointCloud& cloud) const {
     return copy_to_device(cloud, stream());
   }
   template <class Values>

@@ -167,7 +167,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const PrimitiveValues* primitiv
   view_.range_offsets_m = range_offsets_m_.data();
   view_.ring_noise_m = ring_noise_m_.data();
   upload_intensity(rules.intensity(), stream);
-  if (const UnitFields* fields = rules.unit_fields()) {
+  if (const SensorFields* fields = rules.unit_fields()) {
     unit_fields_ = upload_values(std::span<const std::uint8_t>(fields->bytes), stream);
     view_.fields.bytes = unit_fields_.data();
   }
@@ -180,7 +180,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const PrimitiveValues* primitiv
 }
 
 /// The intensity tables of a calibrated sensor, concatenated.
-void DeviceRules::upload_intensity(const UnitIntensity* unit, cudaStream_t stream) {
+void DeviceRules::upload_intensity(const SensorIntensity* unit, cudaStream_t stream) {
   if (unit == nullptr) return;
   std::vector<float> values;
   for (const auto* table :

@@ -20,7 +20,7 @@ class DeviceRules {
   const FiringRules& view() const { return view_; }
 
  private:
-  void upload_intensity(const UnitIntensity* unit, cudaStream_t stream);
+  void upload_intensity(const SensorIntensity* unit, cudaStream_t stream);
 
   FiringRules view_;
   DeviceBuffer<Firing> firings_;

@@ -38,8 +38,8 @@ struct ReportCase {
   std::shared_ptr<World> world;  ///< of `has_objects`
 };
 
-UnitIntensity some_unit(std::size_t rings) {
-  UnitIntensity unit;
+SensorIntensity some_unit(std::size_t rings) {
+  SensorIntensity unit;
   unit.step = 0.01;
   unit.highest = 0.99;
   unit.ring_nodes = 3;
@@ -58,9 +58,9 @@ UnitIntensity some_unit(std::size_t rings) {
   return unit;
 }
 
-UnitFields some_fields(std::uint32_t rings) {
-  UnitFields fields{2, rings, 37, {}};
-  for (std::uint64_t i = 0; i < std::uint64_t{2} * rings * 37 * kUnitFields; ++i)
+SensorFields some_fields(std::uint32_t rings) {
+  SensorFields fields{2, rings, 37, {}};
+  for (std::uint64_t i = 0; i < std::uint64_t{2} * rings * 37 * kSensorFields; ++i)
     fields.bytes.push_back(static_cast<std::uint8_t>(Random(4, 0, i).next_bits()));
   return fields;
 }
@@ -79,7 +79,7 @@ std::vector<Option> options() {
       {"offsets",
        [](ReportCase& s) {
          s.sensor.range_offsets_m = {0.03, -0.02, 0.1, 0, -0.05};
-         s.options.unit_offsets = true;
+         s.options.sensor_offsets = true;
        }},
       {"depth", [](ReportCase& s) { s.options.beam.depth = 5; }},
       {"sub-rays", [](ReportCase& s) { s.options.beam.sub_rays = 7; }},

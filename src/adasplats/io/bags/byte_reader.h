@@ -69,7 +69,7 @@ class ChunkCache {
   /// A message in a chunk of the file `path`; unpack() returns the chunk if it is not in the cache.
   /// Errors: those of unpack(); data (the chunk changed since the message was found in it).
   template <class F>
-  std::string message(const std::filesystem::path& path, const MessagePlace& place, F&& unpack) {
+  std::string message(const std::filesystem::path& path, const MessagePosition& place, F&& unpack) {
     const auto chunk = get(place.chunk, unpack);
     const auto begin = static_cast<std::size_t>(place.offset);
     if (begin > chunk->size() || place.size > chunk->size() - begin)

@@ -98,7 +98,7 @@ class McapRecording final : public RecordingFile {
         visit_chunk(content_here(file, offset, length), offset, channels, visit);
       else if (is_relevant(kind))
         visit_record(kind, content_here(file, offset, length),
-                     {0, MessagePlace::kNoChunk, offset + kRecordHeadBytes, 0}, channels, visit);
+                     {0, MessagePosition::kNoChunk, offset + kRecordHeadBytes, 0}, channels, visit);
       file.skip(length);
     }
     throw data_error(
@@ -107,8 +107,8 @@ class McapRecording final : public RecordingFile {
         "`mcap recover`)");
   }
 
-  std::string message(const MessagePlace& place) const override {
-    if (place.chunk == MessagePlace::kNoChunk) {
+  std::string message(const MessagePosition& place) const override {
+    if (place.chunk == MessagePosition::kNoChunk) {
       InputFile file(path_);
       file.skip(place.offset);
       return std::string(content_here(file, place.offset, place.size));
@@ -168,9 +168,9 @@ class McapRecording final : public RecordingFile {
   }
 
   /// `place` is the position of the record's content.
-  void visit_record(McapOpcode kind, std::string_view content, MessagePlace place,
+  void visit_record(McapOpcode kind, std::string_view content, MessagePosition place,
                     Channels& channels, MessageVisitor visit) const {
-    const std::uint64_t offset = place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk;
+    const std::uint64_t offset = place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk;
     if (kind == McapOpcode::message) {
       ByteReader reader(content, place_in_file(path_, offset, "message"));
       const auto channel = reader.number<std::uint16_t>();

@@ -135,7 +135,7 @@ class UnpackedRecording final : public RecordingFile {
   void for_each_message(MessageVisitor visit) const override {
     with_packed_name(unpacked_, packed_, [&] { file_->for_each_message(visit); });
   }
-  std::string message(const MessagePlace& place) const override {
+  std::string message(const MessagePosition& place) const override {
     return with_packed_name(unpacked_, packed_, [&] { return file_->message(place); });
   }
 
@@ -155,7 +155,7 @@ class PackedMessages final : public RecordingFile {
       visit({packed.topic, packed.time_ns, packed.place, bytes});
     });
   }
-  std::string message(const MessagePlace& place) const override {
+  std::string message(const MessagePosition& place) const override {
     return unpacked(file_->message(place), "its topic");
   }
 

@@ -127,7 +127,7 @@ void Recording::for_each_message(MessageVisitor visit) const {
     });
 }
 
-std::string Recording::message(const MessagePlace& place) const {
+std::string Recording::message(const MessagePosition& place) const {
   return files_.at(place.file)->message(place);
 }
 

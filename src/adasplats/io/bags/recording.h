@@ -25,7 +25,7 @@ struct RecordedTopic {
 };
 
 /// Position of a message in a recording.
-struct MessagePlace {
+struct MessagePosition {
   static constexpr std::uint64_t kNoChunk = ~std::uint64_t{0};
   std::uint32_t file = 0;
   std::uint64_t chunk = kNoChunk;  ///< byte of the file where the chunk's record begins
@@ -36,7 +36,7 @@ struct MessagePlace {
 struct RecordedMessage {
   const RecordedTopic& topic;
   std::uint64_t time_ns;  ///< when it was recorded
-  MessagePlace place;
+  MessagePosition place;
   std::string_view bytes;  ///< while the visitor runs
 };
 
@@ -49,7 +49,7 @@ class RecordingFile {
   /// All messages in the order of the file. Errors: data (damaged, not closed), io, unavailable.
   virtual void for_each_message(MessageVisitor visit) const = 0;
   /// Reads one message. Several threads may call it at once. Errors: as above.
-  virtual std::string message(const MessagePlace& place) const = 0;
+  virtual std::string message(const MessagePosition& place) const = 0;
 };
 
 /// A recording of messages by topic: MCAP (Foxglove's specification, version 0), ROS 1 bags (format
@@ -63,7 +63,7 @@ class Recording {
 
   const std::filesystem::path& path() const { return path_; }
   void for_each_message(MessageVisitor visit) const;
-  std::string message(const MessagePlace& place) const;
+  std::string message(const MessagePosition& place) const;
 
  private:
   std::filesystem::path path_;

@@ -30,7 +30,7 @@ const std::vector<Said> kSaid = {{"/a", "pkg/msg/One", 5, "first"},
 std::vector<Said> contents_of(const std::filesystem::path& path) {
   const Recording recording(path);
   std::vector<Said> said;
-  std::vector<MessagePlace> places;
+  std::vector<MessagePosition> places;
   recording.for_each_message([&](const RecordedMessage& message) {
     said.push_back(
         {message.topic.name, message.topic.type, message.time_ns, std::string(message.bytes)});

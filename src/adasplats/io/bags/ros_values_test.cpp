@@ -71,22 +71,22 @@ TEST(RosPoints, EveryTypeAndByteOrder) {
 }
 
 TEST(RosPoints, InconsistentLayoutsAreErrors) {
-  const auto refuse = [](const std::vector<std::string>& parts, auto&& change) {
+  const auto reject = [](const std::vector<std::string>& parts, auto&& change) {
     CloudWords words = words_of_all_types(false);
     change(words);
     expect_error(ErrorKind::data, parts,
                  [&] { ros_points(cloud_message(words), MessageEncoding::cdr, "m"); });
   };
-  refuse({"'x'", "datatype 9"}, [](CloudWords& w) { w.fields[0].type = 9; });
-  refuse({"'x'", "datatype 0"}, [](CloudWords& w) { w.fields[0].type = 0; });
-  refuse({"'n_1'", "point_step"}, [](CloudWords& w) { w.step = 33; });
-  refuse({"at most 4096"}, [](CloudWords& w) { w.fields[0].count = 1u << 31; });
-  refuse({"point_step"}, [](CloudWords& w) { w.fields.resize(40, {"o", 0, 8}); });
-  refuse({"height"}, [](CloudWords& w) { w.height = 3; });
-  refuse({"height"}, [](CloudWords& w) { w.height = 0xffffffff; });
-  refuse({"width"}, [](CloudWords& w) { w.width = 0xffffffff; });
-  refuse({"row_step"}, [](CloudWords& w) { w.row_step = 71; });
-  refuse({"height"}, [](CloudWords& w) { w.points.resize(100); });
+  reject({"'x'", "datatype 9"}, [](CloudWords& w) { w.fields[0].type = 9; });
+  reject({"'x'", "datatype 0"}, [](CloudWords& w) { w.fields[0].type = 0; });
+  reject({"'n_1'", "point_step"}, [](CloudWords& w) { w.step = 33; });
+  reject({"at most 4096"}, [](CloudWords& w) { w.fields[0].count = 1u << 31; });
+  reject({"point_step"}, [](CloudWords& w) { w.fields.resize(40, {"o", 0, 8}); });
+  reject({"height"}, [](CloudWords& w) { w.height = 3; });
+  reject({"height"}, [](CloudWords& w) { w.height = 0xffffffff; });
+  reject({"width"}, [](CloudWords& w) { w.width = 0xffffffff; });
+  reject({"row_step"}, [](CloudWords& w) { w.row_step = 71; });
+  reject({"height"}, [](CloudWords& w) { w.points.resize(100); });
   // No points are no error.
   CloudWords none = words_of_all_types(false);
   none.width = 0;

@@ -87,7 +87,7 @@ class RosbagRecording final : public RecordingFile {
       if (op == kBagChunk)
         visit_chunk(unpacked(fields, data, offset), offset, connections, visit);
       else
-        visit_record(op, fields, data, {0, MessagePlace::kNoChunk, data_offset, data.size()},
+        visit_record(op, fields, data, {0, MessagePosition::kNoChunk, data_offset, data.size()},
                      connections, visit);
       file.skip(sizeof(std::uint32_t) + data.size());
     }
@@ -98,8 +98,8 @@ class RosbagRecording final : public RecordingFile {
                        "cut off (repair it with `rosbag reindex`)");
   }
 
-  std::string message(const MessagePlace& place) const override {
-    if (place.chunk == MessagePlace::kNoChunk) {
+  std::string message(const MessagePosition& place) const override {
+    if (place.chunk == MessagePosition::kNoChunk) {
       InputFile file(path_);
       file.skip(place.offset);
       return std::string(view(file, place.size));
@@ -176,11 +176,11 @@ class RosbagRecording final : public RecordingFile {
 
   /// `place` is the position of the data.
   void visit_record(std::uint8_t op, const BagFields& fields, std::string_view data,
-                    const MessagePlace& place, Connections& connections,
+                    const MessagePosition& place, Connections& connections,
                     MessageVisitor visit) const {
     if (op == kBagConnection) {
       const std::string where = place_in_file(
-          path_, place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk, "connection");
+          path_, place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk, "connection");
       const BagFields described(ByteReader(data, where));
       RecordedTopic topic{std::string(fields.text("topic")),
                           short_type_name(described.text("type")), MessageEncoding::ros1};
@@ -191,7 +191,7 @@ class RosbagRecording final : public RecordingFile {
       const auto topic = connections.find(number);
       if (topic == connections.end())
         throw data_error(
-            {path_, place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk, {}},
+            {path_, place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk, {}},
             "a message of connection " + std::to_string(number) +
                 ", which no earlier record describes");
       const auto time = fields.number<std::uint64_t>("time");  // seconds, then nanoseconds

@@ -86,13 +86,13 @@ class SqliteRecording final : public RecordingFile {
       const std::string_view bytes = messages.bytes(3);
       visit({topic->second,
              static_cast<std::uint64_t>(messages.number(2)),
-             {0, MessagePlace::kNoChunk, static_cast<std::uint64_t>(messages.number(0)),
+             {0, MessagePosition::kNoChunk, static_cast<std::uint64_t>(messages.number(0)),
               bytes.size()},
              bytes});
     }
   }
 
-  std::string message(const MessagePlace& place) const override {
+  std::string message(const MessagePosition& place) const override {
     const std::lock_guard lock(mutex_);
     Query query(database_, "SELECT data FROM messages WHERE id = ?");
     query.bind(static_cast<std::int64_t>(place.offset));

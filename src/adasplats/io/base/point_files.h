@@ -32,7 +32,7 @@ struct PointSelection {
   /// are given, the fewer.
   std::optional<std::uint32_t> level;
   std::optional<double> resolution_m;
-  /// Of a file with random access (records_at_random()) these records.
+  /// Of a file with random access (random_access_records()) these records.
   std::optional<RecordSpan> records;
 
   bool has_levels() const { return level || resolution_m; }
@@ -42,7 +42,7 @@ struct PointSelection {
 /// The number of records of a file with random access: LAS, LAZ with a chunk table, binary PLY.
 /// Nothing for other files. With `salvage` the records within a truncated file. Errors: as
 /// read_points().
-std::optional<std::uint64_t> records_at_random(const std::filesystem::path& path,
+std::optional<std::uint64_t> random_access_records(const std::filesystem::path& path,
                                                bool salvage = false);
 
 /// Throws usage if the selection has levels, for files without levels of detail.

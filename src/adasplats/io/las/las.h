@@ -13,7 +13,7 @@ namespace adasplats {
 /// Reads a LAZ file as read_las() describes.
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options);
 
-/// records_at_random() of LAS, and of LAZ with a chunk table.
+/// random_access_records() of LAS, and of LAZ with a chunk table.
 std::optional<std::uint64_t> las_records_at_random(const std::filesystem::path& path, bool salvage);
 
 }  // namespace adasplats

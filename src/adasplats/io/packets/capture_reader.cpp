@@ -51,7 +51,7 @@ std::uint64_t ticks_of_resolution(std::uint8_t option) {
 
 CaptureReader::CaptureReader(const std::filesystem::path& path) : file_(path) { read_head(); }
 
-CaptureReader::CaptureReader(const std::filesystem::path& path, const CapturePlace& place)
+CaptureReader::CaptureReader(const std::filesystem::path& path, const CapturePosition& place)
     : file_(path), place_(place) {
   file_.skip(place.offset);
 }

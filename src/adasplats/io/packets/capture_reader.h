@@ -21,7 +21,7 @@ struct CaptureLink {
 };
 
 /// A position in a capture, with all that is needed to continue reading there.
-struct CapturePlace {
+struct CapturePosition {
   std::uint64_t offset = 0;
   bool is_swapped = false, is_next_generation = false;
   std::shared_ptr<const std::vector<CaptureLink>> links;
@@ -33,7 +33,7 @@ struct CapturedFrame {
   std::uint32_t link_type = 0;
   std::string_view bytes;  ///< valid until the next frame
   bool is_cut = false;     ///< only the beginning was captured
-  CapturePlace place;      ///< where its record begins
+  CapturePosition place;      ///< where its record begins
 };
 
 /// Reads the frames of a capture from front to back: classic PCAP (micro- and nanoseconds, either
@@ -44,7 +44,7 @@ class CaptureReader {
   /// Errors: no_input, data (neither of these formats).
   explicit CaptureReader(const std::filesystem::path& path);
   /// Starts at a frame found by another reader of the file.
-  CaptureReader(const std::filesystem::path& path, const CapturePlace& place);
+  CaptureReader(const std::filesystem::path& path, const CapturePosition& place);
 
   /// The next frame; nothing at the end. Errors: data (damaged, truncated, compressed), io.
   std::optional<CapturedFrame> next();
@@ -64,7 +64,7 @@ class CaptureReader {
   T number_at(std::string_view bytes, std::size_t place) const;
 
   InputFile file_;
-  CapturePlace place_;  ///< of the next record
+  CapturePosition place_;  ///< of the next record
 };
 
 /// Whether a path is a capture by its name: .pcap, .pcapng.

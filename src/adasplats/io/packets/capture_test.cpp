@@ -28,7 +28,7 @@ struct ReadDatagram {
   std::uint64_t time_ns;
   std::uint16_t port;
   std::string payload;
-  CapturePlace place;
+  CapturePosition place;
 };
 
 std::vector<ReadDatagram> all_of(DatagramReader& reader) {
@@ -137,7 +137,7 @@ TEST(Capture, RoundTrip) {
   const std::filesystem::path path = folder.path() / "w.pcap";
   std::string large(20000, '\0');
   for (std::size_t k = 0; k < large.size(); ++k) large[k] = static_cast<char>(k * k / 7);
-  const UdpEnd from{{2, 0, 0, 0, 0, 1}, {10, 0, 0, 1}, 2368}, to{{}, {10, 0, 0, 2}, 2369};
+  const UdpEndpoint from{{2, 0, 0, 0, 0, 1}, {10, 0, 0, 1}, 2368}, to{{}, {10, 0, 0, 2}, 2369};
   CaptureWriter writer(path);
   const std::string payloads[] = {"", "a", large.substr(0, 1472), large.substr(0, 1473), large};
   for (const std::string& payload : payloads) writer.add(kFirst_ns / 1000, from, to, payload);

@@ -23,7 +23,7 @@ std::string bytes_of(std::span<const std::uint8_t> bytes) {
 std::uint16_t inverted(std::uint32_t sum) { return static_cast<std::uint16_t>(~sum); }
 
 /// UDP header and payload.
-std::string udp_datagram(const UdpEnd& from, const UdpEnd& to, std::string_view payload) {
+std::string udp_datagram(const UdpEndpoint& from, const UdpEndpoint& to, std::string_view payload) {
   const auto length = static_cast<std::uint16_t>(kUdpBytes + payload.size());
   std::string pseudo = bytes_of(from.address) + bytes_of(to.address);
   append_big_endian(pseudo, std::uint16_t{kProtocolUdp});
@@ -38,7 +38,7 @@ std::string udp_datagram(const UdpEnd& from, const UdpEnd& to, std::string_view 
   return head.append(payload);
 }
 
-std::string ipv4_head(const UdpEnd& from, const UdpEnd& to, std::size_t bytes,
+std::string ipv4_head(const UdpEndpoint& from, const UdpEndpoint& to, std::size_t bytes,
                       std::uint16_t datagram, std::uint16_t fragment) {
   constexpr std::uint8_t kVersionAndLength = 0x45, kTimeToLive = 64;
   std::string head;
@@ -67,7 +67,7 @@ CaptureWriter::CaptureWriter(const std::filesystem::path& path) : path_(path), f
   file_.write(head);
 }
 
-void CaptureWriter::add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to,
+void CaptureWriter::add(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
                         std::string_view payload) {
   if (payload.size() > kMaxUdpPayload)
     throw Error(ErrorKind::data, path_.string() + ": a datagram of " +
@@ -85,7 +85,7 @@ void CaptureWriter::add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd&
   }
 }
 
-void CaptureWriter::add_frame(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to,
+void CaptureWriter::add_frame(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
                               std::string_view part, std::size_t offset, bool more) {
   const auto fragment =
       static_cast<std::uint16_t>(offset / kFragmentUnit | (more ? kMoreFragments : 0U));

@@ -13,7 +13,7 @@
 namespace adasplats {
 
 /// Sender or receiver of a datagram.
-struct UdpEnd {
+struct UdpEndpoint {
   std::array<std::uint8_t, 6> mac{};
   std::array<std::uint8_t, 4> address{};
   std::uint16_t port = 0;
@@ -29,12 +29,12 @@ class CaptureWriter {
 
   /// Adds a datagram at `time_us` since 1970. Errors: io; data (a time beyond 2106, more than 65507
   /// bytes).
-  void add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to, std::string_view payload);
+  void add(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to, std::string_view payload);
   /// Completes the file. Call once, last.
   void finish() { file_.commit(); }
 
  private:
-  void add_frame(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to, std::string_view part,
+  void add_frame(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to, std::string_view part,
                  std::size_t offset, bool more);
 
   std::filesystem::path path_;

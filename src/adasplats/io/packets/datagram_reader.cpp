@@ -96,7 +96,7 @@ std::optional<Datagram> DatagramReader::datagram_of(const CapturedFrame& frame) 
 
 std::optional<Datagram> DatagramReader::joined(const Packet& packet, const CapturedFrame& frame) {
   std::string_view bytes = packet.payload;
-  CapturePlace place = frame.place;
+  CapturePosition place = frame.place;
   if (packet.offset != 0 || packet.has_more) {
     const std::size_t end = packet.offset + bytes.size();
     if (end > kMaxDatagramBytes || (packet.has_more && bytes.size() % kFragmentUnit != 0)) {

@@ -21,7 +21,7 @@ struct Datagram {
   std::uint32_t from = 0, to = 0;  ///< addresses, the first number in the highest byte
   std::uint16_t from_port = 0, to_port = 0;
   std::string_view payload;  ///< valid until the next datagram
-  CapturePlace place;        ///< of its first fragment
+  CapturePosition place;        ///< of its first fragment
 };
 
 /// Counts of frames and datagrams.
@@ -40,7 +40,7 @@ struct DatagramCounts {
 class DatagramReader {
  public:
   explicit DatagramReader(const std::filesystem::path& path) : capture_(path) {}
-  DatagramReader(const std::filesystem::path& path, const CapturePlace& place)
+  DatagramReader(const std::filesystem::path& path, const CapturePosition& place)
       : capture_(path, place) {}
 
   /// The next datagram; nothing at the end. Errors: those of CaptureReader.
@@ -58,7 +58,7 @@ class DatagramReader {
     std::size_t missing = 0;     ///< of is_there
     bool has_end = false;
     std::uint64_t began = 0;  ///< number of its first frame
-    CapturePlace place;
+    CapturePosition place;
   };
   struct Packet;  ///< of IPv4
 

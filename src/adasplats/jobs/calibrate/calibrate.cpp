@@ -140,7 +140,7 @@ class CalibrationFiles {
     write_file(named("lasers.csv"), lasers_text(lasers));
     if (result_.sensor.empty()) return;
     write_file(named("sensor.toml"),
-               unit_sensor_toml(result_.sensor, {lasers.range_m, lasers.elevation_rad}));
+               calibrated_sensor_toml(result_.sensor, {lasers.range_m, lasers.elevation_rad}));
   }
 
   fs::path folder_;
@@ -162,7 +162,7 @@ void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session&
 }
 
 /// Reads window after window.
-void estimate_piecewise(const CalibrateJob& job, DrivePieces& pieces, Session& session,
+void estimate_piecewise(const CalibrateJob& job, DriveReader& pieces, Session& session,
                         CalibrateResult& result) {
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(pieces.report().drives);
   WindowedCalibration found =
@@ -178,7 +178,7 @@ void estimate_piecewise(const CalibrateJob& job, DrivePieces& pieces, Session& s
 CalibrateResult estimated(const CalibrateJob& job, Session& session) {
   CalibrateResult result;
   const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
-  auto pieces = DrivePieces::of(inputs, job.windows.window_scans, session);
+  auto pieces = DriveReader::of(inputs, job.windows.window_scans, session);
   if (pieces)
     estimate_piecewise(job, *pieces, session, result);
   else

@@ -79,7 +79,7 @@ MountJson window_json(const WindowReport& window) {
   json["residual_common_m"] = window.common_m;
   json["residual_calibrated_m"] = window.calibrated_m;
   json["weakest_share"] = window.weakest_share;
-  json["tells_lasers"] = window.tells_lasers;
+  json["tells_lasers"] = window.constrains_lasers;
   if (window.overlap.scans > 0) json["overlap"] = disagreement_json(window.overlap);
   return json;
 }

@@ -7,12 +7,12 @@
 
 namespace adasplats {
 
-DrivePieces::DrivePieces(const OpenInputs& inputs, Session& session)
+DriveReader::DriveReader(const OpenInputs& inputs, Session& session)
     : inputs_(&inputs),
       session_(&session),
       warnings_(std::make_shared<RepeatedWarnings>(session.progress, "pieces of the drive")) {}
 
-std::optional<DrivePieces> DrivePieces::of(const OpenInputs& inputs, std::size_t window_scans,
+std::optional<DriveReader> DriveReader::of(const OpenInputs& inputs, std::size_t window_scans,
                                            Session& session) {
   if (!inputs.are_drives()) return std::nullopt;
   std::vector<std::size_t> counts;
@@ -20,7 +20,7 @@ std::optional<DrivePieces> DrivePieces::of(const OpenInputs& inputs, std::size_t
   // Of drives without a chosen scan load() says what is wrong.
   if (std::ranges::max(counts) <= window_scans || std::ranges::min(counts) == 0)
     return std::nullopt;
-  DrivePieces pieces(inputs, session);
+  DriveReader pieces(inputs, session);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const OpenInput& drive = inputs.inputs()[k];
     const ScanBeams& beams = drive.sequence->beams;
@@ -32,7 +32,7 @@ std::optional<DrivePieces> DrivePieces::of(const OpenInputs& inputs, std::size_t
   return pieces;
 }
 
-std::vector<DriveSource> DrivePieces::sources() {
+std::vector<DriveSource> DriveReader::sources() {
   std::vector<DriveSource> sources;
   for (std::size_t drive = 0; drive < report_.drives.size(); ++drive)
     sources.push_back(
@@ -40,7 +40,7 @@ std::vector<DriveSource> DrivePieces::sources() {
   return sources;
 }
 
-PointCloud DrivePieces::read(std::size_t drive, ScanSpan span) {
+PointCloud DriveReader::read(std::size_t drive, ScanSpan span) {
   auto [cloud, loaded] =
       inputs_->load({drive, span.begin, span.size()}, session_->executor, *warnings_);
   if (!is_counted_[drive][span.begin]) count(loaded);
@@ -48,7 +48,7 @@ PointCloud DrivePieces::read(std::size_t drive, ScanSpan span) {
   return std::move(cloud);
 }
 
-void DrivePieces::count(const LoadReport& piece) {
+void DriveReader::count(const LoadReport& piece) {
   report_.points_read += piece.points_read;
   report_.dropped_not_finite += piece.dropped_not_finite;
   report_.no_returns += piece.no_returns;
@@ -61,6 +61,6 @@ void DrivePieces::count(const LoadReport& piece) {
     report_.origins[kind] += piece.origins[kind];
 }
 
-void DrivePieces::end() { warnings_->end(); }
+void DriveReader::end() { warnings_->end(); }
 
 }  // namespace adasplats

@@ -15,11 +15,11 @@
 namespace adasplats {
 
 /// Drives that are too long to stand in memory, read some scans at a time.
-class DrivePieces {
+class DriveReader {
  public:
   /// Nothing where the inputs are to be loaded at once: not all of them are drives, or none is
   /// longer than `window_scans`. `inputs` must outlive it.
-  static std::optional<DrivePieces> of(const OpenInputs& inputs, std::size_t window_scans,
+  static std::optional<DriveReader> of(const OpenInputs& inputs, std::size_t window_scans,
                                        Session& session);
 
   /// Valid while this lives.
@@ -30,7 +30,7 @@ class DrivePieces {
   void end();
 
  private:
-  DrivePieces(const OpenInputs& inputs, Session& session);
+  DriveReader(const OpenInputs& inputs, Session& session);
   PointCloud read(std::size_t drive, ScanSpan span);
   void count(const LoadReport& piece);
 

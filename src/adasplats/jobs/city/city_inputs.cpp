@@ -35,7 +35,7 @@ void correct(const Calibration& calibration, PointCloud& cloud, const Executor& 
   cloud.lasers = {};  // all that they are for
 }
 
-CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& session,
+CityPoints read_drives(const ModelJob& job, DriveReader& pieces, Session& session,
                        const TakePoints& take) {
   CityPoints points;
   const Stopwatch watch;
@@ -97,7 +97,7 @@ class PiecesInCommon {
     if (!crs_)
       crs_ = {file, cloud.crs};
     else if (file != crs_->first)
-      require_one_crs({*crs_, {file, cloud.crs}}, warnings_);
+      require_same_crs({*crs_, {file, cloud.crs}}, warnings_);
     if (!loaded.timed) return;
     const std::string clock = loaded.timed->clock;
     if (!clock_) clock_ = {file, clock};
@@ -135,7 +135,7 @@ CityPoints read_files(const ModelJob& job, const OpenInputs& inputs,
   }
   session.progress.end_step();
   warnings.end();
-  if (points.read == 0 && job.load.selection.extent) throw inputs.nothing_within_extent();
+  if (points.read == 0 && job.load.selection.extent) throw inputs.empty_extent_error();
   if (is_timed && job.calibration.on)
     session.progress.warn(
         "points with times that are read piece by piece are not calibrated (scans in files, or in "
@@ -170,7 +170,7 @@ CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoi
     take_piece(std::move(cloud));
   };
   const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
-  auto drives = DrivePieces::of(inputs, kPieceScans, session);
+  auto drives = DriveReader::of(inputs, kPieceScans, session);
   if (drives) return read_drives(job, *drives, session, take);
   const bool any_drive = std::ranges::any_of(
       inputs.inputs(), [](const OpenInput& input) { return input.input.is_sequence; });

@@ -38,7 +38,7 @@ struct CityReading {
 
 /// Calls `take` for the points of a job piece by piece, corrected where the job calibrates: drives
 /// longer than a window by 200 scans, files one by one, large ones with records at random
-/// (records_at_random()) by so many, else all at once. Errors: those of load_cloud; data
+/// (random_access_records()) by so many, else all at once. Errors: those of load_cloud; data
 /// for pieces in different coordinate systems, with different clocks, or farther from the first
 /// than LoadOptions::max_distance_m; where `place` is given, farther from that.
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,

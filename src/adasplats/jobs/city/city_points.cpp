@@ -121,7 +121,7 @@ class LayerReader {
     const CityJob& job = work_.job;
     work_.common.crs = cloud.crs;
     if (work_.before) {
-      require_one_crs({{work_.before->city, work_.before->crs}, {job.inputs.front(), cloud.crs}},
+      require_same_crs({{work_.before->city, work_.before->crs}, {job.inputs.front(), cloud.crs}},
                       work_.session.progress);
       work_.common.crs = work_.before->crs;
       require_attributes(*work_.before, attributes());

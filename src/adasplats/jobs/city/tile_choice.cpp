@@ -52,7 +52,7 @@ Sample sample_of(const OpenInputs& inputs, std::size_t k) {
   const bool is_drive = inputs.inputs()[k].input.is_sequence;
   const std::optional<std::uint64_t> all =
       is_drive ? inputs.chosen_scans(k)
-               : records_at_random(inputs.inputs()[k].input.path, inputs.options().salvage);
+               : random_access_records(inputs.inputs()[k].input.path, inputs.options().salvage);
   const std::uint64_t size = is_drive ? 1 : kSampledRecords;
   if (!all || *all <= kSamples * size) return {{{.input = k}}, 1};
   Sample sample;

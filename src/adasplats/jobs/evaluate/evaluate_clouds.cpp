@@ -71,7 +71,7 @@ CloudPair load_clouds(const CloudFiles& files, Session& session) {
   pair.labels = label_scheme_for(files.labels, inputs);
   pair.simulated = load(0);
   pair.original = load(1);
-  require_one_crs({{inputs[0], pair.simulated.crs}, {inputs[1], pair.original.crs}},
+  require_same_crs({{inputs[0], pair.simulated.crs}, {inputs[1], pair.original.crs}},
                   session.progress);
   return pair;
 }

@@ -22,7 +22,7 @@ class EchoSequence {
       : sequence_(open_kitti_sequence(resolve_cloud_input(inputs.sequence))),
         scans_(chosen_scans(inputs.scans, sequence_.scans.size(), sequence_.folder)),
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
-    require_poses_that_fit(sequence_, executor);
+    verify_poses(sequence_, executor);
     sequence_.beams = recognize_beams(sequence_, executor);
     if (has_empty_beams()) {
       set_raw_motions(sequence_.beams, sequence_.trajectory, motion_);

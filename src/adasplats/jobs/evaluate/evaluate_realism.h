@@ -17,7 +17,7 @@ namespace adasplats {
 struct RealismJob {
   std::filesystem::path simulated, real;
   ScanRange scans;  ///< of each set
-  /// Poses for a folder of files, one per scan, without a poses.csv (FrameDrive); else empty.
+  /// Poses for a folder of files, one per scan, without a poses.csv (DriveInput); else empty.
   std::filesystem::path trajectory;
 };
 

@@ -53,9 +53,9 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
     throw Error(ErrorKind::usage, scans.sequence.string() +
                                       ": has its own poses; `trajectory` is for a folder of "
                                       "scans, one per file");
-  FrameDrive given = drive_of(scans.sequence, scans);
+  DriveInput given = drive_of(scans.sequence, scans);
   given.with_classes = false;
-  auto drive = open_frame_drive(given, session.executor, session.progress);
+  auto drive = open_drive(given, session.executor, session.progress);
   if (!drive)
     throw Error(ErrorKind::data, scans.sequence.string() +
                                      ": beams cannot be cast again, because their origins are "
@@ -106,7 +106,7 @@ void write_beam_picture(const ResimulateJob& job, const ScanErrors& scan, Sessio
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
-  const bool is_drive = !scans.trajectory.empty() || is_drive_by_itself(scans.sequence);
+  const bool is_drive = !scans.trajectory.empty() || is_self_contained_drive(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage, "`topic` and `poses_topic` are for a recording (MCAP, ROS bag)");
   if (!is_drive && !scans.scene.empty())
@@ -125,7 +125,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
                 "`scan_times` are for a folder of scans with a `trajectory`");
   if (is_drive) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
-  all.facts.unchecked = require_poses_that_fit(all, session.executor);
+  all.facts.unchecked = verify_poses(all, session.executor);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all, session.executor);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())

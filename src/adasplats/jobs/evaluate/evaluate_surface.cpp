@@ -44,7 +44,7 @@ TruthResult evaluate_truth(const TruthJob& job, Session& session) {
   const MeshModel truth = load_mesh(job.truth);
   const std::optional<LabelScheme> labels = labels_of(job, truth);
   const ModelScene scene(job.model, "", session);
-  require_one_crs({{job.model, scene.crs()}, {job.truth, truth.crs}}, session.progress);
+  require_same_crs({{job.model, scene.crs()}, {job.truth, truth.crs}}, session.progress);
   return compare_with_truth(scene.tracer(), scene.origin(), truth, labels ? &*labels : nullptr,
                             sensor, poses, job.options, session.executor, session.progress);
 }
@@ -58,7 +58,7 @@ PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
     throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }
   const ModelScene scene(job.model, "", session);
-  require_one_crs({{job.model, scene.crs()}, {job.points, cloud.crs}}, session.progress);
+  require_same_crs({{job.model, scene.crs()}, {job.points, cloud.crs}}, session.progress);
   const SplatModel* const splats = scene.splats();
   if (splats != nullptr && !splats->calibration.empty() &&
       !apply(splats->calibration, cloud, session.executor))

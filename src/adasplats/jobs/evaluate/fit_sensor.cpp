@@ -31,7 +31,7 @@ struct MeasuredUnit {
   LaserOffsets offsets;  ///< of the model's calibration
   double step_rad = 0;   ///< between firings of a ring
   std::size_t scans = 0;
-  std::vector<UnitBeam> beams;
+  std::vector<SensorBeam> beams;
   double agreement = 0;  ///< share of the returns within half a metre of the model
 };
 
@@ -53,9 +53,9 @@ KittiSequence open_unit_scans(const UnitScansJob& job, Session& session) {
 
 /// Share of the returns within half a metre of the model: about 0.9 if scans and model are of the
 /// same place, about 0.4 for two different roads.
-double agreement_of(const std::vector<UnitBeam>& beams) {
+double agreement_of(const std::vector<SensorBeam>& beams) {
   std::size_t returns = 0, near = 0;
-  for (const UnitBeam& beam : beams) {
+  for (const SensorBeam& beam : beams) {
     if (!beam.returned()) continue;
     ++returns;
     near += beam.hit && std::fabs(beam.range_m - beam.expected_m) < 0.5F ? 1 : 0;
@@ -113,7 +113,7 @@ void require_one_place(double agreement, const std::string& scans) {
 
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   const MeasuredUnit measured = measure_unit(job, session);
-  const std::vector<UnitBeam>& beams = measured.beams;
+  const std::vector<SensorBeam>& beams = measured.beams;
   FitSensorResult result;
   result.agreement = measured.agreement;
   session.progress.begin_step("fit the sensor", 0);
@@ -126,13 +126,13 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   result.scans = measured.scans;
   result.beams = beams.size();
   result.returns = static_cast<std::size_t>(
-      std::ranges::count_if(beams, [](const UnitBeam& beam) { return beam.returned(); }));
+      std::ranges::count_if(beams, [](const SensorBeam& beam) { return beam.returned(); }));
   const LaserOffsets& offsets = measured.offsets;
   result.has_offsets = !offsets.empty();
   const std::string fitted_to =
       std::to_string(result.scans) + " scans of " + job.scans_of.filename().string();
   if (result.drop) result.drop->fitted_to = result.sensor + ", " + fitted_to;
-  UnitTraits traits;
+  SensorTraits traits;
   traits.ring_noise_m = result.ring_noise_m;
   traits.max_range_m = result.max_range_m;
   traits.intensity = result.intensity ? &*result.intensity : nullptr;
@@ -141,7 +141,7 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   traits.body = result.body ? &*result.body : nullptr;
   traits.fitted_to = fitted_to;
   result.sensor_toml =
-      unit_sensor_toml(result.sensor, {offsets.range_m, offsets.elevation_rad}, traits);
+      calibrated_sensor_toml(result.sensor, {offsets.range_m, offsets.elevation_rad}, traits);
   return result;
 }
 

@@ -20,19 +20,19 @@ constexpr std::size_t kStepScans = 8;  // for the azimuth step: they agree to 1 
 }  // namespace
 
 bool needs_trajectory(const std::filesystem::path& given) {
-  return !is_drive_by_itself(given) && !is_kitti_sequence(resolve_cloud_input(given)) &&
+  return !is_self_contained_drive(given) && !is_kitti_sequence(resolve_cloud_input(given)) &&
          !std::filesystem::exists(given / "poses.csv");
 }
 
 KittiSequence open_ring_scans(const std::filesystem::path& given,
                               const std::filesystem::path& trajectory, Session& session) {
   require_input(given);
-  if (is_drive_by_itself(given)) {
-    FrameDrive drive;
+  if (is_self_contained_drive(given)) {
+    DriveInput drive;
     drive.folder = given;
     drive.trajectory = trajectory;
     drive.with_classes = false;
-    return open_frame_drive(drive, session.executor, session.progress).value();
+    return open_drive(drive, session.executor, session.progress).value();
   }
   if (!std::filesystem::is_directory(given))
     throw Error(ErrorKind::usage,
@@ -44,7 +44,7 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
     return sequence;
   }
   const std::filesystem::path own = given / "poses.csv";
-  FrameDrive drive;
+  DriveInput drive;
   drive.folder = given;
   drive.trajectory = std::filesystem::exists(own) ? own : trajectory;
   drive.with_classes = false;
@@ -52,7 +52,7 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
     throw Error(ErrorKind::usage, given.string() +
                                       ": the scans have no poses; add a poses.csv to the folder or "
                                       "give a `trajectory`");
-  auto opened = open_frame_drive(drive, session.executor, session.progress);
+  auto opened = open_drive(drive, session.executor, session.progress);
   if (!opened)
     throw Error(ErrorKind::data,
                 given.string() +

@@ -82,7 +82,7 @@ void check_label_use(const LabelUse& use, const PointCloud& cloud, const LabelSc
                                       ": the points have no labels; leave it out (`label_field` "
                                       "names their column)");
   }
-  const std::string why = why_nothing_is_removed(cloud, scheme, use.removal);
+  const std::string why = removal_problem(cloud, scheme, use.removal);
   if (why.empty()) return;
   if (use.removal_is_asked) {
     throw Error(ErrorKind::usage, "`remove` " + std::string(name_of(use.removal)) + ": " + why);

@@ -93,7 +93,7 @@ Json content_of(const Settings& settings) {
 }  // namespace
 
 /// SHA-256 of all that decides the intensities of a unit.
-std::string digest_of(const UnitIntensity& unit) {
+std::string digest_of(const SensorIntensity& unit) {
   Sha256 hash;
   const auto add = [&](const auto& values) {
     hash.add(values.data(), values.size() * sizeof(values[0]));
@@ -106,7 +106,7 @@ std::string digest_of(const UnitIntensity& unit) {
   return hash.digest();
 }
 
-std::string digest_of(const UnitFields& fields) {
+std::string digest_of(const SensorFields& fields) {
   Sha256 hash;
   const std::array sizes = {fields.turns, fields.rings, fields.columns};
   hash.add(sizes.data(), sizes.size() * sizeof(sizes[0]));
@@ -165,7 +165,7 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"seed", settings.seed},
                   {"format", word_of(job.format, kScanFormats)},
                   {"point_order", word_of(job.point_order, kPointOrders)}};
-  if (settings.unit_offsets) content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
+  if (settings.sensor_offsets) content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
   if (is_ray_drop_file(job.scan.ray_drop_file))
     content["ray_drop"] = file_content(job.scan.ray_drop_file);

@@ -66,7 +66,7 @@ Source open_source(const SimKitti32Job& job, const Executor& executor) {
   Source source;
   source.sequence = open_kitti_sequence(folder);
   source.name = sequence_name(folder);
-  require_poses_that_fit(source.sequence, executor);
+  verify_poses(source.sequence, executor);
   if (source.sequence.labels.empty())
     throw Error(ErrorKind::data, folder.string() +
                                      ": has no labels/, which identify moving objects and the "

@@ -120,8 +120,8 @@ class CpuTiles final : public CityTiles {
     return {values_.data(), values_.size()};
   }
 
-  std::size_t bytes_a_splat() const override {
-    return kTiledTracerBytesASplat + sizeof(PrimitiveValues);
+  std::size_t bytes_per_splat() const override {
+    return kTiledTracerBytesPerSplat + sizeof(PrimitiveValues);
   }
   void load(std::size_t tile, SplatModel&& model, const Executor& executor) override {
     carried_.fill(model, values_.data() + first_[tile], executor);
@@ -154,7 +154,7 @@ class GpuTiles final : public CityTiles {
     return {numbers_.data(), numbers_.size()};
   }
 
-  std::size_t bytes_a_splat() const override { return GpuCity::kTileBytesASplat; }
+  std::size_t bytes_per_splat() const override { return GpuCity::kTileBytesASplat; }
   void load(std::size_t tile, SplatModel&& model, const Executor& executor) override {
     std::vector<PrimitiveValues> values(model.size());
     carried_.fill(model, values.data(), executor);

@@ -23,7 +23,7 @@ void check(const ScanSettings& settings) {
   check_settings(SensorOverrides{sensor.range_noise_m, sensor.min_range_m, {}, sensor.rotation_hz});
   if (!(sensor.min_range_m < sensor.max_range_m))
     throw Error(ErrorKind::usage, "min_range must be less than max_range");
-  if (settings.unit_offsets && sensor.range_offsets_m.empty())
+  if (settings.sensor_offsets && sensor.range_offsets_m.empty())
     throw Error(ErrorKind::usage, "`sensor_offsets` has no effect: the sensor '" + sensor.name +
                                       "' has no range_offsets_m");
   check_beam(settings.beam, settings.sensor);

@@ -61,7 +61,7 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
                         "of its file)",
                 .group = kGroup,
                 .old_name = "unit_offsets"},
-        scan.unit_offsets);
+        scan.sensor_offsets);
   visit_settings(scan.overrides, visit);
   visit_settings(scan.beam, visit);
   visit(Setting{.name = "ray_drop",

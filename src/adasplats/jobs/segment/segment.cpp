@@ -172,7 +172,7 @@ class PointSegmenter {
           folder.path() / "sequences" / (std::string(number.size() < 2 ? 1 : 0, '0') + number);
       for (const char* const name : kept_folders()) fs::create_directories(tree / name);
       KittiSequence sequence = open_kitti_sequence(sequences[k]);
-      sequence.facts.unchecked = require_poses_that_fit(sequence, session_.executor);
+      sequence.facts.unchecked = verify_poses(sequence, session_.executor);
       const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
       segment_scans(sequence, chosen_scans(range, sequence.scans.size(), sequences[k]),
                     [&](const fs::path& scan) {

@@ -10,7 +10,7 @@
 
 namespace adasplats {
 
-/// UnitIntensity for CPU and GPU: plain values and pointers, of the host or of a device.
+/// SensorIntensity for CPU and GPU: plain values and pointers, of the host or of a device.
 struct IntensityRules {
   bool on = false;
   float step = 0, highest = 0;
@@ -23,7 +23,7 @@ struct IntensityRules {
 };
 
 /// Views the tables of a calibrated sensor, which must outlive the rules.
-inline IntensityRules intensity_rules(const UnitIntensity& unit) {
+inline IntensityRules intensity_rules(const SensorIntensity& unit) {
   IntensityRules rules;
   rules.on = true;
   rules.step = static_cast<float>(unit.step);
@@ -79,7 +79,7 @@ ADASPLATS_HD inline float level_of(const IntensityRules& rules, std::uint32_t ri
                  expected);
 }
 
-/// Shares for which UnitIntensity::reported holds: finer at both ends.
+/// Shares for which SensorIntensity::reported holds: finer at both ends.
 ADASPLATS_HD inline float texture_node(std::uint32_t k) {
   const float nodes[kTextureNodes] = {0,     0.01F, 0.03F, 0.07F, 0.15F, 0.25F, 0.35F, 0.5F,
                                       0.65F, 0.75F, 0.85F, 0.93F, 0.97F, 0.99F, 1};

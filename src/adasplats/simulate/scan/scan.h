@@ -128,7 +128,7 @@ Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
 struct SimulateOptions {
   std::uint64_t seed = 1;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
   bool noise = true;          ///< apply the sensor's noise and its calibrated intensity response
-  bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
+  bool sensor_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
   bool vehicle_body = true;              ///< returns from LidarModel::body

@@ -89,7 +89,7 @@ std::span<const BodyCell> ScanRules::body() const {
 }
 
 std::span<const double> ScanRules::range_offsets_m() const {
-  if (!options_.unit_offsets) return {};
+  if (!options_.sensor_offsets) return {};
   return sensor_.range_offsets_m;
 }
 
@@ -98,12 +98,12 @@ std::span<const double> ScanRules::ring_noise_m() const {
   return sensor_.ring_noise_m;
 }
 
-const UnitIntensity* ScanRules::intensity() const {
+const SensorIntensity* ScanRules::intensity() const {
   return options_.noise && sensor_.intensity && table_->has_intensities ? &*sensor_.intensity
                                                                         : nullptr;
 }
 
-const UnitFields* ScanRules::unit_fields() const {
+const SensorFields* ScanRules::unit_fields() const {
   const bool asks =
       options_.ray_drop || intensity() != nullptr || (options_.noise && has_field_noise());
   return asks && sensor_.fields ? &*sensor_.fields : nullptr;
@@ -137,7 +137,7 @@ FiringRules ScanRules::view() const {
   rules.ring_noise_m = ring_noise_m().data();
   rules.ring_noise_count = static_cast<std::uint32_t>(ring_noise_m().size());
   if (intensity() != nullptr) rules.intensity = intensity_rules(*intensity());
-  if (const UnitFields* fields = unit_fields()) {
+  if (const SensorFields* fields = unit_fields()) {
     rules.fields = {fields->bytes.data(), fields->turns, fields->rings, fields->columns};
     rules.field_noise = options_.noise && has_field_noise();
   }

@@ -52,9 +52,9 @@ class ScanRules {
   std::span<const double> range_offsets_m() const;
   std::span<const double> ring_noise_m() const;
   /// Null if intensities are reported as in the scene.
-  const UnitIntensity* intensity() const;
+  const SensorIntensity* intensity() const;
   /// Null if beams are drawn independently.
-  const UnitFields* unit_fields() const;
+  const SensorFields* unit_fields() const;
   /// The requested attributes that scans can have.
   ScanFields fields() const;
   PointFrame frame() const { return options_.frame; }

@@ -302,7 +302,7 @@ TEST(SimulateScan, SensorOffsetsAreAppliedOnDemand) {
   for (std::size_t ring = 0; ring < 32; ++ring)
     drive.sensor.range_offsets_m.push_back(0.01 * static_cast<double>(ring));
   EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
-  drive.options.unit_offsets = true;
+  drive.options.sensor_offsets = true;
   const Scan with = drive.scan();
   ASSERT_EQ(with.size(), without.size());
   for (std::size_t i = 0; i < with.size(); ++i)

@@ -11,7 +11,7 @@
 
 namespace adasplats {
 
-/// UnitFields for CPU and GPU: plain values and a pointer, of the host or of a device.
+/// SensorFields for CPU and GPU: plain values and a pointer, of the host or of a device.
 struct UnitFieldRules {
   const std::uint8_t* bytes = nullptr;  ///< null: there are none
   std::uint32_t turns = 0, rings = 0, columns = 0;
@@ -45,7 +45,7 @@ ADASPLATS_HD inline BeamFields beam_fields(const UnitFieldRules& rules, std::uin
   const std::uint32_t place = within(column + shift + kToNextReturn * return_index, rules.columns);
   const std::size_t beam =
       (std::size_t{turn} * rules.rings + within(ring, rules.rings)) * rules.columns + place;
-  const std::uint8_t* const b = rules.bytes + beam * kUnitFields;
+  const std::uint8_t* const b = rules.bytes + beam * kSensorFields;
   const auto drop = static_cast<double>(b[0]) + 0.5;
   const auto noise = static_cast<double>(b[2]) - 128;
   const auto zero = static_cast<double>(b[3]) + 0.5;

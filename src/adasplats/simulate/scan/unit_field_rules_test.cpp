@@ -30,7 +30,7 @@ std::vector<std::uint8_t> numbered_fields() {
 }
 
 // Oracle: by hand from what the bytes mean.
-TEST(UnitFields, AreOneTurnTurnedBySomeColumns) {
+TEST(SensorFields, AreOneTurnTurnedBySomeColumns) {
   const std::vector<std::uint8_t> bytes = numbered_fields();
   const UnitFieldRules rules = {bytes.data(), 2, 3, 1000};
   std::set<double> firsts, noises_m;
@@ -58,7 +58,7 @@ TEST(UnitFields, AreOneTurnTurnedBySomeColumns) {
 
 /// Two levels, a gain a ring, textures of half to one and a half of the level.
 struct DrawnUnit {
-  UnitIntensity unit;
+  SensorIntensity unit;
   IntensityRules rules;
 
   DrawnUnit() {

@@ -38,13 +38,13 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     if (whole != nullptr) append(beams_, sample_beams(whole->passing, {}, beams));
     if (whole != nullptr) {
       whole_ = {whole->typical, whole->rays, whole->response};
-      empty_ = backend_.load_as_it_is(whole->empty);
-      passing_ = backend_.load_as_it_is(whole->passing);
+      empty_ = backend_.load_in_given_order(whole->empty);
+      passing_ = backend_.load_in_given_order(whole->passing);
     } else if (!empty.empty()) {
-      empty_ = backend_.load_as_it_is(ends_of(empty, empty_reach_m(cloud)));
+      empty_ = backend_.load_in_given_order(ends_of(empty, empty_reach_m(cloud)));
     }
     if (cloud.has_beams() && !cloud.intensities.empty())
-      removed_ = backend_.load_as_it_is(points_of_classes(cloud, tables.removed));
+      removed_ = backend_.load_in_given_order(points_of_classes(cloud, tables.removed));
     box_ = whole != nullptr ? whole->box : backend_.box_of(cloud);
     cloud_ = backend_.load(cloud, box_, tables.removed);
     backend_.wait("order the points");
@@ -91,7 +91,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     const std::size_t every = cells_.size() / kCheckedSeeds + 1;
     auto seeds = backend_.template array<Disk>(cells_.size() / every);
     backend_.for_each(seeds.size(), "choose seeds", ThinSeeds{seeds_.data(), every, seeds.data()});
-    auto cloud = backend_.load_as_it_is(beams_);
+    auto cloud = backend_.load_in_given_order(beams_);
     const auto& given = backend_.copied(beams_.sensor_positions);
     const auto rays =
         backend_.rays(cloud, points_of(cloud), options.min_range_m, RayEnds::at_surfaces);

@@ -28,12 +28,12 @@ struct CoverOptions {              // sources of the numbers: docs/fidelity.md
 };
 
 /// Position of a point relative to a disk.
-struct PlaceAtDisk {
+struct DiskOffset {
   float height_m;  ///< above or below the plane, not negative
   float along_m;   ///< from the centre, in the plane
 };
 
-ADASPLATS_HD inline PlaceAtDisk place_at_disk(const Disk& disk, Vec3f point) {
+ADASPLATS_HD inline DiskOffset disk_offset(const Disk& disk, Vec3f point) {
   const Vec3f offset = point - disk.center;
   const float height_m = dot(offset, disk.normal);
   return {std::fabs(height_m),
@@ -41,7 +41,7 @@ ADASPLATS_HD inline PlaceAtDisk place_at_disk(const Disk& disk, Vec3f point) {
 }
 
 /// Whether a disk may grow over another seed.
-ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const PlaceAtDisk& place,
+ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const DiskOffset& place,
                                     const CoverOptions& options) {
   const auto height_m = static_cast<double>(place.height_m);
   const auto cosine = static_cast<double>(std::fabs(dot(other.normal, disk.normal)));
@@ -49,14 +49,14 @@ ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const P
 }
 
 /// Whether a disk must end before another seed.
-ADASPLATS_HD inline bool ends_at(const Disk& disk, const Disk& other, const PlaceAtDisk& place,
+ADASPLATS_HD inline bool ends_at(const Disk& disk, const Disk& other, const DiskOffset& place,
                                  const CoverOptions& options) {
   return !grows_over(disk, other, place, options) &&
          static_cast<double>(place.height_m) < options.edge_m;
 }
 
 /// Whether a disk that covers up to `covered_m` from its centre can cover a seed.
-ADASPLATS_HD inline bool may_cover(const PlaceAtDisk& place, float covered_m,
+ADASPLATS_HD inline bool may_cover(const DiskOffset& place, float covered_m,
                                    const CoverOptions& options) {
   return place.along_m <= covered_m &&
          static_cast<double>(place.height_m) < options.covered_within_m;

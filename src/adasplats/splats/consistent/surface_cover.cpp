@@ -18,7 +18,7 @@ float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const Neighb
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const Disk& other = seeds[neighbors.ranks[k]];
     if (!(other.radius > 0)) continue;
-    const PlaceAtDisk place = place_at_disk(disk, other.center);
+    const DiskOffset place = disk_offset(disk, other.center);
     if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
   }
   float reach_m = disk.radius;
@@ -26,7 +26,7 @@ float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const Neighb
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const Disk& other = seeds[neighbors.ranks[k]];
     if (!(other.radius > 0)) continue;
-    const PlaceAtDisk place = place_at_disk(disk, other.center);
+    const DiskOffset place = disk_offset(disk, other.center);
     if (place.along_m < end_m && grows_over(disk, other, place, options)) {
       reach_m = std::max(reach_m, place.along_m);
       sectors.add(other.center, place.along_m);
@@ -60,7 +60,7 @@ SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
         for (std::uint32_t k = 0; k < neighbors.size; ++k) {
           const std::uint32_t other = neighbors.ranks[k];
           if (!(seeds_[other].radius > 0)) continue;
-          const PlaceAtDisk place = place_at_disk(seeds_[seed], seeds_[other].center);
+          const DiskOffset place = disk_offset(seeds_[seed], seeds_[other].center);
           if (may_cover(place, covered_m, options)) list.push_back(other);
         }
         lengths_[seed] = static_cast<std::uint32_t>(list.size()) - begins_[seed];
@@ -72,7 +72,7 @@ std::span<const std::uint32_t> SurfaceCover::candidates(std::size_t i) const {
 }
 
 bool SurfaceCover::covers(std::size_t i, std::uint32_t other) const {
-  return seeds_[other].radius > 0 && place_at_disk(seeds_[i], seeds_[other].center).along_m <=
+  return seeds_[other].radius > 0 && disk_offset(seeds_[i], seeds_[other].center).along_m <=
                                          covered_reach(overlap_, radii_m_[i]);
 }
 

@@ -36,7 +36,7 @@ class CpuBackend : public CpuArrays {
     return load(cloud, box_of(cloud), removed);
   }
   /// Keeps the order of the points.
-  static PointCloud load_as_it_is(PointCloud cloud) { return cloud; }
+  static PointCloud load_in_given_order(PointCloud cloud) { return cloud; }
   using CpuArrays::gather;
   PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> at) const {
     return adasplats::gather(cloud, at);

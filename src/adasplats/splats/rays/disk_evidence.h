@@ -35,14 +35,14 @@ ADASPLATS_HD inline float end_margin_m(const Disk& disk, Vec3f direction,
 }
 
 /// Evidence of a ray for or against a disk that it crosses.
-enum class RayWord : std::uint8_t { nothing, confirms, contradicts };
+enum class RayVerdict : std::uint8_t { nothing, confirms, contradicts };
 
 /// Evidence of a ray that crosses the disk at `hit_t` and was measured to end at `range_m`.
-ADASPLATS_HD inline RayWord word_of_ray(const Disk& disk, const Ray& ray, float hit_t,
+ADASPLATS_HD inline RayVerdict verdict_of_ray(const Disk& disk, const Ray& ray, float hit_t,
                                         float range_m, const EvidenceOptions& options) {
   const float margin_m = end_margin_m(disk, ray.direction, options);
-  if (hit_t > range_m + margin_m) return RayWord::nothing;
-  return hit_t < range_m - margin_m ? RayWord::contradicts : RayWord::confirms;
+  if (hit_t > range_m + margin_m) return RayVerdict::nothing;
+  return hit_t < range_m - margin_m ? RayVerdict::contradicts : RayVerdict::confirms;
 }
 
 /// Ray counts of one disk in rings of equal area, from the centre outward.

@@ -126,10 +126,10 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
       counters.clear();
       for (const Hit& hit : hits) {
         const Disk& disk = disks[hit.primitive];
-        const RayWord word = word_of_ray(disk, ray, hit.t, range_m, options);
-        if (word == RayWord::nothing) continue;
+        const RayVerdict word = verdict_of_ray(disk, ray, hit.t, range_m, options);
+        if (word == RayVerdict::nothing) continue;
         const std::size_t bin = evidence_ring(disk, ray, hit.t);
-        auto& counts = word == RayWord::confirms ? evidence.confirmed : evidence.contradicted;
+        auto& counts = word == RayVerdict::confirms ? evidence.confirmed : evidence.contradicted;
         std::uint32_t& counter =
             counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin];
         __builtin_prefetch(&counter, 1);

@@ -294,17 +294,17 @@ TEST(CollectEvidence, GrazingRaysEndAtDisksThatTheyCrossFarther) {
   const Ray ray{{0, 0, 0}, 0, {1, 0, 0}, 100};
   const auto word = [&](float cosine, float range_m) {
     const Disk disk{{10, 0, 0}, 1, {cosine, std::sqrt(1 - cosine * cosine), 0}};
-    return word_of_ray(disk, ray, 10, range_m, options);
+    return verdict_of_ray(disk, ray, 10, range_m, options);
   };
-  EXPECT_EQ(word(1, 10.029F), RayWord::confirms);
-  EXPECT_EQ(word(1, 10.031F), RayWord::contradicts);
-  EXPECT_EQ(word(-1, 9.971F), RayWord::confirms);
-  EXPECT_EQ(word(1, 9.969F), RayWord::nothing);
-  EXPECT_EQ(word(0.2F, 10.069F), RayWord::confirms);
-  EXPECT_EQ(word(0.2F, 10.071F), RayWord::contradicts);
+  EXPECT_EQ(word(1, 10.029F), RayVerdict::confirms);
+  EXPECT_EQ(word(1, 10.031F), RayVerdict::contradicts);
+  EXPECT_EQ(word(-1, 9.971F), RayVerdict::confirms);
+  EXPECT_EQ(word(1, 9.969F), RayVerdict::nothing);
+  EXPECT_EQ(word(0.2F, 10.069F), RayVerdict::confirms);
+  EXPECT_EQ(word(0.2F, 10.071F), RayVerdict::contradicts);
   // Below the minimum cosine it is constant.
-  EXPECT_EQ(word(0.01F, 10.119F), RayWord::confirms);
-  EXPECT_EQ(word(0.01F, 10.121F), RayWord::contradicts);
+  EXPECT_EQ(word(0.01F, 10.119F), RayVerdict::confirms);
+  EXPECT_EQ(word(0.01F, 10.121F), RayVerdict::contradicts);
   EXPECT_FLOAT_EQ(options.max_margin_m(), 0.12F);
 }
 
