@@ -448,8 +448,7 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   const DataTree* const tree = data_tree_of(input);
   if (tree != nullptr || !options.trajectory.empty()) {
     const auto scheme = label_scheme_for(labels, std::span(&input, tree == nullptr ? 0 : 1));
-    const auto drive =
-        open_drive(drive_of(input, options), session.executor, session.progress);
+    const auto drive = open_drive(drive_of(input, options), session.executor, session.progress);
     if (drive)
       return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name, scheme,
                             options, session);

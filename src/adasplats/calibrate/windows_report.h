@@ -25,7 +25,7 @@ struct WindowReport {
   double given_m = 0, common_m = 0, calibrated_m = 0;
   double weakest_share = 0;
   bool constrains_lasers = false;  ///< its laser offsets were pooled
-  std::string objection;      ///< why the poses of its scans are not corrected; empty if they are
+  std::string objection;  ///< why the poses of its scans are not corrected; empty if they are
   /// Differences from the previous window, if both have pose corrections, after their alignment.
   PoseDisagreement overlap;
 };

@@ -25,7 +25,9 @@ constexpr double kSecondsInHour = 3600;
 constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are slightly irregular
 
 /// Factory settings of sensors; locally administered hardware addresses.
-UdpEndpoint sensor_end(std::uint16_t port) { return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port}; }
+UdpEndpoint sensor_end(std::uint16_t port) {
+  return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port};
+}
 UdpEndpoint everyone(std::uint16_t port) {
   return {{255, 255, 255, 255, 255, 255}, {255, 255, 255, 255}, port};
 }

@@ -30,7 +30,8 @@ struct PointFormat {
   std::string_view remark;  ///< after the last extension in messages
   Table (*read)(const std::filesystem::path& path, const LasReadOptions& options);
   Crs (*read_crs)(const std::filesystem::path& path) = nullptr;  ///< null: the format has none
-  /// As random_access_records(), if `read` supports PointSelection::records; null: no random access.
+  /// As random_access_records(), if `read` supports PointSelection::records; null: no random
+  /// access.
   std::optional<std::uint64_t> (*records)(const std::filesystem::path& path,
                                           bool salvage) = nullptr;
 };

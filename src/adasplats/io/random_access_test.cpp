@@ -144,7 +144,8 @@ TEST(RandomAccess, FilesThatEndEarlyAreErrorsInEveryPiece) {
     std::filesystem::resize_file(file, std::filesystem::file_size(file) - 100);
     expect_error(ErrorKind::data, {name}, [&] { read(file, {0, 10}); });
   }
-  EXPECT_LT(random_access_records(folder.path() / "a.las", true), std::optional<std::uint64_t>(1000));
+  EXPECT_LT(random_access_records(folder.path() / "a.las", true),
+            std::optional<std::uint64_t>(1000));
   LasReadOptions options;
   options.salvage = true;
   options.selection.records = {990, 10};

@@ -166,7 +166,7 @@ std::vector<SensorEntry> entries_of(std::string_view library_toml) {
 }  // namespace
 
 std::string calibrated_sensor_toml(const std::string& library_name, const SensorOffsets& offsets,
-                             const SensorTraits& traits) {
+                                   const SensorTraits& traits) {
   const auto library = lidar_library();
   const auto found = std::ranges::find(library, library_name, &LibraryLidar::name);
   if (found == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));

@@ -21,8 +21,8 @@ inline constexpr std::size_t kTextureNodes = 15;
 
 /// How a calibrated sensor turns the intensity that a model of the scene predicts into the one that
 /// it reports: gains of its lasers, returns with intensity zero, the scatter on surfaces of one
-/// level, and the steps of its converter. SensorFields hold which beams report much and which little.
-/// Fitted by fit_unit(). All values in the sensor's intensity unit.
+/// level, and the steps of its converter. SensorFields hold which beams report much and which
+/// little. Fitted by fit_unit(). All values in the sensor's intensity unit.
 struct SensorIntensity {
   double step = 0;     ///< values are multiples of it; 0: any
   double highest = 0;  ///< maximum reported value
@@ -84,6 +84,6 @@ struct SensorTraits {
 /// ranges to 0.01 mm. Errors: usage (unknown name); std::logic_error for a sensor without beams or
 /// more offsets than beams.
 std::string calibrated_sensor_toml(const std::string& library_name, const SensorOffsets& offsets,
-                             const SensorTraits& traits = {});
+                                   const SensorTraits& traits = {});
 
 }  // namespace adasplats

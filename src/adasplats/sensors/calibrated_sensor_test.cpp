@@ -29,7 +29,8 @@ TEST(CalibratedSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
     const LidarModel known = load_lidar_model(name);
     if (known.rosette) continue;
     const auto elevations_rad = waves(known.rings(), 2e-4), ranges_m = waves(known.rings(), 0.03);
-    const auto file = folder.write("unit.toml", calibrated_sensor_toml(name, {ranges_m, elevations_rad}));
+    const auto file =
+        folder.write("unit.toml", calibrated_sensor_toml(name, {ranges_m, elevations_rad}));
     const LidarModel unit = load_lidar_model(file.string());
     EXPECT_EQ(unit.name, name + "-unit");
     EXPECT_EQ(unit.max_returns, known.max_returns) << name;

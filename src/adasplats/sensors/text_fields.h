@@ -41,7 +41,8 @@ inline std::vector<std::string_view> fields_of(std::string_view line, char separ
   return fields;
 }
 
-inline double finite_number(std::string_view text, std::string_view field, const FilePosition& place) {
+inline double finite_number(std::string_view text, std::string_view field,
+                            const FilePosition& place) {
   const std::optional<double> value = parse_number<double>(text);
   if (!value || !std::isfinite(*value))
     throw data_error(place, std::string(field) + " is " + shown(text) + ", not a finite number");

@@ -50,7 +50,7 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
 }
 
 std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
-                                   DynamicRemoval removal) {
+                            DynamicRemoval removal) {
   if (removal == DynamicRemoval::none) return "";
   if (cloud.classes.empty()) return "the points have no labels";
   if (labels == nullptr) return "labels have no scheme (name it with `labels`, for example asprs)";

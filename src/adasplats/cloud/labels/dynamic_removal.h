@@ -50,6 +50,6 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
 /// Why a removal cannot take out a single point whatever the cloud holds, for the user; empty where
 /// it can, and for DynamicRemoval::none.
 std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
-                                   DynamicRemoval removal);
+                            DynamicRemoval removal);
 
 }  // namespace adasplats

@@ -63,8 +63,7 @@ TEST(DynamicRemoval, SaysWhyNothingCanBeRemoved) {
   EXPECT_EQ(why(&semantickitti_labels(), DynamicRemoval::moving), "");
   EXPECT_EQ(why(nullptr, DynamicRemoval::none), "");
   EXPECT_NE(why(nullptr, DynamicRemoval::movable).find("`labels`"), std::string::npos);
-  EXPECT_EQ(removal_problem({}, nullptr, DynamicRemoval::moving),
-            "the points have no labels");
+  EXPECT_EQ(removal_problem({}, nullptr, DynamicRemoval::moving), "the points have no labels");
   const LabelScheme still("still", {{1, "wall", SemanticGroup::surface, Mobility::fixed, {}}});
   EXPECT_EQ(why(&still, DynamicRemoval::movable),
             "the label scheme 'still' has no class that is movable");

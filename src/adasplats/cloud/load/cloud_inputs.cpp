@@ -208,7 +208,7 @@ void require_points(const fs::path& file) {
 }
 
 void require_same_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
-                     ProgressSink& progress) {
+                      ProgressSink& progress) {
   SharedCrs shared;
   for (const auto& [file, crs] : inputs) shared.add(file, crs);
   if (const std::string warning = shared.warning(); !warning.empty()) progress.warn(warning);

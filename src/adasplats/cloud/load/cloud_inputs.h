@@ -55,6 +55,6 @@ void require_points(const std::filesystem::path& file);
 /// Throws data if two of the inputs declare different coordinate systems, and warns if one declares
 /// less than another (SharedCrs).
 void require_same_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
-                     ProgressSink& progress);
+                      ProgressSink& progress);
 
 }  // namespace adasplats

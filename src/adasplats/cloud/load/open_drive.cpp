@@ -173,7 +173,7 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
 }  // namespace
 
 std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor& executor,
-                                              ProgressSink& progress) {
+                                        ProgressSink& progress) {
   if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
     throw Error(ErrorKind::usage,
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");

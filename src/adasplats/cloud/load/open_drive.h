@@ -49,6 +49,6 @@ bool has_timed_frames(const std::filesystem::path& folder);
 ///   the trajectory does not cover the times (up to one step of its poses), if the poses contradict
 ///   the points, and if the frame is undetermined.
 std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor& executor,
-                                              ProgressSink& progress);
+                                        ProgressSink& progress);
 
 }  // namespace adasplats

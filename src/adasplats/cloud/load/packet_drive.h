@@ -18,7 +18,7 @@ namespace adasplats {
 
 /// One turn of a sensor's head in a capture.
 struct Revolution {
-  CapturePosition place;         ///< of the packet that it begins in
+  CapturePosition place;      ///< of the packet that it begins in
   std::size_t skipped = 0;    ///< columns of that packet that belong to the previous revolution
   std::size_t columns = 0;    ///< captured ones
   double share = 0;           ///< fraction of a full turn, from its first to its last column

@@ -87,7 +87,8 @@ float noise_m_of(const SensorBeam& beam) {
 }
 
 /// The value of a field for one beam; NaN if not estimated.
-float number_of(SensorField field, const SensorBeam& beam, std::size_t i, const BeamShares& shares) {
+float number_of(SensorField field, const SensorBeam& beam, std::size_t i,
+                const BeamShares& shares) {
   const auto share = [&](std::span<const float> all) {
     return all.empty() ? kUnestimated : all[i];
   };
@@ -103,7 +104,7 @@ float number_of(SensorField field, const SensorBeam& beam, std::size_t i, const 
 }  // namespace
 
 SensorFields fit_unit_fields(std::span<const SensorBeam> beams, const UnitPattern& pattern,
-                           std::span<const double> ring_noise_m, const BeamShares& shares) {
+                             std::span<const double> ring_noise_m, const BeamShares& shares) {
   const auto spans = spans_of_scans(beams);
   const std::size_t turns = std::min(kMaxTurns, spans.size());
   const std::size_t rings = pattern.rings, columns = pattern.columns;
@@ -130,7 +131,8 @@ SensorFields fit_unit_fields(std::span<const SensorBeam> beams, const UnitPatter
               number_of(field, beams[i], i, shares);
       for (std::size_t ring = 0; ring < rings; ++ring) fill_ring(field, ring);
       for (std::size_t k = 0; k < numbers.size(); ++k)
-        fields.bytes[(turn * rings * columns + k) * kSensorFields + static_cast<std::size_t>(field)] =
+        fields
+            .bytes[(turn * rings * columns + k) * kSensorFields + static_cast<std::size_t>(field)] =
             coded(field, numbers[k]);
     }
   }

@@ -208,8 +208,9 @@ std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> 
 }
 
 /// For each beam the share of the beams of its level that report zero before it.
-std::vector<float> zero_shares(std::span<const SensorBeam> beams, std::span<const KnownReturn> known,
-                               const LevelParts& parts, const SensorIntensity& unit) {
+std::vector<float> zero_shares(std::span<const SensorBeam> beams,
+                               std::span<const KnownReturn> known, const LevelParts& parts,
+                               const SensorIntensity& unit) {
   constexpr SharePatch kPatch = {4, 16};
   const GainTable zeros{unit.levels.data(), unit.zero_share.data(),
                         static_cast<std::uint32_t>(unit.levels.size())};
@@ -224,7 +225,8 @@ std::vector<float> zero_shares(std::span<const SensorBeam> beams, std::span<cons
 
 }  // namespace
 
-std::optional<IntensityFit> fit_unit_intensity(std::span<const SensorBeam> beams, std::size_t rings) {
+std::optional<IntensityFit> fit_unit_intensity(std::span<const SensorBeam> beams,
+                                               std::size_t rings) {
   const std::vector<KnownReturn> known = known_returns(beams, rings);
   if (known.size() < kMinReturns) return std::nullopt;
   std::vector<float> measured;

@@ -23,13 +23,13 @@ struct UnitPattern {
 
 /// The parameters of one physical sensor, as far as they can be estimated from measured scans.
 struct UnitFit {
-  std::vector<double> ring_noise_m;        ///< one per ring, topmost first; empty: not estimated
+  std::vector<double> ring_noise_m;          ///< one per ring, topmost first; empty: not estimated
   std::optional<SensorIntensity> intensity;  ///< none: not estimated
-  std::optional<RayDropModel> drop;        ///< none: not estimated
+  std::optional<RayDropModel> drop;          ///< none: not estimated
   std::optional<SensorFields> fields;        ///< none: none of the above is estimated
-  std::optional<VehicleBody> body;         ///< none: not estimated; without cells: nothing is hit
-  std::optional<double> max_range_m;       ///< if returns end before the model does
-  std::vector<std::string> not_estimated;  ///< missing parameters, with the reason
+  std::optional<VehicleBody> body;           ///< none: not estimated; without cells: nothing is hit
+  std::optional<double> max_range_m;         ///< if returns end before the model does
+  std::vector<std::string> not_estimated;    ///< missing parameters, with the reason
 };
 
 /// Standard deviation of the white noise of each ring's ranges, from second differences of
@@ -48,7 +48,8 @@ struct IntensityFit {
 
 /// None if fewer than 10,000 returns with an intensity hit the model, or if all intensities are
 /// equal. `highest` is the highest measured intensity, `step` the step that all are multiples of.
-std::optional<IntensityFit> fit_unit_intensity(std::span<const SensorBeam> beams, std::size_t rings);
+std::optional<IntensityFit> fit_unit_intensity(std::span<const SensorBeam> beams,
+                                               std::size_t rings);
 
 /// Lost beams of a calibrated sensor, and the share (rank) of each beam among all beams that are
 /// equally likely to be lost; NaN: not estimated.
@@ -70,7 +71,7 @@ struct BeamShares {
 /// Up to two scans, evenly spread. Beams without an estimate get the values of their neighbours.
 /// `ring_noise_m`: of fit_ring_noise_m(), which the noise is scaled to.
 SensorFields fit_unit_fields(std::span<const SensorBeam> beams, const UnitPattern& pattern,
-                           std::span<const double> ring_noise_m, const BeamShares& shares);
+                             std::span<const double> ring_noise_m, const BeamShares& shares);
 
 /// What blocks beams in the sensor's frame: half degrees of a ring in which beams return from
 /// within 4 m, at least half a metre before the model or where it is not hit, at one range within

@@ -94,7 +94,8 @@ Vec3d direction_of(const FiredBeam& beam) {
   return {flat * std::cos(azimuth_rad), flat * std::sin(azimuth_rad), std::sin(beam.elevation_rad)};
 }
 
-SensorBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& ray, const Hit& hit) {
+SensorBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& ray,
+                     const Hit& hit) {
   SensorBeam beam;
   beam.ring = fired.ring;
   beam.range_m = fired.range_m;
@@ -116,9 +117,9 @@ SensorBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& 
 }  // namespace
 
 std::vector<SensorBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
-                                         std::span<const std::size_t> indices,
-                                         std::span<const double> heights_m, double step_rad,
-                                         const Executor& executor, ProgressSink& progress) {
+                                           std::span<const std::size_t> indices,
+                                           std::span<const double> heights_m, double step_rad,
+                                           const Executor& executor, ProgressSink& progress) {
   std::vector<SensorBeam> all;
   const std::vector<std::uint32_t> places = standpoints_of(sequence, indices);
   progress.begin_step("cast all beams", indices.size());

@@ -53,8 +53,8 @@ inline float second_difference(float a, float b, float c) { return std::fabs(a -
 /// of a ring, and before its first and after its last return within the azimuths of the scan; their
 /// directions are interpolated, or those of the nearest return. Errors: those of read_kitti_scan.
 std::vector<SensorBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
-                                         std::span<const std::size_t> indices,
-                                         std::span<const double> heights_m, double step_rad,
-                                         const Executor& executor, ProgressSink& progress);
+                                           std::span<const std::size_t> indices,
+                                           std::span<const double> heights_m, double step_rad,
+                                           const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

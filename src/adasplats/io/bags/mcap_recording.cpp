@@ -170,7 +170,8 @@ class McapRecording final : public RecordingFile {
   /// `place` is the position of the record's content.
   void visit_record(McapOpcode kind, std::string_view content, MessagePosition place,
                     Channels& channels, MessageVisitor visit) const {
-    const std::uint64_t offset = place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk;
+    const std::uint64_t offset =
+        place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk;
     if (kind == McapOpcode::message) {
       ByteReader reader(content, place_in_file(path_, offset, "message"));
       const auto channel = reader.number<std::uint16_t>();

@@ -180,7 +180,8 @@ class RosbagRecording final : public RecordingFile {
                     MessageVisitor visit) const {
     if (op == kBagConnection) {
       const std::string where = place_in_file(
-          path_, place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk, "connection");
+          path_, place.chunk == MessagePosition::kNoChunk ? place.offset : place.chunk,
+          "connection");
       const BagFields described(ByteReader(data, where));
       RecordedTopic topic{std::string(fields.text("topic")),
                           short_type_name(described.text("type")), MessageEncoding::ros1};

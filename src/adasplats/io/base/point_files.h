@@ -43,7 +43,7 @@ struct PointSelection {
 /// Nothing for other files. With `salvage` the records within a truncated file. Errors: as
 /// read_points().
 std::optional<std::uint64_t> random_access_records(const std::filesystem::path& path,
-                                               bool salvage = false);
+                                                   bool salvage = false);
 
 /// Throws usage if the selection has levels, for files without levels of detail.
 void require_no_levels(const std::filesystem::path& path, const PointSelection& selection);

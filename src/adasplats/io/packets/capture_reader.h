@@ -33,7 +33,7 @@ struct CapturedFrame {
   std::uint32_t link_type = 0;
   std::string_view bytes;  ///< valid until the next frame
   bool is_cut = false;     ///< only the beginning was captured
-  CapturePosition place;      ///< where its record begins
+  CapturePosition place;   ///< where its record begins
 };
 
 /// Reads the frames of a capture from front to back: classic PCAP (micro- and nanoseconds, either

@@ -29,13 +29,14 @@ class CaptureWriter {
 
   /// Adds a datagram at `time_us` since 1970. Errors: io; data (a time beyond 2106, more than 65507
   /// bytes).
-  void add(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to, std::string_view payload);
+  void add(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
+           std::string_view payload);
   /// Completes the file. Call once, last.
   void finish() { file_.commit(); }
 
  private:
-  void add_frame(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to, std::string_view part,
-                 std::size_t offset, bool more);
+  void add_frame(std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
+                 std::string_view part, std::size_t offset, bool more);
 
   std::filesystem::path path_;
   AtomicFile file_;

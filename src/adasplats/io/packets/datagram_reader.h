@@ -21,7 +21,7 @@ struct Datagram {
   std::uint32_t from = 0, to = 0;  ///< addresses, the first number in the highest byte
   std::uint16_t from_port = 0, to_port = 0;
   std::string_view payload;  ///< valid until the next datagram
-  CapturePosition place;        ///< of its first fragment
+  CapturePosition place;     ///< of its first fragment
 };
 
 /// Counts of frames and datagrams.

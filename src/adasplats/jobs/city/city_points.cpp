@@ -122,7 +122,7 @@ class LayerReader {
     work_.common.crs = cloud.crs;
     if (work_.before) {
       require_same_crs({{work_.before->city, work_.before->crs}, {job.inputs.front(), cloud.crs}},
-                      work_.session.progress);
+                       work_.session.progress);
       work_.common.crs = work_.before->crs;
       require_attributes(*work_.before, attributes());
     }

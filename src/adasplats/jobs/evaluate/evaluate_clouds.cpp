@@ -72,7 +72,7 @@ CloudPair load_clouds(const CloudFiles& files, Session& session) {
   pair.simulated = load(0);
   pair.original = load(1);
   require_same_crs({{inputs[0], pair.simulated.crs}, {inputs[1], pair.original.crs}},
-                  session.progress);
+                   session.progress);
   return pair;
 }
 

@@ -165,7 +165,8 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"seed", settings.seed},
                   {"format", word_of(job.format, kScanFormats)},
                   {"point_order", word_of(job.point_order, kPointOrders)}};
-  if (settings.sensor_offsets) content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
+  if (settings.sensor_offsets)
+    content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
   if (is_ray_drop_file(job.scan.ray_drop_file))
     content["ray_drop"] = file_content(job.scan.ray_drop_file);

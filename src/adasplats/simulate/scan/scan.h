@@ -126,8 +126,8 @@ Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
 
 /// Options of the measurement of a sensor.
 struct SimulateOptions {
-  std::uint64_t seed = 1;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
-  bool noise = true;          ///< apply the sensor's noise and its calibrated intensity response
+  std::uint64_t seed = 1;       ///< of noise, drop, weather; drawn by (seed, scan index, firing)
+  bool noise = true;            ///< apply the sensor's noise and its calibrated intensity response
   bool sensor_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported

@@ -39,7 +39,7 @@ enum class RayVerdict : std::uint8_t { nothing, confirms, contradicts };
 
 /// Evidence of a ray that crosses the disk at `hit_t` and was measured to end at `range_m`.
 ADASPLATS_HD inline RayVerdict verdict_of_ray(const Disk& disk, const Ray& ray, float hit_t,
-                                        float range_m, const EvidenceOptions& options) {
+                                              float range_m, const EvidenceOptions& options) {
   const float margin_m = end_margin_m(disk, ray.direction, options);
   if (hit_t > range_m + margin_m) return RayVerdict::nothing;
   return hit_t < range_m - margin_m ? RayVerdict::contradicts : RayVerdict::confirms;
