@@ -22,8 +22,8 @@ double rms(const std::vector<double>& found, const std::vector<double>& expected
   return std::sqrt(sum);
 }
 
-/// Of elevation offsets, but for what would stretch the place: in a hall of walls and floors
-/// nothing observes that part, which is proportional to cos * sin of the elevation.
+/// Error of the elevation offsets, without the part that stretches the scene (proportional to
+/// cos * sin of the elevation): the walls and floors of a hall do not observe it.
 double rms_but_for_stretch(const std::vector<double>& found, const std::vector<double>& expected) {
   double product = 0, square = 0;
   std::vector<double> difference(kHallLasers), stretch(kHallLasers);
@@ -64,8 +64,8 @@ PoseErrors errors_of(const Calibration& found, const HallRecording& recording) {
   return worst;
 }
 
-// Oracle: the faults that were put in.
-TEST(Calibrate, FindsPosesAndLasersThatAreOff) {
+// Oracle: the simulated errors.
+TEST(Calibrate, FindsPoseAndLaserErrors) {
   const HallRecording recording = record_hall({0.3, 0.1, 0.03, 0.05});
   const auto [found, report] = calibrate(recording.cloud, {}, Executor(2));
   EXPECT_EQ(report.objection, "");
@@ -78,8 +78,8 @@ TEST(Calibrate, FindsPosesAndLasersThatAreOff) {
   EXPECT_LT(errors.shift_m, 0.01);
 }
 
-// Oracle: the same beams without the faults.
-TEST(Calibrate, CorrectedPointsAndSensorsAreWhereTheyWere) {
+// Oracle: the same beams without the errors.
+TEST(Calibrate, CorrectedPointsAndSensorsMatchTheTruth) {
   HallRecording recording = record_hall({0.2, 0.05, 0.03, 0});
   const PointCloud expected = record_hall({0, 0, 0, 0}).cloud;
   const double before_m = length(vec_cast<double>(recording.cloud.positions[999]) -
@@ -94,20 +94,20 @@ TEST(Calibrate, CorrectedPointsAndSensorsAreWhereTheyWere) {
                                                         expected.sensor_positions[i])));
   }
   EXPECT_GT(before_m, 0.02);
-  EXPECT_LT(mean_m, 0.04);  // the whole is held by the given poses, which drift
+  EXPECT_LT(mean_m, 0.04);  // the absolute position follows the given poses, which drift
   EXPECT_LT(worst_m, 0.06);
   EXPECT_EQ(length(vec_cast<double>(recording.cloud.sensor_positions[0]) -
                    recording.cloud.scan_poses[0].world_from_sensor.translation) < 1e-5,
             true);
 }
 
-TEST(Calibrate, WhatIsRightStaysAsItIs) {
+TEST(Calibrate, CorrectDataIsNotChanged) {
   const auto [found, report] = calibrate(record_hall({}).cloud, {}, Executor(1));
   EXPECT_TRUE(found.empty());
   EXPECT_NE(report.objection.find("lie no better"), std::string::npos) << report.objection;
 }
 
-TEST(Calibrate, PosesAloneNeedNoLasers) {
+TEST(Calibrate, PosesNeedNoLaserNumbers) {
   HallRecording recording = record_hall({0.3, 0.1, 0, 0});
   recording.cloud.lasers.clear();
   const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
@@ -139,14 +139,14 @@ PointCloud ball_of_points() {
   return cloud;
 }
 
-TEST(Calibrate, WithoutPlanesNothingIsApplied) {
+TEST(Calibrate, NothingIsAppliedWithoutPlanes) {
   const auto [found, report] = calibrate(ball_of_points(), {}, Executor(1));
   EXPECT_TRUE(found.empty());
   EXPECT_NE(report.objection.find("too few planes"), std::string::npos) << report.objection;
 }
 
-/// A tube along x with the profile of an arch, seen by scans along it.
-TEST(Calibrate, AStraightTunnelHoldsNoPoses) {
+/// A tunnel along x with an arched profile, scanned from inside.
+TEST(Calibrate, AStraightTunnelDoesNotConstrainPoses) {
   PointCloud cloud;
   for (std::uint32_t scan = 0; scan < 8; ++scan) {
     const double x = 1.5 * scan;
@@ -169,7 +169,7 @@ TEST(Calibrate, AStraightTunnelHoldsNoPoses) {
   EXPECT_GT(std::fabs(report.weakest.x), 0.99);
 }
 
-TEST(Calibrate, WhatACloudLacksIsNamed) {
+TEST(Calibrate, MissingDataIsNamed) {
   PointCloud cloud = record_hall({}, 3).cloud;
   PointCloud no_poses = cloud;
   no_poses.scan_poses.clear();
@@ -190,7 +190,7 @@ Calibration drive_along_x() {
   return calibration;
 }
 
-TEST(Calibration, IsInterpolatedBetweenTheScansAround) {
+TEST(Calibration, IsInterpolatedBetweenScans) {
   const auto found = drive_along_x().at(10.3, {3.1, 0.2, 0});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->shift_m.x, 0.015, 1e-12);
@@ -198,7 +198,7 @@ TEST(Calibration, IsInterpolatedBetweenTheScansAround) {
   EXPECT_EQ(found->position, (Vec3d{3.1, 0.2, 0}));
 }
 
-TEST(Calibration, OffsetsOfLasersMoveNoScan) {
+TEST(Calibration, LaserOffsetsMoveNoScan) {
   EXPECT_TRUE(drive_along_x().moves_scans());
   Calibration calibration;
   calibration.lasers.range_m = {0.01, 0.02};
@@ -208,7 +208,7 @@ TEST(Calibration, OffsetsOfLasersMoveNoScan) {
   EXPECT_TRUE(calibration.moves_scans());
 }
 
-TEST(Calibration, IsHeldForOneScanBeyondItsEndsAndNotExtrapolated) {
+TEST(Calibration, IsHeldForOneScanBeyondTheEndsWithoutExtrapolation) {
   EXPECT_NEAR(drive_along_x().at(10.7, {7, 0, 0})->shift_m.x, 0.03, 1e-12);
   EXPECT_NEAR(drive_along_x().at(9.9, {-1, 0, 0})->shift_m.x, 0, 1e-12);
   EXPECT_FALSE(drive_along_x().at(11.0, {10, 0, 0}));
@@ -220,7 +220,7 @@ TEST(Calibration, ScansOfAnotherDriveAreNotCorrected) {
   EXPECT_FALSE(drive_along_x().at(1e9, {3.1, 0, 0}));
 }
 
-TEST(Calibration, DriftIsToldByNeighboursAndNoiseByMany) {
+TEST(Calibration, DriftIsEstimatedFromNeighboursAndNoiseFromManyScans) {
   Calibration drift, noise;
   for (int k = 0; k < 40; ++k) {
     Random random(8, 0, static_cast<std::uint64_t>(k));
@@ -236,16 +236,16 @@ TEST(Calibration, DriftIsToldByNeighboursAndNoiseByMany) {
   EXPECT_LE(drift.smooth_s, 0.1001);
   EXPECT_GE(noise.smooth_s, 0.3999);
   EXPECT_NEAR(drift.at(2.05, {20.5, 0, 0})->shift_m.x, 0.1 * std::sin(0.35 * 20.5), 0.005);
-  // Poses that took no part and are right stay nearer to that: 0.035 m between two neighbours.
+  // Limit: the mean of two neighbours would err by 0.035 m.
   double square = 0;
   for (int k = 0; k < 39; ++k)
     square += std::pow(noise.at(0.1 * k + 0.05, {k + 0.5, 0, 0})->shift_m.x, 2) / 39;
   EXPECT_LT(std::sqrt(square), 0.03);
-  // A scan that took part has its own.
+  // A scan of the calibration has its own correction.
   EXPECT_EQ(noise.at(0.1 * 7, {7, 0, 0})->shift_m, noise.poses[7].shift_m);
 }
 
-/// A drift in waves of so many metres over 80 scans, under noise of 5 cm.
+/// A periodic drift with this amplitude in metres over 80 scans, with 5 cm of noise.
 Calibration noisy_drive(double wave_m, std::uint64_t seed) {
   Calibration calibration;
   for (std::size_t k = 0; k < 80; ++k) {
@@ -263,13 +263,13 @@ Calibration noisy_drive(double wave_m, std::uint64_t seed) {
   return calibration;
 }
 
-// Oracle: the drift without the noise, which is none. Single corrections are 8.7 cm long.
-TEST(Calibration, WhatIsNoiseAloneIsToldByManyScans) {
+// Oracle: no drift. Single corrections are 8.7 cm long.
+TEST(Calibration, PureNoiseIsSmoothedOverManyScans) {
   double square = 0;
   int by_many = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Calibration calibration = noisy_drive(0, seed);
-    if (calibration.smooth_s < 0.2 * 7.9) continue;  // by chance neighbours tell it nearly as well
+    if (calibration.smooth_s < 0.2 * 7.9) continue;  // by chance neighbours predict nearly as well
     ++by_many;
     const Vec3d middle = calibration.at(7.9, {39.5, 0, 0})->shift_m;
     square += dot(middle, middle);
@@ -278,11 +278,11 @@ TEST(Calibration, WhatIsNoiseAloneIsToldByManyScans) {
   EXPECT_LT(std::sqrt(square / by_many), 0.025);
 }
 
-TEST(Calibration, ADriftThatNoiseHidesInPartIsKept) {
+TEST(Calibration, DriftPartlyHiddenByNoiseIsKept) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Calibration calibration = noisy_drive(0.1, seed);
     EXPECT_LT(calibration.smooth_s, 0.2 * 16) << seed;
-    if (calibration.smooth_s == 0) continue;  // neighbours tell it nearly as well
+    if (calibration.smooth_s == 0) continue;  // neighbours predict nearly as well
     double square = 0;
     for (int k = 0; k < 79; ++k)
       square += std::pow(calibration.at(0.2 * k + 0.1, {k + 0.5, 0, 0})->shift_m.x -
@@ -293,7 +293,7 @@ TEST(Calibration, ADriftThatNoiseHidesInPartIsKept) {
   }
 }
 
-TEST(Calibration, EveryDriveHasItsOwnTimes) {
+TEST(Calibration, DrivesHaveSeparateTimes) {
   Calibration calibration = drive_along_x();
   for (PoseCorrection pose : drive_along_x().poses) {
     pose.position.y = 100;

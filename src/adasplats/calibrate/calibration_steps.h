@@ -16,63 +16,63 @@
 
 namespace adasplats {
 
-/// Points that are looked at.
+/// Points used for the calibration.
 struct ChosenPoints {
   std::vector<std::uint32_t> indices;  ///< into the cloud
-  std::vector<std::uint32_t> scans;    ///< theirs
-  /// Every so many-th takes no part in the fit, to judge it; 0: all take part.
+  std::vector<std::uint32_t> scans;    ///< one per point
+  /// Every n-th point is held out for validation; 0: none.
   std::uint32_t left_out_every = 0;
 
   bool is_left_out(std::size_t k) const { return left_out_every != 0 && k % left_out_every == 0; }
 };
 
-/// What is estimated so far.
+/// Current estimates.
 struct ScanCorrections {
-  std::vector<RigidTransform> corrected_from_given;  ///< one a scan, local coordinates
-  std::vector<Vec3d> pivots;                         ///< where the sensor of each is with it
+  std::vector<RigidTransform> corrected_from_given;  ///< one per scan, local coordinates
+  std::vector<Vec3d> pivots;                         ///< corrected sensor position of each scan
   LaserOffsets offsets;
 };
 
-/// How the distances of points from planes become sums.
+/// Options of the sums over the distances of points from planes.
 struct RowOptions {
-  std::size_t max_points = 400;                         ///< of a plane that are looked at
+  std::size_t max_points = 400;                         ///< used per plane
   double max_weight = 200;                              ///< of a plane, in points
-  double width_m = 0;                                   ///< of the residuals that count
-  bool poses = true, ranges = true, elevations = true;  ///< what is unknown
+  double width_m = 0;                                   ///< of the robust weight
+  bool poses = true, ranges = true, elevations = true;  ///< estimated unknowns
 };
 
-/// Distances of points that were left out from one plane, each at most so far.
+/// Sum of the bounded distances of held-out points from one plane.
 struct DistanceSum {
   double distance_m = 0, weight = 0;
 };
 
-/// The steps of calibrate() over points and planes, on some device. Each has the same bits on all.
+/// The steps of calibrate() over points and planes. Results are bit-identical on all devices.
 class CalibrationSteps {
  public:
   enum class PointSet : std::uint8_t { few, all };
 
   virtual ~CalibrationSteps() = default;
-  /// All of it has to outlive the steps. `axes`: of the sensor's rotation, one a scan, upwards.
-  /// `lasers`: how many there are.
+  /// All arguments must outlive the steps. `axes`: rotation axis of the sensor, upwards, one per
+  /// scan. `lasers`: their number.
   virtual void load(const PointCloud& cloud, const ChosenPoints& few, const ChosenPoints& all,
                     const std::vector<Vec3d>& axes, std::size_t lasers) = 0;
-  /// Puts points where they are with these corrections.
+  /// Applies the corrections to the points.
   virtual void correct(PointSet set, const ScanCorrections& corrections) = 0;
-  /// Of points as they were corrected last; with what begins and ends where in an order of them.
+  /// Planes of the points as last corrected, each a range in an order of the points.
   virtual std::vector<ScanPlane> find_planes(PointSet set, const ScanPlaneOptions& options) = 0;
 
-  /// The next are of the planes that were found last, and of their points.
+  // The following functions use the planes found last and their points.
 
-  /// Distances of the points that were left out from planes through the others.
+  /// Distances of the held-out points from the planes through the others.
   virtual std::vector<double> left_out_residuals() = 0;
-  /// The same as sums, one a plane, with the planes' directions as the points are now. Distances
-  /// count as at most `max_m`, planes as at most `max_weight` points.
+  /// Sums of these distances, one per plane, with normals fitted to the current points. Distances
+  /// are bounded by `max_m`, the weight of a plane by `max_weight` points.
   virtual std::vector<DistanceSum> left_out_distances(double max_m, double max_weight) = 0;
-  /// Chooses the points that sum_rows() looks at.
+  /// Chooses the points for sum_rows().
   virtual void choose_rows(const RowOptions& options) = 0;
-  /// What they say of poses and lasers near these corrections.
+  /// Normal equations of poses and lasers, linearised at these corrections.
   virtual PlaneBlocks sum_rows(const ScanCorrections& corrections, const RowOptions& options) = 0;
-  /// Of the sums: what couples each scan and laser with the others, as PlaneProduct.
+  /// Product with the blocks that couple scans and lasers, as PlaneProduct.
   virtual PlaneStep coupled(const PlaneStep& x) = 0;
 };
 

@@ -15,8 +15,8 @@
 
 namespace adasplats {
 
-/// The steps of calibrate(), once for all devices. `Backend` is CpuArrays or gpu::GpuBackend; what
-/// one element does is in cell_steps.h, row_steps.h and sum_steps.h.
+/// The steps of calibrate() for all devices. `Backend` is CpuArrays or gpu::GpuBackend; the code
+/// for one element is in cell_steps.h, row_steps.h and sum_steps.h.
 template <class Backend>
 class CalibrationStepsOn final : public CalibrationSteps {
  public:

@@ -13,8 +13,8 @@
 
 namespace adasplats {
 
-// What the search for planes does with one element, in the order of PlaneSearchOn. Each writes only
-// what belongs to element `i`, so a loop on any device runs it (for_each of a backend).
+// Steps of the plane search for one element, in the order of PlaneSearchOn. Each writes only the
+// data of element `i`, so a parallel loop on any device can run it (for_each of a backend).
 
 inline constexpr int kCellBitsOfAxis = 21;
 inline constexpr double kMaxCellsOfAxis = double{1 << kCellBitsOfAxis} - 1;
@@ -46,7 +46,7 @@ struct FindLowestCorner {
   }
 };
 
-/// Cells of the smallest size along a Morton curve, so that a larger one is a run of keys.
+/// Morton keys of the smallest cells; a larger cell is a run of keys.
 struct MakeCellKey {
   const Vec3d* positions;
   Vec3d low;
@@ -91,7 +91,7 @@ struct MakeCellRun {
   }
 };
 
-/// The first of sorted keys [begin, end) that is not less than `key`.
+/// Lower bound of `key` in the sorted keys [begin, end).
 ADASPLATS_HD inline std::uint32_t first_not_less(const std::uint64_t* keys, std::uint32_t begin,
                                                  std::uint32_t end, std::uint64_t key) {
   while (begin < end) {
@@ -104,7 +104,7 @@ ADASPLATS_HD inline std::uint32_t first_not_less(const std::uint64_t* keys, std:
   return begin;
 }
 
-/// The eight parts of cells that are no planes; `bits`: of the keys within a part.
+/// Splits cells without a plane into eight; `bits`: bits of the keys within one of the eight.
 struct DivideCell {
   const std::uint64_t* keys;
   const CellRun* runs;
@@ -130,8 +130,8 @@ struct FlagLargeRun {
   }
 };
 
-/// Looks whether the points of a cell are a plane.
-struct JudgeCell {
+/// Fits a plane to the points of a cell and tests its flatness.
+struct FitCell {
   static constexpr std::size_t kGrain = 64;
 
   const Vec3d* positions;

@@ -10,8 +10,8 @@
 
 namespace adasplats {
 
-/// A symmetric positive definite system of motions (six unknowns each) that are coupled with the
-/// one before and the one behind alone. Memory and time grow with their number.
+/// A symmetric positive definite system of motions (six unknowns each), each coupled only with the
+/// previous and the next one. Memory and time grow linearly with their number.
 class ChainSystem {
  public:
   static constexpr std::size_t kUnknowns = 6;  ///< a rotation and a shift
@@ -20,7 +20,7 @@ class ChainSystem {
 
   explicit ChainSystem(std::size_t count) : rows_(count * kUnknowns), right_(count * kUnknowns) {}
 
-  /// Adds to rows of `motion` and columns of `other`, which is it or the one before.
+  /// Adds to the rows of `motion` and the columns of `other` (`motion` or the previous one).
   void add(std::size_t motion, std::size_t other, const Block& block) {
     for (std::size_t r = 0; r < kUnknowns; ++r)
       for (std::size_t c = 0; c < kUnknowns; ++c) {
@@ -32,7 +32,7 @@ class ChainSystem {
     for (std::size_t r = 0; r < kUnknowns; ++r) right_[motion * kUnknowns + r] += right[r];
   }
 
-  /// By a Cholesky factor within the band.
+  /// Solves the system by a banded Cholesky factorisation.
   std::vector<double> solve() {
     const std::size_t n = right_.size();
     for (std::size_t row = 0; row < n; ++row)

@@ -16,10 +16,10 @@ namespace adasplats {
 namespace {
 
 constexpr int kPoolingIterations = 5;
-/// In median distances from the median: where a window counts a quarter. 1.48 are a standard
-/// deviation of normal ones, so this is three of them.
+/// Distance from the median, in median distances, at which a window has a quarter of its weight.
+/// 1.48 median distances are a standard deviation of a normal distribution, so this is three.
 constexpr double kWidthOfPooling = 4.5;
-constexpr double kMinWidthOfPooling = 1e-5;  // m and rad: windows agree no better
+constexpr double kMinWidthOfPooling = 1e-5;  // m and rad: windows do not agree better than this
 
 struct Weighted {
   double value = 0, weight = 0;
@@ -56,7 +56,7 @@ double robust_mean(const std::vector<Weighted>& values) {
   return mean;
 }
 
-/// One of the lists of offsets, pooled and of mean zero; gives how far the windows are from it.
+/// Pools one list of offsets and removes its mean; returns the RMS difference of the windows.
 double pool_offsets(std::span<const WindowFinding> findings,
                     std::vector<double> LaserOffsets::*which, std::vector<double>& result) {
   double mean = 0;
@@ -94,7 +94,7 @@ void pool_lasers(std::span<const WindowFinding> findings, CommonErrors& common) 
 
 using MountColumn = ChainSystem::Column;
 
-/// A rotation counts as what it moves at `range_m`.
+/// A rotation is measured by the displacement it causes at `range_m`.
 MountColumn mount_column(Vec3d rotation, Vec3d shift_m, double range_m) {
   return {range_m * rotation.x,
           range_m * rotation.y,
@@ -104,18 +104,17 @@ MountColumn mount_column(Vec3d rotation, Vec3d shift_m, double range_m) {
           shift_m.z};
 }
 
-/// What a window's estimate tells of each of six directions, without those that it does not
-/// observe.
+/// Information matrix of a window's estimate, zero along the directions that it does not observe.
 ChainSystem::Block information_of(const MountEstimate& found, double range_m) {
   constexpr std::size_t kCount = ChainSystem::kUnknowns;
-  ChainSystem::Block seen{};  // the projector onto what is observed
+  ChainSystem::Block seen{};  // projector onto the observed directions
   for (std::size_t k = 0; k < kCount; ++k) seen[k][k] = 1;
   for (const MountDirection& direction : found.not_observed) {
     const MountColumn axis = mount_column(direction.turning, direction.shifting, 1);
     for (std::size_t r = 0; r < kCount; ++r)
       for (std::size_t c = 0; c < kCount; ++c) seen[r][c] -= axis[r] * axis[c];
   }
-  // Where an axis is hardly observed its deviation is nearly 0, and says nothing of the rest.
+  // The standard deviation of a nearly unobserved axis is close to 0, so it is bounded from below.
   constexpr double kMinShare = 0.1, kMinSd_m = 1e-4;
   const MountColumn sd = mount_column(found.rotation_sd_rad, found.shift_sd_m, range_m);
   const double min_m = std::max(kMinSd_m, kMinShare * *std::ranges::max_element(sd));
@@ -141,18 +140,18 @@ MountCorrection pooled_mount(std::span<const MountReport* const> reports, double
         right[r] += information[r][c] * value[c];
       }
   }
-  // What none observes stays as given: held by a millionth of what is observed best.
-  double most = 0;
-  for (std::size_t k = 0; k < right.size(); ++k) most = std::max(most, whole[k][k]);
-  for (std::size_t k = 0; k < right.size(); ++k) whole[k][k] += 1e-6 * most;
+  // A direction that no window observes stays as given: a weak prior keeps it at zero.
+  double largest = 0;
+  for (std::size_t k = 0; k < right.size(); ++k) largest = std::max(largest, whole[k][k]);
+  for (std::size_t k = 0; k < right.size(); ++k) whole[k][k] += 1e-6 * largest;
   system.add(0, 0, whole);
   system.add(0, right);
   const std::vector<double> x = system.solve();
   return {(1 / range_m) * Vec3d{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
-/// Directions that no window observes, by their names.
-std::vector<MountDirection> observed_by_none(std::span<const MountReport* const> reports) {
+/// Directions that no window observes, compared by name.
+std::vector<MountDirection> unobserved_directions(std::span<const MountReport* const> reports) {
   std::vector<MountDirection> result = reports.front()->found.not_observed;
   for (const MountReport* report : reports)
     std::erase_if(result, [&](const MountDirection& direction) {
@@ -164,13 +163,13 @@ std::vector<MountDirection> observed_by_none(std::span<const MountReport* const>
 
 Vec3d smaller(Vec3d a, Vec3d b) { return min(a, b); }
 
-/// Of the windows that found a mount to correct.
-MountReport joined_report(std::span<const MountReport* const> reports, double range_m,
+/// Pools the reports of the windows that found a mount error.
+MountReport pooled_report(std::span<const MountReport* const> reports, double range_m,
                           CommonErrors& common) {
   MountReport result;
   MountEstimate& found = result.found;
   found.mount = pooled_mount(reports, range_m);
-  found.not_observed = observed_by_none(reports);
+  found.not_observed = unobserved_directions(reports);
   found.rotation_sd_rad = reports.front()->found.rotation_sd_rad;
   found.shift_sd_m = reports.front()->found.shift_sd_m;
   found.deviations = std::numeric_limits<double>::infinity();
@@ -193,26 +192,26 @@ MountReport joined_report(std::span<const MountReport* const> reports, double ra
 
 void pool_mount(std::span<const WindowFinding> findings, const MountOptions& options,
                 CommonErrors& common) {
-  std::vector<const MountReport*> told, accepted;
+  std::vector<const MountReport*> with_planes, accepted;
   std::string objection;
   for (const WindowFinding& finding : findings) {
     if (!finding.mount) continue;
     const MountReport& report = *finding.mount;
     if (report.objection.empty()) accepted.push_back(&report);
     if (!report.objection.empty() && objection.empty()) objection = report.objection;
-    if (report.found.planes >= options.min_planes) told.push_back(&report);
+    if (report.found.planes >= options.min_planes) with_planes.push_back(&report);
   }
   if (findings.empty() || !findings.front().mount) return;
-  if (accepted.empty() || 2 * accepted.size() <= told.size()) {
+  if (accepted.empty() || 2 * accepted.size() <= with_planes.size()) {
     common.mount.emplace();
-    common.mount->objection = accepted.empty()
-                                  ? objection
-                                  : "only " + std::to_string(accepted.size()) + " of " +
-                                        std::to_string(told.size()) + " windows find it wrong";
+    common.mount->objection = accepted.empty() ? objection
+                                               : "only " + std::to_string(accepted.size()) +
+                                                     " of " + std::to_string(with_planes.size()) +
+                                                     " windows find it wrong";
     return;
   }
   common.mount_windows = accepted.size();
-  common.mount = joined_report(accepted, options.range_m, common);
+  common.mount = pooled_report(accepted, options.range_m, common);
 }
 
 }  // namespace

@@ -10,26 +10,26 @@
 
 namespace adasplats {
 
-/// What windows of one recording found of its unit: what all of them have in common.
+/// Sensor errors found in one window; all windows of a recording share them.
 struct WindowFinding {
   LaserOffsets lasers;  ///< empty: none
-  double weight = 0;    ///< of them: points on planes
+  double weight = 0;    ///< of the laser offsets: points on planes
   std::optional<MountReport> mount;
 };
 
 struct CommonErrors {
   LaserOffsets lasers;
   std::size_t laser_windows = 0;
-  double range_disagreement_m = 0, elevation_disagreement_rad = 0;  ///< RMS from the pooled ones
+  double range_disagreement_m = 0, elevation_disagreement_rad = 0;  ///< RMS from the pooled offsets
   std::optional<MountReport> mount;
   std::size_t mount_windows = 0;
-  double mount_disagreement_rad = 0, mount_disagreement_m = 0;  ///< the largest from the pooled one
+  double mount_disagreement_rad = 0, mount_disagreement_m = 0;  ///< maximum from the pooled mount
 };
 
-/// Pools them. Offsets of a laser: the mean of the windows, by their points, in which those far
-/// from the weighted median hardly count. The mount: by least squares, each window in the
-/// directions that it observes; nothing, with an objection, where not more than half of the windows
-/// that could tell found one to correct.
+/// Pools the findings of all windows. Offsets of a laser: mean over the windows, weighted by their
+/// points; windows far from the weighted median have little weight. Mount: least squares, each
+/// window in the directions that it observes. Without a mount, and with an objection, unless more
+/// than half of the windows with enough planes found a mount error.
 CommonErrors pooled(std::span<const WindowFinding> findings, const MountOptions& options);
 
 }  // namespace adasplats

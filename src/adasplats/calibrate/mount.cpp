@@ -14,13 +14,13 @@
 namespace adasplats {
 namespace {
 
-/// Rotation times MountOptions::range_m, and shift: metres all of them.
+/// Rotation times MountOptions::range_m, then shift; all in metres.
 using Row = std::array<double, 6>;
 using Square = std::array<double, 36>;
 
-constexpr std::size_t kBlocks = 16;      // parts of the drive, whose disagreement tells errors
-constexpr std::size_t kMountParts = 16;  // of the sum over planes: added in their order
-constexpr double kSystematic_m = 0.01;   // what planes of different scans disagree by anyway
+constexpr std::size_t kBlocks = 16;      // parts of the drive; their disagreement gives the errors
+constexpr std::size_t kMountParts = 16;  // partial sums over the planes, added in a fixed order
+constexpr double kSystematic_m = 0.01;   // disagreement between scans that no mount removes
 constexpr double kWholeDrive = std::numeric_limits<double>::infinity();
 
 double product_of(const Row& a, const Row& b) {
@@ -41,11 +41,11 @@ void add_outer(Square& sum, const Row& a, double factor) {
     for (std::size_t k = 0; k < 6; ++k) sum[i * 6 + k] += factor * a[i] * a[k];
 }
 
-/// What the planes say of a mount near the present one.
+/// Normal equations of the mount, linearised at the current one.
 struct MountSums {
-  Square full{};                     ///< of the points, were the planes known
-  Square reduced{};                  ///< with planes that follow them
-  std::array<Row, kBlocks> right{};  ///< of parts of the drive
+  Square full{};                     ///< with fixed planes
+  Square reduced{};                  ///< with the planes eliminated
+  std::array<Row, kBlocks> right{};  ///< right-hand side, one for each part of the drive
 
   MountSums& operator+=(const MountSums& other) {
     for (std::size_t k = 0; k < 36; ++k) {
@@ -58,7 +58,7 @@ struct MountSums {
   }
 };
 
-/// One point's distance from its plane, and how it depends on the mount and on the plane.
+/// Distance of a point from its plane, and its derivatives by the mount and by the plane.
 struct MountResidual {
   double residual_m = 0, weight = 0;
   std::size_t block = 0;
@@ -66,24 +66,24 @@ struct MountResidual {
   std::array<double, 3> by_plane{};
 };
 
-/// Adds a plane whose offset and tilts are eliminated.
+/// Adds a plane; its offset and tilts are eliminated.
 void add_plane(const std::vector<MountResidual>& residuals, MountSums& sums) {
   std::array<double, 9> own{};
-  std::array<std::array<double, 3>, 7> beside{};  // of the mount's unknowns, and of the residual
+  std::array<std::array<double, 3>, 7> coupling{};  // to the mount's unknowns and to the residual
   for (const MountResidual& r : residuals) {
     for (std::size_t a = 0; a < 3; ++a) {
       const double weighted = r.weight * r.by_plane[a];
       for (std::size_t b = 0; b < 3; ++b) own[a * 3 + b] += weighted * r.by_plane[b];
-      for (std::size_t k = 0; k < 6; ++k) beside[k][a] += weighted * r.by_mount[k];
-      beside[6][a] += weighted * r.residual_m;
+      for (std::size_t k = 0; k < 6; ++k) coupling[k][a] += weighted * r.by_mount[k];
+      coupling[6][a] += weighted * r.residual_m;
     }
   }
   for (std::size_t a = 0; a < 3; ++a) own[a * 4] += 1e-9;
   factor<3>(own);
-  for (std::array<double, 3>& column : beside) column = solved<3>(own, column);
+  for (std::array<double, 3>& column : coupling) column = solved<3>(own, column);
   const auto of_plane = [&](const MountResidual& r, std::size_t k) {
-    return r.by_plane[0] * beside[k][0] + r.by_plane[1] * beside[k][1] +
-           r.by_plane[2] * beside[k][2];
+    return r.by_plane[0] * coupling[k][0] + r.by_plane[1] * coupling[k][1] +
+           r.by_plane[2] * coupling[k][2];
   };
   for (const MountResidual& r : residuals) {
     Row left = r.by_mount;
@@ -96,9 +96,9 @@ void add_plane(const std::vector<MountResidual>& residuals, MountSums& sums) {
 }
 
 struct MountRound {
-  double reach_m = kWholeDrive;  ///< of a window
+  double reach_m = kWholeDrive;  ///< length of a window
   double cell_m = 3.2, flatness_m = 0, width_m = 0;
-  double damping = 0;  ///< share of the full weight that holds a step
+  double damping = 0;  ///< share of the full weight that damps a step
 };
 
 class MountSearch {
@@ -121,7 +121,7 @@ class MountSearch {
                            direction.shifting.x, direction.shifting.y, direction.shifting.z});
   }
 
-  /// Makes two steps with planes found anew.
+  /// Searches the planes again and makes two steps.
   void make_round(const MountRound& round) {
     place_points();
     const ScanPlanes planes = planes_of(round);
@@ -133,8 +133,9 @@ class MountSearch {
     }
   }
 
-  /// Leaves out what the last round's planes do not observe. False: nothing new.
-  bool leave_out_the_unobserved() {
+  /// Excludes the directions that the planes of the last round do not observe. Returns whether
+  /// there are new ones.
+  bool exclude_unobserved() {
     const SmallEigen<6> eigen = small_eigen<6>(information(0));
     const Square scatter = scatter_of_right();
     std::vector<Row> unobserved;
@@ -191,7 +192,7 @@ class MountSearch {
     return {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z};
   }
 
-  /// But for what is left out.
+  /// Sets the mount; excluded directions stay zero.
   void set_unknowns(const Row& values) {
     const Row x = kept(values);
     mount_.rotation_rad = (1 / options_.range_m) * Vec3d{x[0], x[1], x[2]};
@@ -230,9 +231,10 @@ class MountSearch {
         left_out_, [&](const Row& out) { return std::fabs(product_of(out, direction)) > 0.5; });
   }
 
-  /// Squares of what parts of the drive say, each alone: their disagreement holds the errors of
-  /// poses, which points of one scan share. (The sandwich estimator of clustered residuals: Liang
-  /// and Zeger, "Longitudinal data analysis using generalized linear models", Biometrika 1986.)
+  /// Sum of the squared right-hand sides of the parts of the drive. Their disagreement includes the
+  /// pose errors, which all points of a scan share. (Sandwich estimator of clustered residuals:
+  /// Liang and Zeger, "Longitudinal data analysis using generalized linear models", Biometrika
+  /// 1986.)
   Square scatter_of_right() const {
     Square scatter{};
     for (const Row& right : sums_.right) add_outer(scatter, right, 1);
@@ -252,14 +254,14 @@ class MountSearch {
     });
   }
 
-  /// How far from one another a wrong mount may leave what two scans saw, over that error.
+  /// Maximum displacement between the points of two scans per radian of mount error, m.
   double reach_between(std::size_t a, std::size_t b) const {
     return length(local_[a].translation - local_[b].translation) +
            (options_.range_m + options_.arm_of_error_m) *
                angle_between(local_[a].rotation, local_[b].rotation);
   }
 
-  /// First points of windows, and their number at the end. A window has two scans or more.
+  /// First point of every window, then the number of points. A window has at least two scans.
   std::vector<std::size_t> windows_of(double reach_m) const {
     std::vector<std::size_t> begins = {0};
     std::size_t first = points_.scans.empty() ? 0 : points_.scans.front();
@@ -348,7 +350,7 @@ class MountSearch {
     for (MountResidual& residual : residuals) residual.weight *= scale;
   }
 
-  /// What the planes say of what is not left out, beside which that is held fast.
+  /// Information matrix of the mount; excluded directions are fixed by a large weight.
   Square information(double damping) const {
     Square matrix = sums_.reduced;
     double trace = 1e-9;
@@ -360,7 +362,8 @@ class MountSearch {
     return matrix;
   }
 
-  /// Of Gauss-Newton, from the left: given_from_mounted becomes step * given_from_mounted.
+  /// Gauss-Newton step, applied from the left: given_from_mounted becomes
+  /// step * given_from_mounted.
   void make_step(double damping) {
     Square matrix = information(damping);
     Row right{};
@@ -374,7 +377,7 @@ class MountSearch {
     set_unknowns(unknowns());
   }
 
-  /// Those that are left out, as near to the axes as they span.
+  /// Excluded directions, as close to the axes as their span allows.
   std::vector<MountDirection> named_directions() const {
     constexpr std::array<const char*, 6> kNames = {"roll (about x)",    "pitch (about y)",
                                                    "yaw (about z)",     "lever arm along x",
@@ -383,13 +386,13 @@ class MountSearch {
     for (const Row& out : left_out_) add_outer(span, out, 1);
     std::vector<MountDirection> result;
     for (std::size_t n = 0; n < left_out_.size(); ++n) {
-      std::size_t most = 0;
+      std::size_t largest = 0;
       for (std::size_t k = 1; k < 6; ++k)
-        if (span[k * 7] > span[most * 7]) most = k;
-      const double size = std::sqrt(std::max(span[most * 7], 1e-12));
+        if (span[k * 7] > span[largest * 7]) largest = k;
+      const double size = std::sqrt(std::max(span[largest * 7], 1e-12));
       Row u{};
-      for (std::size_t k = 0; k < 6; ++k) u[k] = span[most * 6 + k] / size;
-      result.push_back({kNames[most], {u[0], u[1], u[2]}, {u[3], u[4], u[5]}});
+      for (std::size_t k = 0; k < 6; ++k) u[k] = span[largest * 6 + k] / size;
+      result.push_back({kNames[largest], {u[0], u[1], u[2]}, {u[3], u[4], u[5]}});
       add_outer(span, u, -1);
     }
     return result;
@@ -399,10 +402,10 @@ class MountSearch {
   std::span<const TimedPose> poses_;
   const MountOptions& options_;
   const Executor& executor_;
-  std::vector<RigidTransform> local_;  ///< given poses about the first
+  std::vector<RigidTransform> local_;  ///< given poses relative to the position of the first
   MountCorrection mount_;
-  std::vector<Row> left_out_;  ///< unit, across one another
-  std::vector<Vec3d> placed_;  ///< points with the mount
+  std::vector<Row> left_out_;  ///< orthonormal
+  std::vector<Vec3d> placed_;  ///< points with the current mount
   MountSums sums_;             ///< before the last step
   std::size_t plane_count_ = 0;
 };
@@ -415,7 +418,7 @@ MountEstimate search_mount(const MountPoints& points, std::span<const TimedPose>
   MountRound round;
   round.flatness_m = options.first_flatness_m;
   round.width_m = options.first_width_m;
-  // A drive's scans see the same over a few tens of metres: what is farther apart says no more.
+  // Scans see the same surfaces over a few tens of metres; longer windows add nothing.
   constexpr double kWideEnough_m = 150;
   double error_rad = options.first_error_rad;
   for (; options.capture_m / error_rad < kWideEnough_m; error_rad *= 0.5) {
@@ -426,9 +429,7 @@ MountEstimate search_mount(const MountPoints& points, std::span<const TimedPose>
   round.reach_m = kWholeDrive;
   search.make_round(round);
   search.make_round(round);
-  while (search.leave_out_the_unobserved()) {
-    search.make_round(round);
-  }
+  while (search.exclude_unobserved()) search.make_round(round);
   return search.estimate();
 }
 
@@ -448,7 +449,7 @@ MountEstimate refine_mount(const MountPoints& points, std::span<const TimedPose>
     round.width_m = between(options.first_width_m, options.last_width_m);
     search.make_round(round);
   }
-  while (search.leave_out_the_unobserved()) search.make_round(round);
+  while (search.exclude_unobserved()) search.make_round(round);
   return search.estimate();
 }
 

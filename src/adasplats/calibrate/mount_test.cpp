@@ -23,7 +23,7 @@ struct Box {
   Vec3d low, high;
 };
 
-/// Houses on both sides of a street that bends, of a flat place.
+/// Houses on both sides of a curved street on flat ground.
 const std::vector<Box>& houses() {
   static const std::vector<Box> all = [] {
     std::vector<Box> made;
@@ -43,8 +43,8 @@ const std::vector<Box>& houses() {
   return all;
 }
 
-/// How far a ray goes; infinite where it meets nothing.
-double range_in_place(Vec3d origin, Vec3d direction) {
+/// Range of a ray; infinite if it hits nothing.
+double range_in_scene(Vec3d origin, Vec3d direction) {
   double range_m =
       direction.z < 0 ? -origin.z / direction.z : std::numeric_limits<double>::infinity();
   for (const Box& box : houses()) {
@@ -81,7 +81,7 @@ struct Recording {
   std::vector<RigidTransform> true_poses;
 };
 
-/// Scans on the way, by a sensor whose mount is wrong: given pose = true pose * `fault`.
+/// Scans along the path with a mount error: given pose = true pose * `fault`.
 Recording record(Way way, const RigidTransform& fault, double pose_noise_m = 0) {
   constexpr std::uint32_t kScans = 40, kLasers = 24, kColumns = 240;
   Recording made;
@@ -98,7 +98,7 @@ Recording record(Way way, const RigidTransform& fault, double pose_noise_m = 0) 
       const double azimuth = 2 * std::numbers::pi * (i % kColumns) / kColumns + 0.001;
       const Vec3d beam = {std::cos(elevation) * std::cos(azimuth),
                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-      const double range_m = range_in_place(pose.translation, pose.rotation * beam);
+      const double range_m = range_in_scene(pose.translation, pose.rotation * beam);
       if (!(range_m < 60)) continue;
       Random of_beam(3, scan, i);
       made.cloud.positions.push_back(
@@ -114,7 +114,7 @@ RigidTransform fault_of(Vec3d axis, double angle_deg, Vec3d shift_m) {
   return {rotation_by((angle_deg * kDegree / length(axis)) * axis), shift_m};
 }
 
-/// What is left of a fault, in the frame of the sensor as it is.
+/// Remaining mount error, in the true sensor frame.
 RigidTransform left_of(const RigidTransform& fault, const MountCorrection& found) {
   return fault * found.given_from_mounted();
 }
@@ -130,8 +130,8 @@ std::vector<std::string> names_of(const MountEstimate& found) {
   return names;
 }
 
-// Oracle: the fault that was put in. Level vehicles never tell how high their sensor is.
-TEST(Mount, FiveDegreesAndHalfAMetreAreFoundOnAWayThatTurns) {
+// Oracle: the simulated error. A vehicle that stays level does not observe the sensor height.
+TEST(Mount, FindsFiveDegreesAndHalfAMetreOnACurvedDrive) {
   const RigidTransform faults[] = {
       fault_of({1, 0, 0}, 5, {0.4, -0.3, 0}), fault_of({0, 1, 0}, -5, {0, 0.5, 0}),
       fault_of({0, 0, 1}, 5, {-0.5, 0, 0}), fault_of({1, -1, 1}, 5, {0.3, 0.3, -0.26})};
@@ -148,8 +148,8 @@ TEST(Mount, FiveDegreesAndHalfAMetreAreFoundOnAWayThatTurns) {
   }
 }
 
-// Oracle: the points of the same beams without the fault, but for what is not observed.
-TEST(Mount, PosesAndPointsAreCorrectedByIt) {
+// Oracle: the points of the same beams without the error, except for the unobserved direction.
+TEST(Mount, CorrectsPosesAndPoints) {
   const RigidTransform fault = fault_of({0.2, 0.1, 1}, 5, {0.4, -0.3, 0});
   Recording recording = record(Way::turning, fault);
   const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
@@ -160,7 +160,7 @@ TEST(Mount, PosesAndPointsAreCorrectedByIt) {
   };
   const PointCloud expected = record(Way::turning, {}).cloud;
   const RigidTransform whole = recording.cloud.scan_poses[0].world_from_sensor *
-                               recording.true_poses[0].inverse();  // the place as a whole is free
+                               recording.true_poses[0].inverse();  // the absolute position is free
   double worst_m = 0;
   for (std::size_t scan = 0; scan < given.size(); ++scan) {
     const RigidTransform& pose = recording.cloud.scan_poses[scan].world_from_sensor;
@@ -180,8 +180,8 @@ TEST(Mount, PosesAndPointsAreCorrectedByIt) {
   EXPECT_LT(mean_m, 0.02);
 }
 
-// Oracle: what a straight drive cannot tell stays as given; the rest is the fault.
-TEST(Mount, AStraightDriveTellsYawAndPitchAndTheRestStaysAsGiven) {
+// Oracle: the simulated error; directions that a straight drive does not observe stay as given.
+TEST(Mount, AStraightDriveConstrainsOnlyYawAndPitch) {
   const RigidTransform fault = fault_of({0, 0, 1}, 5, {0.3, 0.4, 0});
   const auto [found, report] = calibrate(record(Way::straight, fault).cloud, {}, Executor(2));
   ASSERT_TRUE(report.mount);
@@ -193,8 +193,8 @@ TEST(Mount, AStraightDriveTellsYawAndPitchAndTheRestStaysAsGiven) {
   EXPECT_LT(length(found.mount.shift_m), 1e-3);
 }
 
-// Oracle: the fault that was put in.
-TEST(Mount, HeightIsFoundWhereTheVehiclePitches) {
+// Oracle: the simulated error.
+TEST(Mount, FindsTheHeightIfTheVehiclePitches) {
   const RigidTransform fault = fault_of({0, 1, 0}, 5, {0.2, 0, 0.45});
   const auto [found, report] = calibrate(record(Way::hilly, fault).cloud, {}, Executor(2));
   EXPECT_EQ(report.mount->objection, "");
@@ -204,8 +204,8 @@ TEST(Mount, HeightIsFoundWhereTheVehiclePitches) {
   EXPECT_LT(length(left.translation), 0.02);
 }
 
-// Oracle: the fault. Standard deviations hold what poses add.
-TEST(Mount, PosesWithNoiseTellItLessWell) {
+// Oracle: the simulated error. The standard deviations include the effect of the poses.
+TEST(Mount, NoisyPosesIncreaseTheStandardDeviations) {
   const RigidTransform fault = fault_of({0, 0.3, 1}, 5, {0.3, -0.4, 0});
   const auto [found, report] = calibrate(record(Way::turning, fault, 0.03).cloud, {}, Executor(2));
   EXPECT_EQ(report.mount->objection, "");
@@ -216,7 +216,7 @@ TEST(Mount, PosesWithNoiseTellItLessWell) {
   EXPECT_LT(degrees_of(left), 4 * length(report.mount->found.rotation_sd_rad) / kDegree);
 }
 
-TEST(Mount, ARightOneStaysAsItIsAndSoDoesTheRest) {
+TEST(Mount, ACorrectMountAndTheRestStayAsGiven) {
   const PointCloud cloud = record(Way::turning, {}).cloud;
   const auto [found, report] = calibrate(cloud, {}, Executor(2));
   EXPECT_TRUE(found.empty());
@@ -231,8 +231,8 @@ TEST(Mount, ARightOneStaysAsItIsAndSoDoesTheRest) {
             std::string::npos);
 }
 
-// What single poses make up for is theirs: drives with good mounts are calibrated as before.
-TEST(Mount, ASmallErrorIsLeftToThePoses) {
+// Single poses absorb small errors: drives with accurate mounts are calibrated as before.
+TEST(Mount, SmallErrorsAreLeftToThePoses) {
   const RigidTransform fault = fault_of({0, 0, 1}, 0.2, {0.05, 0, 0});
   const auto [found, report] = calibrate(record(Way::turning, fault).cloud, {}, Executor(2));
   EXPECT_TRUE(found.mount.empty());
@@ -240,7 +240,7 @@ TEST(Mount, ASmallErrorIsLeftToThePoses) {
   EXPECT_NE(report.mount->objection.find("no more than"), std::string::npos);
 }
 
-TEST(Mount, NothingElseIsCorrectedWhereNothingElseIsWrong) {
+TEST(Mount, OnlyTheMountIsCorrectedIfTheRestIsCorrect) {
   const RigidTransform fault = fault_of({0, 0, 1}, 5, {0.3, 0, 0});
   const auto [found, report] = calibrate(record(Way::turning, fault).cloud, {}, Executor(2));
   ASSERT_FALSE(found.mount.empty());
@@ -260,7 +260,7 @@ TEST(Mount, TheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one.mount.shift_m, three.mount.shift_m);
 }
 
-TEST(Mount, FewScansTellNothingOfIt) {
+TEST(Mount, TooFewScansGiveAnObjection) {
   PointCloud cloud = record(Way::turning, fault_of({0, 0, 1}, 5, {0.3, 0, 0})).cloud;
   const auto behind = std::ranges::find(cloud.scan_indices, 11U) - cloud.scan_indices.begin();
   cloud.positions.resize(static_cast<std::size_t>(behind));
@@ -272,7 +272,7 @@ TEST(Mount, FewScansTellNothingOfIt) {
   EXPECT_EQ(report.mount->objection, "too few scans (11)");
 }
 
-TEST(Mount, NothingOfItIsToldByNoPoints) {
+TEST(Mount, NoPointsGiveNoMount) {
   const MountEstimate found =
       search_mount({}, std::vector<TimedPose>(3), MountOptions{}, Executor(1));
   EXPECT_TRUE(found.mount.empty());

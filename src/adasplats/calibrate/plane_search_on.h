@@ -12,8 +12,8 @@
 
 namespace adasplats {
 
-/// find_scan_planes(), once for all devices; what one element does is in cell_steps.h. `Backend` is
-/// CpuArrays or gpu::GpuBackend. Memory stays for the next search.
+/// find_scan_planes() for all devices; the code for one element is in cell_steps.h. `Backend` is
+/// CpuArrays or gpu::GpuBackend. Memory is reused by the next search.
 template <class Backend>
 class PlaneSearchOn {
  public:
@@ -22,7 +22,7 @@ class PlaneSearchOn {
 
   explicit PlaneSearchOn(const Backend& backend) : backend_(backend) {}
 
-  /// Of `count` points; 2^31 at most.
+  /// Finds the planes of `count` points, at most 2^31.
   void run(const Vec3d* positions, const std::uint32_t* scans, std::size_t count,
            const ScanPlaneOptions& options) {
     order_points(positions, count, options.largest_cell_m / (1 << kHalvings));
@@ -40,7 +40,7 @@ class PlaneSearchOn {
     join(found);
   }
 
-  /// Of the last search: by where they begin in order().
+  /// Planes of the last search, sorted by their begin in order().
   const Array<ScanPlane>& planes() const { return planes_; }
   const Array<std::uint32_t>& order() const { return order_; }
   Array<ScanPlane> take_planes() { return std::move(planes_); }
@@ -70,7 +70,7 @@ class PlaneSearchOn {
     return runs;
   }
 
-  /// Adds the planes of these cells to `found` and gives the cells that are to be divided.
+  /// Adds the planes of these cells to `found` and returns the cells to be divided.
   Array<std::uint32_t> judge(const Array<CellRun>& runs, const Vec3d* positions,
                              const std::uint32_t* scans, const ScanPlaneOptions& options,
                              std::vector<Array<ScanPlane>>& found) const {
@@ -82,8 +82,8 @@ class PlaneSearchOn {
     Array<std::uint8_t> is_plane = backend_.template array<std::uint8_t>(large.size());
     Array<std::uint8_t> is_none = backend_.template array<std::uint8_t>(large.size());
     backend_.for_each(large.size(), "fit planes",
-                      JudgeCell{positions, scans, order_.data(), options, runs.data(), large.data(),
-                                planes.data(), is_plane.data(), is_none.data()});
+                      FitCell{positions, scans, order_.data(), options, runs.data(), large.data(),
+                              planes.data(), is_plane.data(), is_none.data()});
     found.push_back(picked(planes, backend_.flagged(is_plane)));
     return picked(large, backend_.flagged(is_none));
   }

@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// Entries of planes and scans or lasers, and how the sums over those of one are cut.
+/// Entries of planes and scans or lasers, and the chunks of the sums over them.
 template <class Backend>
 struct EntriesOn {
   template <class T>
@@ -24,7 +24,7 @@ struct EntriesOn {
   Array<std::uint64_t> keys;
   Array<std::uint32_t> begins, plane_begins, by_unknown;
   Array<EntryChunk> chunks;
-  Array<std::uint32_t> chunk_begins;  ///< of scans or lasers, one more than these
+  Array<std::uint32_t> chunk_begins;  ///< of scans or lasers; their number + 1
 
   std::size_t size() const { return keys.size(); }
   EntriesView view() const {
@@ -32,10 +32,10 @@ struct EntriesOn {
   }
 };
 
-/// What rows on planes say of poses and lasers, once for all devices; what one element does is in
-/// row_steps.h and sum_steps.h. `Backend` is CpuArrays or gpu::GpuBackend. Every sum has the order
-/// that the rows decide: those of a plane by scan, then as the plane has them; those of a scan or a
-/// laser by plane, in chunks.
+/// Sums the normal equations of poses and lasers over the rows on planes, for all devices; the code
+/// for one element is in row_steps.h and sum_steps.h. `Backend` is CpuArrays or gpu::GpuBackend.
+/// The order of every sum depends on the rows only: within a plane by scan, then in the plane's
+/// order; within a scan or laser by plane, in chunks.
 template <class Backend>
 class PlaneSumsOn {
  public:
@@ -44,8 +44,8 @@ class PlaneSumsOn {
 
   explicit PlaneSumsOn(const Backend& backend) : backend_(backend) {}
 
-  /// Points of the set that are rows, and which entries they are of. `lasers`: of the cloud, null
-  /// where `laser_count` is 0.
+  /// Chooses the points of the set that become rows, and finds their entries. `lasers`: of the
+  /// cloud, null if `laser_count` is 0.
   void choose(const PlaneMembers& members, std::size_t plane_count, const RowOptions& options,
               const std::uint32_t* scans, const std::uint32_t* indices, const std::uint16_t* lasers,
               std::size_t scan_count, std::size_t laser_count) {
@@ -115,7 +115,7 @@ class PlaneSumsOn {
                       PickValue<std::uint32_t>{listed.data(), order_.data(), points_.data()});
   }
 
-  /// Of rows by their sorted keys.
+  /// Finds the entries of rows from their sorted keys.
   void make_entries(const Array<std::uint64_t>& keys, std::size_t unknowns,
                     EntriesOn<Backend>& entries) const {
     Array<std::uint8_t> flags = backend_.template array<std::uint8_t>(keys.size());

@@ -21,7 +21,7 @@ namespace {
 
 using PointSet = CalibrationSteps::PointSet;
 
-/// A hall's points, all of which are looked at, and corrections that are not zero.
+/// The points of a hall, all of them used, and non-zero corrections.
 struct Drive {
   HallRecording recording = record_hall({0.3, 0.1, 0.03, 0.05}, 5);
   ChosenPoints few, all;
@@ -63,7 +63,7 @@ struct Drive {
   }
 };
 
-/// The normal equations as a whole matrix, from derivatives that are differences.
+/// The normal equations as a dense matrix, with derivatives by finite differences.
 class DenseSystem {
  public:
   DenseSystem(const Drive& drive, const RowOptions& options)
@@ -160,7 +160,7 @@ class DenseSystem {
     const std::uint32_t scan = drive_.recording.cloud.scan_indices[i];
     std::vector<double> result(right_.size());
     const auto set = [&](std::size_t unknown) {
-      constexpr double kStep = 1e-3;  // all are linear in it
+      constexpr double kStep = 1e-3;  // all residuals are linear in it
       result[unknown] =
           (distance_m(plane, i, unknown, kStep) - distance_m(plane, i, unknown, -kStep)) /
           (2 * kStep);
@@ -182,8 +182,8 @@ std::vector<double> joined(const PlaneStep& step) {
   return all;
 }
 
-// Oracle: the dense normal equations, with derivatives by differences.
-TEST(PlaneSums, AreThoseOfTheDenseNormalEquations) {
+// Oracle: the dense normal equations, with derivatives by finite differences.
+TEST(PlaneSums, MatchTheDenseNormalEquations) {
   const Drive drive;
   const Executor executor(2);
   const auto steps = make_cpu_calibration_steps(executor);
@@ -221,7 +221,7 @@ TEST(PlaneSums, AreThoseOfTheDenseNormalEquations) {
     Random random(10, 0, i);
     (i < 6 * drive.scans() ? x.poses : x.lasers).push_back(random.normal());
   }
-  // The blocks alone are what `coupled` leaves to the system.
+  // `coupled` leaves only the diagonal blocks to the system.
   PlaneStep y = steps->coupled(x);
   for (std::size_t scan = 0; scan < drive.scans(); ++scan)
     for (std::size_t a = 0; a < 6; ++a)
@@ -235,7 +235,7 @@ TEST(PlaneSums, AreThoseOfTheDenseNormalEquations) {
   for (std::size_t i = 0; i < drive.unknowns(); ++i)
     EXPECT_NEAR(found_y[i], expected[i], 1e-7 * largest) << i;
 
-  // And conjugate gradients solve it, with priors that hold the place as a whole.
+  // Conjugate gradients solve it, with priors that fix the absolute position.
   PlaneSystem system(std::move(blocks));
   for (std::size_t scan = 0; scan < drive.scans(); ++scan)
     for (std::size_t a = 0; a < 6; ++a) system.add_pose_prior(scan, a, 1, 0);

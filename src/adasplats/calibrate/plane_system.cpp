@@ -38,7 +38,7 @@ void add_full(const std::vector<UnknownsBlock<N>>& blocks, const std::vector<dou
       for (std::size_t b = 0; b < N; ++b) y[u * N + a] += blocks[u].full[a * N + b] * x[u * N + b];
 }
 
-/// The reduced blocks, factored: what the residual is solved by to be a direction.
+/// The factored reduced blocks: a block Jacobi preconditioner.
 template <std::size_t N>
 class Preconditioner {
  public:

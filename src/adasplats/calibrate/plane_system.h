@@ -10,13 +10,13 @@
 
 namespace adasplats {
 
-/// What the planes say of the unknowns of one scan (N = 6: rotation and translation) or laser (N =
-/// 2: range and elevation). Matrices by rows.
+/// Normal equations of the unknowns of one scan (N = 6: rotation and translation) or laser (N = 2:
+/// range and elevation). Row-major matrices.
 template <std::size_t N>
 struct UnknownsBlock {
-  double full[N * N]{};     ///< were the planes known
-  double reduced[N * N]{};  ///< with planes that follow
-  double right[N]{};        ///< with planes that follow
+  double full[N * N]{};     ///< with fixed planes
+  double reduced[N * N]{};  ///< with the planes eliminated
+  double right[N]{};        ///< with the planes eliminated
 };
 using PoseBlock = UnknownsBlock<6>;
 using LaserBlock = UnknownsBlock<2>;
@@ -32,25 +32,25 @@ struct PlaneStep {
   std::vector<double> lasers;  ///< two a laser
 };
 
-/// A step of Gauss-Newton over poses and lasers. Each plane's own unknowns are eliminated (Schur
-/// complement); what is left is never made as a matrix, since every plane couples all scans that
-/// saw it, but solved by conjugate gradients: memory and time grow with the points and not with the
-/// square of the scans.
+/// A Gauss-Newton step over poses and lasers. The unknowns of each plane are eliminated (Schur
+/// complement). Every plane couples all scans that saw it, so the remaining matrix is never stored;
+/// conjugate gradients solve it. Memory and time grow with the number of points, not with the
+/// square of the number of scans.
 class PlaneSystem {
  public:
-  /// The product of a step with all of the matrix but the blocks' `full`.
+  /// The product of a step with the matrix without the `full` blocks.
   using PlaneProduct = FunctionRef<PlaneStep(const PlaneStep& x)>;
 
   explicit PlaneSystem(PlaneBlocks blocks) : blocks_(std::move(blocks)) {}
 
-  /// The unknown is `value` as far as `weight` goes.
+  /// Adds the prior `value` with `weight`.
   void add_pose_prior(std::size_t scan, std::size_t unknown, double weight, double value);
-  /// By `weight` and by `share` of what the points say of the unknown before anything is
-  /// eliminated.
+  /// Adds a prior with `weight` plus `share` of the unknown's diagonal before elimination.
   void add_laser_prior(std::size_t laser, std::size_t unknown, double weight, double share,
                        double value);
 
-  /// Until the residual has fallen to `tolerance` of the right side, or `max_iterations`.
+  /// Iterates until the residual is below `tolerance` times the right-hand side, at most
+  /// `max_iterations` times.
   PlaneStep solve(double tolerance, int max_iterations, PlaneProduct coupled) const;
 
  private:

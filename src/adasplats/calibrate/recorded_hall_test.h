@@ -20,7 +20,7 @@ namespace adasplats {
 inline constexpr std::size_t kHallLasers = 16;
 inline constexpr std::size_t kHallColumns = 360;
 
-/// How far a ray goes in a hall of 24 x 14 x 5 m with two pillars.
+/// Length of a ray in a hall of 24 x 14 x 5 m with two pillars.
 inline double range_in_hall(Vec3d origin, Vec3d direction) {
   double range_m = std::numeric_limits<double>::infinity();
   const Vec3d low = {-12, -7, 0}, high = {12, 7, 5};
@@ -42,7 +42,7 @@ inline double range_in_hall(Vec3d origin, Vec3d direction) {
   return range_m;
 }
 
-/// Scans of a hall along a bent way, as a sensor with offsets tells them and with poses that drift.
+/// Scans of a hall along a curved path, by a sensor with laser offsets and with drifting poses.
 struct HallRecording {
   PointCloud cloud;
   std::vector<RigidTransform> true_poses;
@@ -98,8 +98,8 @@ inline HallRecording record_hall(const HallFaults& faults, std::size_t scan_coun
         const double range_m =
             range_in_hall(pose.translation, pose.rotation * beam(hall_elevation_rad(laser))) +
             faults.noise_m * random.normal() - made.offsets.range_m[laser];
-        const Vec3d told = beam(hall_elevation_rad(laser) - made.offsets.elevation_rad[laser]);
-        made.cloud.positions.push_back(vec_cast<float>(given * (range_m * told)));
+        const Vec3d reported = beam(hall_elevation_rad(laser) - made.offsets.elevation_rad[laser]);
+        made.cloud.positions.push_back(vec_cast<float>(given * (range_m * reported)));
         made.cloud.sensor_positions.push_back(vec_cast<float>(given.translation));
         made.cloud.scan_indices.push_back(scan);
         made.cloud.lasers.push_back(static_cast<std::uint16_t>(laser));

@@ -6,7 +6,7 @@
 
 namespace adasplats {
 
-/// Of a residual in a fit by least squares, 0 to 1 (Geman and McClure): a quarter at `width_m`.
+/// Weight of a residual in a least-squares fit, 0 to 1 (Geman and McClure); a quarter at `width_m`.
 ADASPLATS_HD inline double robust_weight(double residual_m, double width_m) {
   const double squared = width_m * width_m;
   const double share = squared / (squared + residual_m * residual_m);

@@ -16,19 +16,19 @@
 
 namespace adasplats {
 
-// What calibration does with one point, and with one plane's points. Each writes only what belongs
-// to element `i`, so a loop on any device runs it (for_each of a backend).
+// Steps of the calibration for one point or for the points of one plane. Each writes only the data
+// of element `i`, so a parallel loop on any device can run it (for_each of a backend).
 
 /// The rays of a cloud, and the corrections of scans and lasers.
 struct RaysView {
   const Vec3f* positions;
   const Vec3f* sensors;
   const std::uint32_t* scan_indices;
-  const std::uint16_t* lasers;  ///< null: not known
-  const Vec3d* axes;            ///< one a scan, and...
-  const RigidTransform* corrected_from_given;
-  const double* range_m;  ///< one a laser, and...
-  const double* elevation_rad;
+  const std::uint16_t* lasers;                 ///< null: unknown
+  const Vec3d* axes;                           ///< one per scan
+  const RigidTransform* corrected_from_given;  ///< one per scan
+  const double* range_m;                       ///< one per laser
+  const double* elevation_rad;                 ///< one per laser
   std::size_t laser_count;
 
   ADASPLATS_HD std::uint16_t laser_of(std::uint32_t i) const {
@@ -53,7 +53,7 @@ struct CorrectPoint {
   ADASPLATS_HD void operator()(std::size_t k) const { corrected[k] = rays.corrected(indices[k]); }
 };
 
-/// Which of a plane's points are looked at.
+/// Selects the points of a plane that are used.
 struct PlaneMembers {
   const ScanPlane* planes;
   const std::uint32_t* order;
@@ -62,7 +62,7 @@ struct PlaneMembers {
   ADASPLATS_HD bool is_left_out(std::uint32_t k) const {
     return left_out_every != 0 && k % left_out_every == 0;
   }
-  /// Calls take(k) for the points that take part, `max_points` or a few less.
+  /// Calls take(k) for at most `max_points` points that are not held out.
   template <class Take>
   ADASPLATS_HD void for_some(std::size_t plane, std::size_t max_points, Take&& take) const {
     const std::size_t begin = planes[plane].begin, end = planes[plane].end;
@@ -86,7 +86,7 @@ struct CountRows {
   }
 };
 
-/// Lists the points with keys of plane and scan.
+/// Lists the points and their keys of plane and scan.
 struct ListRows {
   static constexpr std::size_t kGrain = 64;
 
@@ -108,12 +108,12 @@ struct ListRows {
   }
 };
 
-/// The distance of one point from its plane, and how it depends on the unknowns of its laser, and
-/// by `u_m` and `v_m` on those of its scan and its plane.
+/// Distance of a point from its plane and its derivatives by the unknowns of its laser. `u_m` and
+/// `v_m` give the derivatives by the unknowns of its scan and plane.
 struct PlaneRow {
   double residual_m;
-  double u_m, v_m;  ///< where in the plane the point is
-  double weight;    ///< before the plane's own is limited
+  double u_m, v_m;  ///< coordinates in the plane
+  double weight;    ///< before the weight of the plane is limited
   double by_range, by_elevation;
 };
 
@@ -155,7 +155,7 @@ struct MeasureRow {
   }
 };
 
-/// How many points of a plane were left out; none of a plane that no others tell.
+/// Counts the held-out points of a plane; 0 if fewer than three other points define the plane.
 struct CountLeftOut {
   static constexpr std::size_t kGrain = 64;
 
@@ -170,7 +170,7 @@ struct CountLeftOut {
   }
 };
 
-/// Of points of a plane that take part.
+/// Mean of the points of a plane that are not held out.
 struct KeptMean {
   Vec3d mean;
   double count = 0;
@@ -209,7 +209,7 @@ struct MeasureLeftOut {
   }
 };
 
-/// The same as sums, with the direction that the points have now.
+/// Sums the distances of the held-out points, with the normal fitted to the current points.
 struct SumLeftOut {
   static constexpr std::size_t kGrain = 64;
 

@@ -11,17 +11,17 @@
 
 namespace adasplats {
 
-/// A flat piece of the place that several scans saw.
+/// A planar patch that several scans saw.
 struct ScanPlane {
   Vec3d center;
   Vec3d normal;                      ///< unit
   Vec3d axes[2];                     ///< unit, in the plane
-  std::uint32_t begin = 0, end = 0;  ///< of its points in ScanPlanes::points
+  std::uint32_t begin = 0, end = 0;  ///< range of its points in ScanPlanes::points
 };
 
 struct ScanPlanes {
-  std::vector<ScanPlane> planes;      ///< by where they begin
-  std::vector<std::uint32_t> points;  ///< indices, those of a plane together
+  std::vector<ScanPlane> planes;      ///< sorted by `begin`
+  std::vector<std::uint32_t> points;  ///< indices, grouped by plane
 
   std::span<const std::uint32_t> points_of(const ScanPlane& plane) const {
     return std::span(points).subspan(plane.begin, plane.end - plane.begin);
@@ -29,13 +29,13 @@ struct ScanPlanes {
 };
 
 struct ScanPlaneOptions {
-  double largest_cell_m = 1.6;  ///< halved where the points are not flat, three times at most
-  double flatness_m = 0.25;     ///< most standard deviation across a plane
-  double shape = 0.25;          ///< and most of the second largest along it, so that it is a plane
-  std::uint32_t min_points = 12;  ///< of two scans or more
+  double largest_cell_m = 1.6;  ///< halved up to three times if the points are not flat
+  double flatness_m = 0.25;     ///< maximum standard deviation across a plane
+  double shape = 0.25;          ///< maximum ratio of that to the second largest standard deviation
+  std::uint32_t min_points = 12;  ///< from at least two scans
 };
 
-/// Finds planes in cells of a grid. `scans`: of the points. The result depends on the points alone.
+/// Finds planes in cells of a grid. `scans`: one per point. The result depends on the points only.
 ScanPlanes find_scan_planes(std::span<const Vec3d> positions, std::span<const std::uint32_t> scans,
                             const ScanPlaneOptions& options, const Executor& executor);
 

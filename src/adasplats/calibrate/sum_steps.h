@@ -13,17 +13,17 @@
 
 namespace adasplats {
 
-// How rows become sums over planes, scans and lasers. A row's dependence on its plane is q = (1, u,
-// v); on its scan B q, where the 6x3 matrix B is the same for all rows of a plane and a scan. So an
-// entry, of one plane and one scan, needs the moments of q alone.
+// Sums of rows over planes, scans and lasers. The derivative of a row by its plane is q = (1, u,
+// v); by its scan it is B q, and the 6x3 matrix B is the same for all rows of a plane and a scan.
+// So an entry (one plane and one scan) needs only the moments of q.
 
-/// Rows, or what stands for them, of one plane and one scan or laser.
+/// Entries: the rows of one plane and one scan or laser.
 struct EntriesView {
   const std::uint64_t* keys;  ///< plane << bits | scan or laser, ascending
   std::size_t count;
   int bits;
   const std::uint32_t* begins;        ///< of the rows
-  const std::uint32_t* plane_begins;  ///< of the entries, one more than planes
+  const std::uint32_t* plane_begins;  ///< of the entries; number of planes + 1
   const std::uint32_t* by_unknown;    ///< the entries, scan by scan or laser by laser
 
   ADASPLATS_HD std::size_t plane_of(std::size_t e) const { return keys[e] >> bits; }
@@ -32,12 +32,12 @@ struct EntriesView {
   }
 };
 
-/// Some entries of one scan or laser: sums go by these, added in their order.
+/// A chunk of the entries of one scan or laser; sums add the chunks in order.
 struct EntryChunk {
   std::uint32_t unknown, begin, end;  ///< in EntriesView::by_unknown
 };
 
-/// The first of `count` sorted keys that is not less than i << bits.
+/// Lower bound of i << bits in `count` sorted keys.
 struct FindFirst {
   const std::uint64_t* keys;
   std::uint32_t count;
@@ -56,7 +56,7 @@ struct KeyOfUnknown {
   ADASPLATS_HD void operator()(std::size_t e) const { keys[e] = entries.unknown_of(e); }
 };
 
-/// Keys of rows by plane and laser, and by scan and laser; those without a laser are the last.
+/// Keys of rows by plane and laser, and by scan and laser; rows without a laser come last.
 struct KeyOfLaser {
   const std::uint64_t* keys;  ///< by plane and scan
   int scan_bits;
@@ -115,7 +115,7 @@ struct PlaneFactor {
   double right[3];  ///< whitened
   double scale;     ///< of the weights of its rows
 
-  /// Solves L x = what x is.
+  /// Solves L v = (x, y, z) in place.
   ADASPLATS_HD void whiten(double& x, double& y, double& z) const {
     x = x / lower[0];
     y = (y - lower[1] * x) / lower[2];
@@ -141,7 +141,7 @@ struct FactorPlane {
     factor.scale = sum.matrix[0] > max_weight ? max_weight / sum.matrix[0] : 1;
     double own[6];
     for (int k = 0; k < 6; ++k) own[k] = factor.scale * sum.matrix[k];
-    // What holds a plane whose points are all in one place or on one line.
+    // Regularises a plane with coincident or collinear points.
     for (const int k : {0, 3, 5}) own[k] += 1e-9;
     double* const l = factor.lower;
     l[0] = root_of(own[0]);
@@ -161,16 +161,17 @@ struct FactorPlane {
   }
 };
 
-/// What couples a scan with a plane: the whitened moments, 3x3 by rows.
+/// Coupling of a scan with a plane: the whitened moments, 3x3, row-major.
 struct PoseCoupling {
   double whitened[9];
 };
 
-/// Scales moments as their plane is; of `right` becomes what the scan's right side is of.
+/// Scales moments by the weight of their plane; `right` becomes the scan's contribution to the
+/// right-hand side.
 struct WhitenPoseEntry {
   EntriesView entries;
   const PlaneFactor* factors;
-  bool has_poses;  ///< poses are unknown; false: nothing of a scan is left
+  bool has_poses;  ///< poses are estimated
   PoseMoments* moments;
   PoseCoupling* couplings;
 
@@ -196,7 +197,7 @@ struct WhitenPoseEntry {
   }
 };
 
-/// The columns of B: of the first both halves, of the others the upper ones (turning).
+/// The columns of B: the first in full, of the others only the upper half (rotation).
 struct PlaneWrenches {
   Vec3d turning[3];
   Vec3d normal;
@@ -213,7 +214,7 @@ struct PlaneWrenches {
   }
 };
 
-/// Sums of entries of one scan, without its own.
+/// Sums of entries of one scan, without its own block.
 struct SumPoseChunk {
   static constexpr std::size_t kGrain = 16;
 
@@ -270,7 +271,7 @@ struct SumPoseChunk {
   }
 };
 
-/// What couples a laser with a plane, whitened, 3x2 by rows; and what is of the laser alone.
+/// Coupling of a laser with a plane (whitened, 3x2, row-major) and the laser's own block.
 struct LaserEntry {
   double whitened[6];
   double full[4], right[2];
@@ -339,7 +340,7 @@ struct SumLaserChunk {
   }
 };
 
-/// Of one scan (rows of 6x2) and one laser (columns): rows that both have.
+/// Coupling of one scan (rows of 6x2) and one laser (columns) by their common rows.
 struct Crossing {
   double values[12];
 };
@@ -347,7 +348,7 @@ struct Crossing {
 struct SumCrossing {
   static constexpr std::size_t kGrain = 64;
 
-  const std::uint32_t* begins;     ///< of rows, by scan, then laser; one more than there are
+  const std::uint32_t* begins;     ///< of rows, by scan, then laser; number of pairs + 1
   const std::uint32_t* row_order;  ///< by scan and laser
   const PlaneRow* rows;
   const std::uint64_t* keys;
@@ -384,7 +385,7 @@ struct AddChunks {
   static constexpr std::size_t kGrain = 64;
 
   const double* parts;
-  const std::uint32_t* chunk_begins;  ///< one more than unknowns
+  const std::uint32_t* chunk_begins;  ///< number of unknowns + 1
   std::size_t width;
   double* sums;
 
@@ -397,7 +398,8 @@ struct AddChunks {
   }
 };
 
-// The product with what couples scans and lasers: first what a plane makes of all of them...
+// Product with the coupling of scans and lasers: first the contributions of all of them to a
+// plane...
 
 struct PlaneVector {
   double values[3];
@@ -406,7 +408,7 @@ struct PlaneVector {
 struct CouplePlane {
   static constexpr std::size_t kGrain = 128;
 
-  EntriesView poses, lasers;  ///< lasers without entries: there are none
+  EntriesView poses, lasers;  ///< `lasers` may be empty
   const ScanPlane* planes;
   const Vec3d* pivots;
   const PoseCoupling* pose_couplings;
@@ -449,7 +451,7 @@ struct CouplePlane {
   }
 };
 
-/// ...then what scans and lasers make of the planes, taken away, chunk by chunk...
+/// ...then the contributions of the planes to scans and lasers, subtracted chunk by chunk...
 struct CouplePoseChunk {
   static constexpr std::size_t kGrain = 64;
 
@@ -459,7 +461,7 @@ struct CouplePoseChunk {
   const Vec3d* pivots;
   const PoseCoupling* couplings;
   const PlaneVector* of_planes;
-  double* parts;  ///< six a chunk
+  double* parts;  ///< six per chunk
 
   ADASPLATS_HD void operator()(std::size_t c) const {
     const EntryChunk chunk = chunks[c];
@@ -490,7 +492,7 @@ struct CoupleLaserChunk {
   const EntryChunk* chunks;
   const LaserEntry* sums;
   const PlaneVector* of_planes;
-  double* parts;  ///< two a chunk
+  double* parts;  ///< two per chunk
 
   ADASPLATS_HD void operator()(std::size_t c) const {
     double sum[2] = {0, 0};
@@ -505,7 +507,7 @@ struct CoupleLaserChunk {
   }
 };
 
-/// ...and all that comes to one unknown.
+/// ...and the sum over the chunks of each unknown.
 struct FinishPose {
   static constexpr std::size_t kGrain = 64;
 

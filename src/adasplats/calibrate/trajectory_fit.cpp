@@ -15,11 +15,12 @@
 namespace adasplats {
 namespace {
 
-constexpr int kFittingIterations = 10;  // weights and the motion settle in a few
+constexpr int kFittingIterations = 10;  // weights and motion converge within a few
 /// The median of the squared length of a vector whose three components are normal with a deviation
 /// of 1 (chi-square with three degrees of freedom).
 constexpr double kMedianSquare = 2.366;
-/// In standard deviations, where a pose counts a quarter: normal ones keep nearly all their weight.
+/// In standard deviations: distance at which a pose has a quarter of its weight. Normally
+/// distributed poses keep nearly all of theirs.
 constexpr double kWidthOfFitting = 4;
 
 double variance_of(std::vector<double> squares) { return upper_median_of(squares) / kMedianSquare; }
@@ -37,7 +38,7 @@ struct Spread {
   double rotation = 0, shift = 0;  ///< variances of one component, rad^2 and m^2
 };
 
-/// Of poses as they lie now. At least what rounding leaves: nobody measures 1e-9 rad or 10 nm.
+/// Spread of the current differences, bounded from below by the rounding errors (1e-9 rad, 10 nm).
 Spread spread_of(std::span<const PoseCorrection> poses) {
   std::vector<double> turns, shifts;
   for (const PoseCorrection& pose : poses) {

@@ -8,13 +8,13 @@
 
 namespace adasplats {
 
-/// The motion of the whole that lays corrected poses on the given ones. Both where the poses are
-/// and how they are turned tell it: a long way tells its direction better than the turns of single
-/// poses do where these err. Each counts by how far its own differences spread (their medians), and
-/// poses that differ by far more than the others hardly count. Identity of none.
+/// The rigid motion that aligns corrected poses to the given ones. It uses positions and
+/// orientations: over a long trajectory, positions constrain the heading better than noisy
+/// orientations. Each is weighted by the spread (median) of its differences, and outliers have
+/// little weight. The identity if there are no poses.
 RigidTransform onto_given(std::span<const PoseCorrection> poses);
 
-/// What the poses get once all of them are moved as a whole.
+/// The correction of a pose after a rigid motion of all poses.
 PoseCorrection moved(const PoseCorrection& pose, const RigidTransform& motion);
 
 }  // namespace adasplats

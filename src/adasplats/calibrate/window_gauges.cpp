@@ -16,11 +16,11 @@
 namespace adasplats {
 namespace {
 
-constexpr double kArmOfSettling_m =
-    10;  // a rotation counts as what it moves there, as in best_smoothing()
-constexpr int kSettlingIterations = 5;  // of weights and of the motions' small non-linearity
-constexpr double kWidthOfOverlaps = 3;  // in medians: disagreements of which a quarter counts
-constexpr double kMinApart_m = 1e-4;    // an overlap agrees no better: floats of points
+/// A rotation is measured by the displacement it causes at this distance, as in best_smoothing().
+constexpr double kArmOfSettling_m = 10;
+constexpr int kSettlingIterations = 5;  // of the weights and of the slightly non-linear motions
+constexpr double kWidthOfOverlaps = 3;  // in medians: difference with a quarter of the weight
+constexpr double kMinApart_m = 1e-4;    // float precision of the points limits the agreement
 
 using MotionBlock = ChainSystem::Block;
 using MotionColumn = ChainSystem::Column;
@@ -38,8 +38,8 @@ void add_product(MotionColumn& sum, double weight, const MotionBlock& a, const M
     for (std::size_t k = 0; k < kMotionUnknowns; ++k) sum[r] += weight * a[k][r] * b[k];
 }
 
-/// How the correction of a pose depends on the motion of its window about `middle`: rotations and
-/// shifts, times these weights.
+/// Derivative of a pose correction by the motion of its window about `middle`; rotations and shifts
+/// are multiplied by these weights.
 MotionBlock by_motion(const PoseCorrection& pose, Vec3d middle, double rotation, double shift) {
   const Vec3d arm = pose.position + pose.shift_m - middle;
   MotionBlock block{};
@@ -71,7 +71,7 @@ Overlap overlap_of(const WindowPoses& before, const WindowPoses& window) {
   return {window.begin, std::min(before.end(), window.end())};
 }
 
-/// How far a window has come in where it overlaps with the one before: 0 to 1.
+/// Weight of a window in its overlap with the previous one, rising from 0 to 1.
 double faded_in(const Overlap& overlap, std::size_t scan) {
   if (overlap.size() == 0 || scan >= overlap.end) return 1;
   const double share =
@@ -131,9 +131,9 @@ class Settling {
                      square_of(b.shift_m - a.shift_m));
   }
 
-  /// The whole overlap counts as one measurement, as good as it is found to agree: what its scans
-  /// disagree by is smooth, and so no better told by more of them. Its middle counts most, as poses
-  /// at the ends of a window are told worst.
+  /// The overlap counts as one measurement with the variance of its disagreement: the disagreement
+  /// is smooth along the drive, so more scans do not make it more precise. The middle has the
+  /// largest weight because poses at the ends of a window are the least certain.
   void add_overlap(ChainSystem& system, std::size_t k) const {
     const Overlap overlap = overlap_of(windows_[k - 1], windows_[k]);
     if (overlap.size() == 0) return;
@@ -162,8 +162,8 @@ class Settling {
     system.add(k - 1, right_before);
   }
 
-  /// Weights of the overlap's scans, of sum 1, and the variance of a component of what they
-  /// disagree by, m^2.
+  /// Fills the weights of the overlap's scans (sum 1) and returns the variance of one component of
+  /// their disagreement, m^2.
   double weigh(std::size_t k, const Overlap& overlap, std::vector<double>& weights) const {
     std::vector<double> apart_m;
     for (std::size_t scan = overlap.begin; scan < overlap.end; ++scan)
@@ -206,7 +206,7 @@ double median_apart(std::vector<double> values) {
   return values.empty() ? 0 : upper_median_of(values);
 }
 
-/// Fills in scans without a correction by those around them.
+/// Interpolates corrections for scans without one.
 void fill_gaps(std::vector<PoseCorrection>& poses, const std::vector<bool>& known) {
   std::optional<std::size_t> before;
   for (std::size_t scan = 0; scan < poses.size(); ++scan) {

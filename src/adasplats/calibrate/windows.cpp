@@ -16,22 +16,22 @@
 namespace adasplats {
 namespace {
 
-/// Lasers and mount are those of one unit all the way: the median of so many windows outvotes three
-/// that are wrong, and more would cost a second solve each.
+/// Windows used to estimate lasers and mount, which are constant over a recording. The median of
+/// eight outvotes three wrong ones; every further window would cost a second solve.
 constexpr std::size_t kCommonWindows = 8;
 
-/// Of a drive, pieces of half a window: piece k and the one behind it are window k.
+/// Splits a drive into pieces of half a window: window k is pieces k and k + 1.
 std::vector<ScanSpan> cut_pieces(std::size_t scans, std::size_t window_scans) {
   if (scans <= window_scans) return {{0, scans}};
-  const std::size_t most = window_scans / 2;
-  const std::size_t count = (scans + most - 1) / most;
+  const std::size_t max_scans = window_scans / 2;
+  const std::size_t count = (scans + max_scans - 1) / max_scans;
   std::vector<ScanSpan> pieces;
   for (std::size_t k = 0; k < count; ++k)
     pieces.push_back({scans * k / count, scans * (k + 1) / count});
   return pieces;
 }
 
-/// What calibrate() looks at of a piece: every so many-th point, as it takes them itself.
+/// Keeps every n-th point, with the same n as calibrate(), and only the attributes that it needs.
 PointCloud thinned(PointCloud cloud, std::size_t points_a_scan) {
   cloud.intensities = {};
   cloud.classes = {};
@@ -55,8 +55,8 @@ void set_origin(PointCloud& cloud, Vec3d origin) {
   cloud.origin = origin;
 }
 
-/// Attributes that one of the two lacks mean the same without them.
-void make_alike(PointCloud& a, PointCloud& b) {
+/// Gives both clouds the same attributes.
+void match_attributes(PointCloud& a, PointCloud& b) {
   if (a.lasers.empty() != b.lasers.empty()) a.lasers = b.lasers = {};
   if (a.sensor_positions.empty() != b.sensor_positions.empty())
     a.sensor_positions = b.sensor_positions = {};
@@ -65,7 +65,7 @@ void make_alike(PointCloud& a, PointCloud& b) {
   lacking.origin_kinds.assign(lacking.size(), lacking.origin_kind(0));
 }
 
-/// Two neighbouring pieces as one cloud.
+/// Joins two neighbouring pieces into one cloud.
 PointCloud joined_pieces(const PointCloud& first, PointCloud second) {
   PointCloud whole = first;
   const auto scans = static_cast<std::uint32_t>(first.scan_poses.size());
@@ -74,14 +74,14 @@ PointCloud joined_pieces(const PointCloud& first, PointCloud second) {
   poses.insert(poses.end(), second.scan_poses.begin(), second.scan_poses.end());
   if (!whole.empty() && !second.empty()) {
     set_origin(second, whole.origin);
-    make_alike(whole, second);
+    match_attributes(whole, second);
   }
   append(whole, std::move(second));
   whole.scan_poses = std::move(poses);
   return whole;
 }
 
-/// Reads a drive's windows in their order: every piece once.
+/// Reads the windows of a drive in order; every piece is read once.
 class WindowReader {
  public:
   WindowReader(const DriveSource& drive, std::size_t window_scans, std::size_t points_a_scan)
@@ -103,18 +103,18 @@ class WindowReader {
   PointCloud piece(std::size_t k) const {
     PointCloud cloud = drive_.read(pieces_[k]);
     if (cloud.scan_poses.size() != pieces_[k].size())
-      throw std::logic_error("calibrate_windows: a reader of other scans");
+      throw std::logic_error("calibrate_windows: the reader returned the wrong number of scans");
     return thinned(std::move(cloud), points_a_scan_);
   }
 
   const DriveSource& drive_;
   std::size_t points_a_scan_;
   std::vector<ScanSpan> pieces_;
-  std::optional<PointCloud> last_;  ///< piece number...
-  std::size_t number_ = 0;          ///< ...
+  std::optional<PointCloud> last_;  ///< the piece read last...
+  std::size_t number_ = 0;          ///< ...and its number
 };
 
-/// Corrects lasers and mount alone.
+/// A calibration of lasers and mount only.
 Calibration common_calibration(const CommonErrors& common, const Trajectory& given) {
   Calibration calibration;
   calibration.lasers = common.lasers;
@@ -125,14 +125,14 @@ Calibration common_calibration(const CommonErrors& common, const Trajectory& giv
   return calibration;
 }
 
-/// Corrections of poses that the mount corrected already, about the positions as given.
+/// Pose corrections after the mount correction, expressed about the given positions.
 std::vector<PoseCorrection> about_given(std::vector<PoseCorrection> poses,
                                         const Trajectory& given) {
   for (std::size_t scan = 0; scan < poses.size(); ++scan) {
     const RigidTransform correction = poses[scan].corrected_from_given();
-    const Vec3d place = given[scan].world_from_sensor.translation;
-    poses[scan].position = place;
-    poses[scan].shift_m = correction * place - place;
+    const Vec3d position = given[scan].world_from_sensor.translation;
+    poses[scan].position = position;
+    poses[scan].shift_m = correction * position - position;
   }
   return poses;
 }
@@ -141,7 +141,7 @@ void add_counts(ResidualCounts& sum, const ResidualCounts& more) {
   for (std::size_t bin = 0; bin < sum.counts.size(); ++bin) sum.counts[bin] += more.counts[bin];
 }
 
-/// Interpolated within its bin; the last bin's lower end for what lies there.
+/// Median, interpolated within its bin; in the last bin, the bin's lower end.
 double median_m(const ResidualCounts& residuals) {
   const auto total = static_cast<double>(
       std::accumulate(residuals.counts.begin(), residuals.counts.end(), std::size_t{0}));
@@ -194,7 +194,7 @@ class WindowedCalibrator {
     return options_.ranges || options_.elevations || options_.mount_correction;
   }
 
-  /// Solves some windows, spread over all, for everything, and pools what they have in common.
+  /// Solves a few windows, spread over all, for everything, and pools their lasers and mounts.
   void find_common() {
     if (!wants_common()) return;
     const std::size_t all = report_.windows.size();
@@ -267,14 +267,14 @@ class WindowedCalibrator {
     result.given.insert(result.given.end(), given.begin(), given.end());
   }
 
-  /// Of a window, with what all have in common taken off; nothing where there is an objection.
+  /// Pose corrections of a window after the common lasers and mount; empty with an objection.
   std::vector<PoseCorrection> own_poses(PointCloud& cloud, WindowReport& window) {
     const Trajectory given = cloud.scan_poses;
     CalibrateOptions own = options_;
     own.ranges = own.elevations = own.mount_correction = false;
     const Calibration common = common_calibration(common_, given);
     if (!common.lasers.empty() || !common.mount.empty()) {
-      own.poses = false;  // judged alone
+      own.poses = false;  // measures the residuals only
       const CalibrationReport as_given = calibrate_cloud_(cloud, own).second;
       window.given_m = as_given.given_m;
       add_counts(given_counts_, as_given.given);
@@ -333,7 +333,7 @@ class WindowedCalibrator {
       std::string why = options_.poses && !report_.windows.empty()
                             ? "no window has evidence for its poses, the first one: " +
                                   report_.windows.front().objection
-                            : "no window tells the lasers";
+                            : "no window constrains the laser offsets";
       if (is_mounted)
         report.mount->alone_because = std::move(why);
       else
@@ -359,7 +359,7 @@ class WindowedCalibrator {
   std::vector<PoseCorrection> overlap_before_, overlap_behind_;  ///< of all overlaps, scan by scan
 };
 
-/// Which points of a cloud are of which scans.
+/// Index from the scans of a cloud to their points.
 class ScanView {
  public:
   explicit ScanView(const PointCloud& cloud)
@@ -371,7 +371,7 @@ class ScanView {
       order_[next[cloud.scan_indices[i]]++] = static_cast<std::uint32_t>(i);
   }
 
-  /// Of [begin, end), so many of each that calibrate() has enough of them.
+  /// Points of scans [begin, end), thinned to about `points_a_scan` per scan.
   PointCloud of(std::size_t begin, std::size_t end, std::size_t points_a_scan) const {
     const std::size_t points = begins_[end] - begins_[begin];
     const std::size_t stride =
@@ -394,7 +394,7 @@ class ScanView {
 
  private:
   const PointCloud& cloud_;
-  std::vector<std::size_t> begins_;   ///< of scans, one more than they
+  std::vector<std::size_t> begins_;   ///< into order_; number of scans + 1
   std::vector<std::uint32_t> order_;  ///< points, scan by scan
 };
 

@@ -16,10 +16,10 @@
 
 namespace adasplats {
 
-/// How long drives are cut.
+/// How long drives are split.
 struct CalibrateWindowOptions {
-  /// The most scans that are solved at once. 200 are 20 s: what one scan sees is out of sight long
-  /// before, and the 40,000 points of each that calibrate() looks at take about 1 GB.
+  /// Maximum number of scans solved together. 200 scans are 20 s at 10 Hz, longer than any surface
+  /// stays in view; at the 40,000 points per scan that calibrate() uses they need about 1 GB.
   std::size_t window_scans = 200;
 };
 
@@ -29,20 +29,20 @@ void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
                 .help = "Number of scans solved together; longer drives are split into windows "
                         "that overlap by half",
                 .value = "N",
-                .min = 8,  // four scans are what a window shares with the next
+                .min = 8,  // windows then share four scans
                 .max = 1e6,
                 .basic = true},
         windows.window_scans);
 }
 
-/// The windows of a drive: all as long, to a scan, none longer than `window_scans` (2 or more);
-/// each overlaps with the next by half. One, where that holds the drive.
+/// Splits a drive into windows of equal length (to within one scan), at most `window_scans` (2 or
+/// more); each overlaps the next by half. A single window if it covers the drive.
 std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans);
 
-/// A drive whose scans need not be in memory.
+/// A drive that is read in parts.
 struct DriveSource {
   std::size_t scans = 0;
-  /// Points of some scans, numbered from 0, with the poses of all of them.
+  /// Reads the points of a span of scans, which are numbered from 0, with the poses of these scans.
   std::function<PointCloud(ScanSpan)> read;
 };
 
@@ -52,25 +52,25 @@ struct WindowedCalibration {
   Trajectory given;          ///< poses of all scans, drive by drive
 };
 
-/// Calibrates one cloud: calibrate() on some device.
+/// Calibrates one cloud with calibrate(), on any device.
 using CalibrateCloud = std::function<std::pair<Calibration, CalibrationReport>(
     const PointCloud& cloud, const CalibrateOptions& options)>;
 
-/// calibrate() window by window, by `calibrate_cloud`. What all windows have in common, lasers and
-/// mount, is pooled from at most eight windows all over the drives and then the same for all; the
-/// poses of each window are estimated alone, laid on one another where they overlap
-/// (settle_windows) and blended; windows without evidence get nothing of their own. The whole lies
-/// on the given poses. Drives are not tied to one another, nor places that a drive comes back to in
-/// another window. Memory: points of half a window as they are read, points_a_scan of a window, and
-/// what calibrate() needs for it; nothing but poses grows with the drives.
+/// Calibrates drives window by window with `calibrate_cloud`. Laser offsets and mount are pooled
+/// from at most eight windows spread over the drives and are the same for all windows. The poses of
+/// each window are estimated separately, aligned where windows overlap (settle_windows) and
+/// blended; windows without evidence keep their poses. Finally, each drive is aligned to its given
+/// poses. Loops are not closed: neither drives nor windows that revisit a scene are tied to one
+/// another. Memory: the points of half a window as read, points_a_scan of a window, and the memory
+/// of calibrate() for one window. Only the poses grow with the length of the drives.
 WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const CalibrateOptions& options,
                                       const CalibrateWindowOptions& windows,
                                       const CalibrateCloud& calibrate_cloud,
                                       const Executor& executor, ProgressSink& progress);
 
-/// calibrate() of a cloud in memory: at once where no drive in it is longer than a window, else by
-/// windows that are views of it.
+/// Calibrates a cloud in memory: all scans together if no drive is longer than a window, otherwise
+/// window by window.
 std::pair<Calibration, CalibrationReport> calibrate_drives(
     const PointCloud& cloud, const CalibrateOptions& options, const CalibrateWindowOptions& windows,
     const CalibrateCloud& calibrate_cloud, const Executor& executor, ProgressSink& progress);

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// How far apart two estimates of the same poses are: what single scans differ by.
+/// Differences between two estimates of the same poses, per scan.
 struct PoseDisagreement {
   std::size_t scans = 0;
   double median_shift_m = 0, largest_shift_m = 0;
@@ -18,26 +18,25 @@ struct PoseDisagreement {
 /// One window of a long drive.
 struct WindowReport {
   std::size_t drive = 0;
-  std::size_t begin = 0, end = 0;  ///< of its scans, by their numbers in the drive
+  std::size_t begin = 0, end = 0;  ///< its scans, numbered within the drive
   std::size_t planes = 0, points = 0;
-  /// Median distance of points that were left out from planes, m: as given; with the lasers and the
-  /// mount that all windows have in common; with the window's own poses. 0: not judged.
+  /// Median distance of held-out points from the planes, m: as given; with the common lasers and
+  /// mount; with the window's own poses. 0: not measured.
   double given_m = 0, common_m = 0, calibrated_m = 0;
   double weakest_share = 0;
-  bool constrains_lasers = false;  ///< it was among those whose lasers were pooled
-  std::string objection;           ///< why its scans get nothing of their own; empty: they do
-  /// From the window before, where both have poses of their own, once both lie as well as they can
-  /// on one another as a whole.
+  bool constrains_lasers = false;  ///< its laser offsets were pooled
+  std::string objection;  ///< why the poses of its scans are not corrected; empty if they are
+  /// Differences from the previous window, if both have pose corrections, after their alignment.
   PoseDisagreement overlap;
 };
 
-/// How a long drive was calibrated window by window.
+/// Report of a calibration window by window.
 struct WindowsReport {
-  std::size_t window_scans = 0;  ///< the most that a window has
+  std::size_t window_scans = 0;  ///< maximum number of scans in a window
   std::vector<WindowReport> windows;
   PoseDisagreement overlaps;  ///< of all overlaps together
-  /// Windows whose lasers or mount were pooled, and how far they are from what all have in common
-  /// (RMS over lasers and windows; the largest of a mount).
+  /// Number of windows whose lasers or mount were pooled, and their differences from the pooled
+  /// values (lasers: RMS over lasers and windows; mount: maximum).
   std::size_t laser_windows = 0, mount_windows = 0;
   double range_disagreement_m = 0, elevation_disagreement_rad = 0;
   double mount_disagreement_rad = 0, mount_disagreement_m = 0;
@@ -49,7 +48,7 @@ struct WindowsReport {
   }
 };
 
-/// What windows do not do; a sentence's part.
+/// A limitation of calibration by windows, as part of a sentence.
 inline constexpr const char* kNotClosed =
     "places that a drive comes back to in another window are not made to agree";
 

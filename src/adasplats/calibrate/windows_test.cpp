@@ -29,7 +29,7 @@ std::pair<Calibration, CalibrationReport> on_cpu(const PointCloud& cloud,
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStep_m = 1.5;
 constexpr std::uint32_t kPoints = 2000;  // of a scan
-constexpr std::size_t kLasers = 7;       // not 8: every eighth point is left out of the fit
+constexpr std::size_t kLasers = 7;       // not 8: every eighth point is held out
 
 /// A straight street with buttresses on its walls; between two scans of the drive a tunnel.
 struct Street {
@@ -64,7 +64,7 @@ RigidTransform true_pose(std::size_t scan) {
           {kStep_m * s, std::sin(0.1 * s), 1.8 + 0.05 * std::sin(0.2 * s)}};
 }
 
-/// Drifts in a minute of 60 scans.
+/// Drift over a minute of 60 scans.
 RigidTransform given_pose(const Street& street, std::size_t scan) {
   const double phase = 2 * std::numbers::pi * static_cast<double>(scan) / 60;
   const double turn = street.turn_deg * kDegree;
@@ -76,7 +76,7 @@ RigidTransform given_pose(const Street& street, std::size_t scan) {
               street.shift_m * Vec3d{std::sin(phase), std::cos(phase), 0.5 * std::sin(phase)}};
 }
 
-/// Scans [begin, end) of the drive, as calibrate_windows asks for them.
+/// Reads scans [begin, end) of the drive, as calibrate_windows() requests them.
 PointCloud record_street(const Street& street, ScanSpan span) {
   PointCloud cloud;
   for (std::size_t scan = span.begin; scan < span.end; ++scan) {
@@ -99,7 +99,7 @@ PointCloud record_street(const Street& street, ScanSpan span) {
   return cloud;
 }
 
-/// A street that is read piece by piece, and how.
+/// A street that is read in pieces, and a record of the reads.
 struct ReadStreet {
   Street street;
   std::vector<ScanSpan> reads;
@@ -119,7 +119,7 @@ WindowedCalibration calibrated(ReadStreet& street, std::size_t window_scans,
                            progress);
 }
 
-/// Largest error of the way from one scan to the one `apart` scans on.
+/// Largest error of the motion between scans that are `apart` scans apart.
 double worst_step_m(const Calibration& found, const Street& street, std::size_t apart) {
   double worst_m = 0;
   const auto pose = [&](std::size_t scan) {
@@ -133,7 +133,7 @@ double worst_step_m(const Calibration& found, const Street& street, std::size_t 
   return worst_m;
 }
 
-// Oracle: what a cut has to be, for all small numbers.
+// Oracle: the required properties, for all small numbers.
 TEST(Windows, CoverADriveAndOverlapByHalf) {
   for (std::size_t window = 2; window < 40; ++window) {
     for (std::size_t scans = 1; scans < 130; ++scans) {
@@ -156,8 +156,8 @@ TEST(Windows, CoverADriveAndOverlapByHalf) {
   }
 }
 
-// Oracle: elimination in the whole matrix.
-TEST(Windows, AChainIsSolvedAsTheWholeMatrix) {
+// Oracle: elimination in the dense matrix.
+TEST(Windows, AChainIsSolvedLikeTheDenseMatrix) {
   constexpr std::size_t kCount = 4, kSize = kCount * ChainSystem::kUnknowns;
   ChainSystem chain(kCount);
   std::vector<std::vector<double>> whole(kSize, std::vector<double>(kSize + 1));
@@ -196,7 +196,7 @@ TEST(Windows, AChainIsSolvedAsTheWholeMatrix) {
     EXPECT_NEAR(x[row], whole[row][kSize] / whole[row][row], 1e-12);
 }
 
-/// Corrections along a bent way that drift slowly.
+/// Slowly drifting corrections along a curved path.
 std::vector<PoseCorrection> drifting(std::size_t scans) {
   std::vector<PoseCorrection> poses;
   for (std::size_t k = 0; k < scans; ++k) {
@@ -228,15 +228,15 @@ Trajectory given_of(const std::vector<PoseCorrection>& poses) {
   return given;
 }
 
-/// Largest distance of corrections once the one lies on the other as a whole.
+/// Largest difference of corrections after a rigid alignment.
 PoseDisagreement apart_as_a_whole(std::vector<PoseCorrection> a, std::vector<PoseCorrection> b) {
   align_to_given(a);
   align_to_given(b);
   return disagreement_of(a, b);
 }
 
-// Oracle: the corrections that the windows were cut from.
-TEST(Windows, MovedAsWholesTheyAreLaidOnOneAnotherAgain) {
+// Oracle: the corrections from which the windows were cut.
+TEST(Windows, RigidMotionsOfWindowsAreUndone) {
   const std::vector<PoseCorrection> truth = drifting(130);
   std::vector<WindowPoses> windows = windows_of(truth, 40);
   ASSERT_EQ(windows.size(), 6U);
@@ -258,7 +258,7 @@ TEST(Windows, MovedAsWholesTheyAreLaidOnOneAnotherAgain) {
   EXPECT_LT(apart_as_a_whole(blended(windows, given_of(truth)), truth).largest_shift_m, 5e-4);
 }
 
-TEST(Windows, OneAloneLiesOnTheGivenPoses) {
+TEST(Windows, ASingleWindowIsAlignedToTheGivenPoses) {
   std::vector<WindowPoses> windows = windows_of(drifting(30), 40);
   ASSERT_EQ(windows.size(), 1U);
   for (PoseCorrection& pose : windows[0].poses)
@@ -268,8 +268,8 @@ TEST(Windows, OneAloneLiesOnTheGivenPoses) {
   EXPECT_TRUE(settle_windows({}, {}).empty());
 }
 
-// Oracle: windows that say 0 and 1 in turn, so that what is blended is the weight itself.
-TEST(Windows, NoEdgeShowsWhereTheyAreBlended) {
+// Oracle: windows with corrections of alternately 0 and 1, so the blended value is the weight.
+TEST(Windows, BlendingLeavesNoSteps) {
   const std::vector<PoseCorrection> truth = drifting(120);
   std::vector<WindowPoses> windows = windows_of(truth, 40);
   for (std::size_t k = 0; k < windows.size(); ++k)
@@ -288,7 +288,7 @@ TEST(Windows, NoEdgeShowsWhereTheyAreBlended) {
   EXPECT_LT(poses[59].shift_m.x, 0.01);
 }
 
-TEST(Windows, WhatNoneHasLiesBetweenTheNeighbours) {
+TEST(Windows, GapsAreInterpolatedBetweenNeighbours) {
   const std::vector<PoseCorrection> truth = drifting(100);
   std::vector<WindowPoses> windows = windows_of(truth, 20);
   for (std::size_t k = 3; k < 6; ++k) windows[k].poses.clear();
@@ -306,8 +306,8 @@ TEST(Windows, WhatNoneHasLiesBetweenTheNeighbours) {
   EXPECT_TRUE(blended(windows, given_of(truth)).empty());
 }
 
-// Oracle: the motion that was put in; the mean of the poses alone errs by what one of them does.
-TEST(TrajectoryFit, UndoesAMotionOfTheWholeInSpiteOfASpoiltPose) {
+// Oracle: the applied motion; the mean of the poses would follow the outlier.
+TEST(TrajectoryFit, UndoesARigidMotionDespiteAnOutlier) {
   Random random(1, 0, 0);
   std::vector<PoseCorrection> poses;
   for (std::size_t k = 0; k < 60; ++k) {
@@ -328,7 +328,7 @@ TEST(TrajectoryFit, UndoesAMotionOfTheWholeInSpiteOfASpoiltPose) {
   EXPECT_EQ(onto_given({}).translation, Vec3d{});
 }
 
-TEST(CommonErrors, AWindowThatIsWrongIsOutvoted) {
+TEST(CommonErrors, AWrongWindowIsOutvoted) {
   std::vector<WindowFinding> findings(5);
   for (std::size_t k = 0; k < findings.size(); ++k) {
     const double error = k == 2 ? 0.1 : 0.0001 * static_cast<double>(k);
@@ -354,8 +354,8 @@ MountReport mount_report(Vec3d rotation_rad, Vec3d shift_m) {
   return report;
 }
 
-// Oracle: the mount that both windows saw in part.
-TEST(CommonErrors, AMountIsPooledFromWhatEachWindowObserves) {
+// Oracle: the mount; each window observes a part of it.
+TEST(CommonErrors, AMountIsPooledFromTheObservedDirections) {
   std::vector<WindowFinding> findings(2);
   findings[0].mount = mount_report({0, 0, 0.02}, {0.3, 0, 0});
   findings[0].mount->found.not_observed = {{"lever arm along y", {}, {0, 1, 0}},
@@ -373,7 +373,7 @@ TEST(CommonErrors, AMountIsPooledFromWhatEachWindowObserves) {
   EXPECT_EQ(common.mount->found.not_observed[0].name, "lever arm along z");
 }
 
-TEST(CommonErrors, FewWindowsAgainstManyCorrectNoMount) {
+TEST(CommonErrors, AMinorityOfWindowsCorrectsNoMount) {
   std::vector<WindowFinding> findings(4);
   for (WindowFinding& finding : findings) {
     finding.mount = mount_report({}, {});
@@ -384,8 +384,8 @@ TEST(CommonErrors, FewWindowsAgainstManyCorrectNoMount) {
   EXPECT_NE(pooled(findings, {}).mount->objection.find("only 1 of 4"), std::string::npos);
 }
 
-// Oracle: one solve of the same scans, and the faults that were put in.
-TEST(CalibrateWindows, GiveWhatOneSolveDoes) {
+// Oracle: one solve of the same scans, and the simulated errors.
+TEST(CalibrateWindows, MatchASingleSolve) {
   ReadStreet street;
   const PointCloud whole = record_street(street.street, {0, street.street.scans});
   const Calibration one = calibrate(whole, {}, Executor(2)).first;
@@ -412,7 +412,7 @@ TEST(CalibrateWindows, GiveWhatOneSolveDoes) {
   EXPECT_GT(worst_step_m(nothing, street.street, 20), 0.04);
 }
 
-TEST(CalibrateWindows, ATunnelInTheMiddleGetsNothingAndIsNamed) {
+TEST(CalibrateWindows, ATunnelInTheMiddleIsReportedAndNotCorrected) {
   ReadStreet street;
   street.street.tunnel_begin = 31;
   street.street.tunnel_end = 89;
@@ -425,13 +425,13 @@ TEST(CalibrateWindows, ATunnelInTheMiddleGetsNothingAndIsNamed) {
   EXPECT_EQ(windows[2].begin, 40U);
   EXPECT_EQ(windows[2].end, 80U);
   EXPECT_EQ(windows[2].overlap.scans, 0U);
-  // The lasers of all are its own too.
+  // The common laser offsets apply to it, too.
   EXPECT_NEAR(found.calibration.lasers.range_m[0], range_offset_m({}, 0), 0.003);
   EXPECT_LT(windows[2].common_m, windows[2].given_m);
   ASSERT_EQ(found.calibration.poses.size(), 120U);
 }
 
-// Oracle: what the reader is asked for is all that is ever there.
+// Oracle: the recorded reads are all that is in memory.
 TEST(CalibrateWindows, ReadHalfAWindowAtATime) {
   ReadStreet street;
   street.street.scans = 100;
@@ -451,7 +451,7 @@ TEST(CalibrateWindows, ReadHalfAWindowAtATime) {
   EXPECT_TRUE(found.calibration.lasers.empty());
 }
 
-TEST(CalibrateWindows, WithoutFaultsNothingIsApplied) {
+TEST(CalibrateWindows, NothingIsAppliedWithoutErrors) {
   ReadStreet street;
   street.street.scans = 80;
   street.street.turn_deg = street.street.shift_m = street.street.range_m = 0;
@@ -462,12 +462,12 @@ TEST(CalibrateWindows, WithoutFaultsNothingIsApplied) {
 }
 
 // Oracle: reading the same scans piece by piece.
-TEST(CalibrateWindows, OfACloudInMemoryAreViewsOfIt) {
+TEST(CalibrateWindows, MatchForACloudInMemory) {
   ReadStreet street;
   street.street.scans = 60;
   PointCloud cloud = record_street(street.street, {0, 60});
   const WindowedCalibration read = calibrated(street, 30);
-  // In no order: the points of a scan need not stand together.
+  // Shuffled: the points of a scan need not be contiguous.
   std::vector<std::uint32_t> order(cloud.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = (i % 60) * kPoints + i / 60;
   RecordedProgress progress;
@@ -477,7 +477,7 @@ TEST(CalibrateWindows, OfACloudInMemoryAreViewsOfIt) {
   EXPECT_EQ(report.windows->windows.size(), 3U);
   EXPECT_EQ(disagreement_of(found.poses, read.calibration.poses).largest_shift_m, 0);
   EXPECT_EQ(found.lasers.range_m, read.calibration.lasers.range_m);
-  // No longer than a window: at once.
+  // Not longer than a window: solved together.
   EXPECT_FALSE(calibrate_drives(cloud, {}, {60}, on_cpu, Executor(2), progress).second.windows);
 }
 

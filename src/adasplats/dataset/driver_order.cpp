@@ -11,7 +11,7 @@ namespace adasplats {
 
 std::vector<std::uint32_t> driver_order(const ScanView& scan, FirstRing first) {
   if (scan.rings.size() != scan.size() || scan.columns.size() != scan.size())
-    throw std::logic_error("driver_order: a scan without rings or columns");
+    throw std::logic_error("driver_order: the scan has no rings or columns");
   std::vector<std::uint32_t> order(scan.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto place = [&](std::uint32_t i) {

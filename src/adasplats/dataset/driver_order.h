@@ -9,15 +9,15 @@
 
 namespace adasplats {
 
-/// Which ring of a column comes first.
+/// The ring of a column that comes first.
 enum class FirstRing : std::uint8_t {
-  top,     ///< as channels of Hesai's sensors are numbered
-  bottom,  ///< as Velodyne's driver numbers rings, from the lowest beam
+  top,     ///< channel numbers of Hesai's sensors
+  bottom,  ///< ring numbers of Velodyne's driver, from the lowest beam
 };
 
-/// The points of a scan, by their numbers, as drivers give them and PandaSet and nuScenes store
-/// them: column by column as the head turns, the rings of each in their order, returns of one
-/// firing side by side. Needs columns and rings (std::logic_error without).
+/// The indices of the points of a scan in the order of drivers, PandaSet and nuScenes: column by
+/// column as the head turns, then by ring, with the returns of a firing adjacent. Needs columns and
+/// rings (otherwise std::logic_error).
 std::vector<std::uint32_t> driver_order(const ScanView& scan, FirstRing first);
 
 }  // namespace adasplats

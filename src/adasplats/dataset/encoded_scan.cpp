@@ -11,7 +11,7 @@ void write_encoded(const std::filesystem::path& folder, std::span<const EncodedF
                    FileWrites how) {
   for (const EncodedFile& file : files) {
     const std::filesystem::path path = folder / file.name;
-    std::error_code ignored;  // the file itself says what is wrong
+    std::error_code ignored;  // the error of the file gives the reason
     if (path.parent_path() != folder && !std::filesystem::is_directory(path.parent_path(), ignored))
       create_folder(path.parent_path());
     if (how == FileWrites::atomic) {

@@ -14,30 +14,30 @@
 
 namespace adasplats {
 
-/// One of the files that a scan becomes.
+/// One of the files of a scan.
 struct EncodedFile {
   std::string name;  ///< relative to the folder of the data set
   std::string bytes;
 };
 
-/// A scan as the bytes that are written of it, and what the files of all scans need to know.
+/// A scan encoded as bytes, and its data for files common to all scans.
 struct EncodedScan {
-  std::vector<EncodedFile> files;            ///< of its own
-  std::vector<McapMessage> messages;         ///< for a file of all scans
+  std::vector<EncodedFile> files;            ///< of this scan only
+  std::vector<McapMessage> messages;         ///< for the file of all scans
   std::vector<PacketReturn> packet_returns;  ///< of every firing, column by column
   TimedPose pose;
   std::size_t points = 0;
   bool has_classes = false;
 };
 
-/// How files come into being.
+/// How files are written.
 enum class FileWrites : bool {
-  atomic,    ///< as AtomicFile has it: where others may look into the folder
-  in_place,  ///< write_file_in_place(): in a folder that gets its name when it is whole
+  atomic,    ///< by AtomicFile: for folders that others may read meanwhile
+  in_place,  ///< by write_file_in_place(): for folders that are renamed when complete
 };
 
-/// Writes files into `folder`, which exists; folders in it are made. Several threads may call it at
-/// once. Errors: cannot_create, io.
+/// Writes files into `folder`, which must exist; creates subfolders. Thread-safe. Errors:
+/// cannot_create, io.
 void write_encoded(const std::filesystem::path& folder, std::span<const EncodedFile> files,
                    FileWrites how);
 

@@ -13,10 +13,10 @@
 namespace adasplats {
 namespace {
 
-// Noise puts points beside the faces that they are of.
+// Noise moves points off the faces of their object.
 constexpr double kMargin_m = 0.05;
 
-/// A word in the name of a class and the KITTI type that it makes; the first that is found counts.
+/// A word in the name of a class and its KITTI type; the first match counts.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kTypes = {
     {{"bicyclist", "Cyclist"},
      {"motorcyclist", "Cyclist"},
@@ -45,7 +45,7 @@ double within_half_turn(double angle_rad) {
   return std::remainder(angle_rad, 2 * std::numbers::pi);
 }
 
-/// One line of numbers with `decimals` behind the point.
+/// One line of numbers with this number of decimals.
 std::string numbers(std::initializer_list<double> values, int decimals) {
   std::string line;
   std::array<char, 64> buffer{};
@@ -58,7 +58,7 @@ std::string numbers(std::initializer_list<double> values, int decimals) {
 
 std::string camera_line(const SensedBox& box) {
   const Vec3d bottom = box.center_m - Vec3d{0, 0, 0.5 * box.size_m.z};
-  // A turn about the camera's y, which points down, from its x, which points right.
+  // A rotation about the camera's y (down), starting at its x (right).
   const double rotation_y = within_half_turn(-box.yaw_rad - 0.5 * std::numbers::pi);
   return box.type + " -1 3 -10 -1 -1 -1 -1" +
          numbers(

@@ -37,7 +37,7 @@ Scan scan_at_100_100() {
 }
 
 // Oracle: by hand.
-TEST(KittiBoxes, InTheSensorsFrame) {
+TEST(KittiBoxes, BoxesAreInTheSensorFrame) {
   const ObjectBox boxes[] = {car_ahead(0), car_ahead(kQuarter)};
   const auto sensed = sensed_boxes(boxes, scan_at_100_100(), &semantickitti_labels());
   ASSERT_EQ(sensed.size(), 2U);

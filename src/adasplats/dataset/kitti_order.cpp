@@ -13,10 +13,10 @@ namespace {
 
 using Numbers = std::vector<std::uint32_t>;
 
-/// Points by their rings, as they come within one, and where each ring begins.
+/// Points by ring, in firing order within a ring, and the begin of each ring.
 struct Rings {
   Numbers points;
-  std::vector<std::size_t> begins;  ///< one more than rings
+  std::vector<std::size_t> begins;  ///< number of rings + 1
 };
 
 Rings rings_of(const ScanView& scan) {
@@ -31,12 +31,12 @@ Rings rings_of(const ScanView& scan) {
   return found;
 }
 
-/// Whether a point is a later return of the firing of the point before it.
+/// Whether a point is a later return of the firing of the previous point.
 bool is_later_return(const ScanView& scan, std::uint32_t i) {
   return !scan.return_indices.empty() && scan.return_indices[i] > 0;
 }
 
-/// Steps from firing to firing, by the way they turn.
+/// Numbers of steps between firings in each direction of rotation.
 struct Turns {
   std::size_t left = 0, right = 0;
 };
@@ -54,13 +54,13 @@ Turns turns_of(const ScanView& scan, const Rings& rings) {
   return turns;
 }
 
-/// Noise of angles turns some steps back; a pattern that goes to and fro turns every second one.
+/// Angular noise reverses some steps; an oscillating pattern reverses every second one.
 bool is_steady(const Turns& turns) {
   constexpr std::size_t kOneInTen = 10;
   return kOneInTen * std::min(turns.left, turns.right) <= turns.left + turns.right;
 }
 
-/// Turns a ring round, firing by firing.
+/// Reverses a ring, firing by firing.
 void reverse_firings(const ScanView& scan, std::span<std::uint32_t> ring) {
   std::reverse(ring.begin(), ring.end());
   for (std::size_t begin = 0, end = 0; begin < ring.size(); begin = end) {
@@ -71,7 +71,7 @@ void reverse_firings(const ScanView& scan, std::span<std::uint32_t> ring) {
   }
 }
 
-/// Lets a counter-clockwise ring begin where it passes azimuth 0.
+/// Rotates a counter-clockwise ring so that it begins at azimuth 0.
 void begin_ahead(const ScanView& scan, std::span<std::uint32_t> ring) {
   const auto at = [&](std::uint32_t i) { return scan.positions[i]; };
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -82,8 +82,8 @@ void begin_ahead(const ScanView& scan, std::span<std::uint32_t> ring) {
   }
 }
 
-/// Noise of angles takes some beams beside azimuth 0 over it: they go to the end of a ring that
-/// they belong to.
+/// Angular noise moves some beams near azimuth 0 across it: they are moved to the end of the ring
+/// to which they belong.
 void part_ends(const ScanView& scan, std::span<std::uint32_t> ring) {
   constexpr float kBesideTan = 0.02F;  // of 1.1 degrees, more than the noise of any sensor
   const auto is_beside = [&](std::uint32_t i) {
@@ -110,7 +110,7 @@ void part_ends(const ScanView& scan, std::span<std::uint32_t> ring) {
 template <class T>
 void reorder(std::vector<T>& values, std::span<const std::type_identity_t<T>> from,
              std::span<const std::uint32_t> order) {
-  if (from.size() != order.size()) return;  // scans need not have it
+  if (from.size() != order.size()) return;  // optional attribute
   values.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) values[i] = from[order[i]];
 }
@@ -118,7 +118,8 @@ void reorder(std::vector<T>& values, std::span<const std::type_identity_t<T>> fr
 }  // namespace
 
 std::vector<std::uint32_t> kitti_order(const ScanView& scan) {
-  if (scan.rings.size() != scan.size()) throw std::logic_error("kitti_order: a scan without rings");
+  if (scan.rings.size() != scan.size())
+    throw std::logic_error("kitti_order: the scan has no rings");
   Rings rings = rings_of(scan);
   const Turns turns = turns_of(scan, rings);
   if (!is_steady(turns)) {

@@ -83,7 +83,7 @@ TEST(KittiOrder, NoiseAndMissingBeamsHideNoRing) {
 }
 
 // Oracle: the definition, by sorting.
-TEST(KittiOrder, IsThatOfSortedAzimuths) {
+TEST(KittiOrder, MatchesSortedAzimuths) {
   const Scan scan = scan_of(load_lidar_model("velodyne-hdl-64e-kitti"), 0.2);
   std::vector<std::uint32_t> expected(scan.size());
   std::iota(expected.begin(), expected.end(), 0U);
@@ -94,7 +94,7 @@ TEST(KittiOrder, IsThatOfSortedAzimuths) {
   EXPECT_EQ(kitti_order(scan), expected);
 }
 
-TEST(KittiOrder, ReturnsOfAFiringStayInTheirOrder) {
+TEST(KittiOrder, ReturnsOfAFiringKeepTheirOrder) {
   const Scan single = scan_of(load_lidar_model("velodyne-vlp-16"));
   Scan twice;
   for (std::size_t i = 0; i < single.size(); ++i) {
@@ -116,7 +116,7 @@ TEST(KittiOrder, ReturnsOfAFiringStayInTheirOrder) {
   }
 }
 
-TEST(KittiOrder, PatternsThatDoNotTurnStayAsFired) {
+TEST(KittiOrder, NonRotatingPatternsKeepTheFiringOrder) {
   const Scan scan = scan_of(load_lidar_model("livox-mid-40"));
   std::vector<std::uint32_t> expected(scan.size());
   std::iota(expected.begin(), expected.end(), 0U);

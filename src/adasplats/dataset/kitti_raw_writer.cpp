@@ -18,14 +18,14 @@ namespace {
 
 constexpr const char* kCalibrationTime = "calib_time: 01-Jan-1970 00:00:00\n";
 
-// Where the GPS/IMU unit of KITTI's car sits (calib_imu_to_velo.txt of 2011_09_26, rounded):
-// loaders that leave it out are found out.
+// Position of the GPS/IMU unit of KITTI's car (calib_imu_to_velo.txt of 2011_09_26, rounded); it
+// exposes loaders that ignore it.
 constexpr RigidTransform kVelodyneFromImu = {{}, {-0.81, 0.32, -0.80}};
 constexpr const char* kImuToVelodyne = "R: 1 0 0 0 1 0 0 0 1\nT: -0.81 0.32 -0.8\n";
 // Camera axes (x right, y down, z forward) against LiDAR axes (x forward, y left, z up).
 constexpr const char* kVelodyneToCamera = "R: 0 -1 0 0 0 -1 1 0 0\nT: 0 0 0\n";
 
-/// Rectified images of KITTI are 1242 x 375; there are none here.
+/// Rectified images of KITTI are 1242 x 375; none are written here.
 std::string camera_calibration() {
   const std::string intrinsic = "721.5 0 609.5 0 721.5 172.9 0 0 1\n";
   const std::string unit = "1 0 0 0 1 0 0 0 1\n";

@@ -72,7 +72,7 @@ TEST(KittiRawWriter, DriveIsReadBack) {
 
 // Oracle: the motion on a circle: 10 m/s, inwards 2 m/s^2, 0.2 rad/s; differences over 0.2 s lose
 // less than a hundredth of it.
-TEST(KittiRawWriter, RecordsTellTheMotion) {
+TEST(KittiRawWriter, RecordsDescribeTheMotion) {
   const TemporaryFolder folder;
   write_circle(folder.path(), 9);
   const auto record = numbers_in(folder.path() / kDrive / "oxts/data/0000000004.txt");
@@ -101,7 +101,7 @@ TEST(KittiRawWriter, DatesAndTimes) {
 }
 
 // Oracle: what the devkit's readme lists.
-TEST(KittiRawWriter, FilesThatLoadersNeed) {
+TEST(KittiRawWriter, HasTheFilesThatLoadersNeed) {
   const TemporaryFolder folder;
   write_circle(folder.path(), 1);
   for (const char* name : {"velodyne_points/timestamps.txt", "oxts/timestamps.txt",

@@ -12,23 +12,23 @@
 
 namespace adasplats {
 
-/// Writes scans into one MCAP file that Foxglove and the tools of ROS 2 read: on /points a
-/// sensor_msgs/msg/PointCloud2 a scan in the frame "lidar" (its fields: point_cloud2_message), on
-/// /tf a tf2_msgs/msg/TFMessage with that frame's places in "map", the world (ros_poses_of()).
+/// Writes scans to one MCAP file for Foxglove and the tools of ROS 2: on /points, a
+/// sensor_msgs/msg/PointCloud2 per scan in the frame "lidar" (fields: see point_cloud2_message); on
+/// /tf, a tf2_msgs/msg/TFMessage with the poses of that frame in "map", the world (ros_poses_of()).
 /// Atomic; memory: three times the largest scan.
 class McapWriter {
  public:
-  /// All times are written `later_s` later than scans have them. Errors: cannot_create, io.
+  /// Adds `later_s` to all times. Errors: cannot_create, io.
   explicit McapWriter(const std::filesystem::path& path, double later_s = 0);
 
-  /// The messages of a scan. Several threads may call it at once.
+  /// The messages of a scan. Thread-safe.
   /// Errors: data (a time that ROS cannot express: ros_time_ns).
   std::vector<McapMessage> messages(const ScanView& scan) const;
-  /// The messages of the next scan, by ascending time. Errors: io.
+  /// Appends the messages of the next scan; times must ascend. Errors: io.
   void append(std::span<const McapMessage> messages);
-  /// Both. Errors: of either.
+  /// Encodes and appends a scan. Errors: those of both.
   void write(const ScanView& scan) { append(messages(scan)); }
-  /// Makes the file whole. Call once, last.
+  /// Completes the file. Call once, last.
   void finish() { file_.finish(); }
 
  private:

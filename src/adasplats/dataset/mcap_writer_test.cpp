@@ -196,7 +196,7 @@ TEST(McapWriter, PointsWithoutMotionHaveTheTimeOfThePose) {
   expect_pose(transforms[1], scan.world_from_sensor);
 }
 
-TEST(McapWriter, NothingIsToBeTakenOutOfScansOfASensorThatStood) {
+TEST(McapWriter, ScansOfASensorAtRestHaveNoTimes) {
   Scan scan = scan_number(3, 5);
   scan.knots.clear();
   scan.duration_s = 0;
@@ -236,7 +236,7 @@ TEST(McapWriter, EmptyScanAndPositionsAlone) {
   EXPECT_EQ(written({}).messages.size(), 0U);
 }
 
-TEST(McapWriter, TimesThatRosCannotTell) {
+TEST(McapWriter, RejectsTimesOutsideTheRosRange) {
   EXPECT_EQ(ros_time_ns(0), 0U);
   EXPECT_EQ(ros_time_ns(1.9999999999), 2'000'000'000U);
   EXPECT_EQ(ros_time_ns(1'700'000'000.5), 1'700'000'000'500'000'000U);

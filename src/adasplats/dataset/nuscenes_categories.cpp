@@ -15,7 +15,7 @@ namespace {
 
 using WordAndCategory = std::pair<std::string_view, std::string_view>;
 
-/// The first word that a class's name holds decides. Riders belong to what they ride, as in
+/// The first word found in the name of a class decides. Riders belong to their vehicle, as in
 /// nuScenes.
 constexpr WordAndCategory kNuscenesWords[] = {
     {"unlabel", "noise"},
@@ -59,7 +59,7 @@ constexpr WordAndCategory kNuscenesWords[] = {
 
 std::uint8_t index_of_category(std::string_view name) {
   const SemanticClass* const found = nuscenes_labels().find(name);
-  if (found == nullptr) throw std::logic_error("nuscenes_category: no such name");
+  if (found == nullptr) throw std::logic_error("nuscenes_category: unknown name");
   return static_cast<std::uint8_t>(found->id);
 }
 

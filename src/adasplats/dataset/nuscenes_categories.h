@@ -8,13 +8,13 @@
 
 namespace adasplats {
 
-/// The 32 categories of nuScenes-lidarseg (nuscenes_labels()) by their indices, which its devkit
-/// has colours for; others it refuses.
+/// The 32 categories of nuScenes-lidarseg (nuscenes_labels()) by index. Its devkit has colours for
+/// these and rejects others.
 std::span<const std::string_view> nuscenes_categories();
 
-/// The index of the category that a class of a label scheme is, by the words of its name
-/// ("moving-car" is vehicle.car), or the very one: noise for what has no label, static.other where
-/// no word fits.
+/// The index of the category of a class of a label scheme: the category itself, or one found from
+/// the words of the class name ("moving-car" is vehicle.car); noise for unlabelled points,
+/// static.other if no word matches.
 std::uint8_t nuscenes_category(std::string_view class_name);
 
 }  // namespace adasplats

@@ -21,7 +21,7 @@ namespace {
 
 using Rows = nlohmann::ordered_json;
 
-// Where LIDAR_TOP sits in the frame of nuScenes' cars (calibrated_sensor.json), without its tilt.
+// Position of LIDAR_TOP in the frame of nuScenes' cars (calibrated_sensor.json), without its tilt.
 constexpr Vec3d kLidarOnEgo_m = {0.943713, 0, 1.84023};
 constexpr const char* kVisible = "4";
 
@@ -37,11 +37,11 @@ Rows quaternion_of(const Mat3d& rotation) {
 }
 
 std::int64_t microseconds_of(double time_s) {
-  date_and_time(time_s, "nuScenes");  // throws where it is none
+  date_and_time(time_s, "nuScenes");  // throws if the time is not a date
   return std::llround(1e6 * time_s);
 }
 
-/// What an object does, as nuScenes has it of its kind; empty: nothing is said.
+/// The nuScenes attribute of an object; empty: none.
 std::string attribute_of(const TreeBox& box) {
   if (box.type == "Pedestrian") return box.moves ? "pedestrian.moving" : "pedestrian.standing";
   if (box.type == "Cyclist") return "cycle.with_rider";
@@ -57,7 +57,7 @@ class SceneTables {
       if (frames[i].is_key) samples_.push_back(i);
   }
 
-  /// By their names.
+  /// Tables by name.
   std::map<std::string, Rows> all() {
     put_constants();
     put_samples();
@@ -164,7 +164,7 @@ class SceneTables {
     }
   }
 
-  /// Objects are known by their instances; each is seen in some samples, one after the other.
+  /// Adds the annotations of each object, identified by its instance, in the samples that see it.
   void put_annotations() {
     std::map<std::uint16_t, std::vector<std::pair<std::size_t, const TreeBox*>>> tracks;
     for (std::size_t k = 0; k < samples_.size(); ++k)
@@ -204,7 +204,7 @@ class SceneTables {
 
   std::span<const NuscenesFrame> frames_;
   const LabelScheme* labels_;
-  std::vector<std::size_t> samples_;  ///< their frames
+  std::vector<std::size_t> samples_;  ///< frames of the samples
   std::map<std::string, Rows> tables_;
 };
 

@@ -28,7 +28,7 @@ static_assert(std::endian::native == std::endian::little, "nuScenes' files are l
 
 using NuscenesPoint = std::array<float, 5>;
 
-/// One scan in so many is a sample: nuScenes has two a second.
+/// Number of scans per sample: nuScenes has two samples per second.
 std::size_t sample_step(const DriveSpan& drive) {
   constexpr double kSample_s = 0.5;
   if (!(drive.apart_s > kSample_s / 1e6)) return 1;
@@ -43,7 +43,7 @@ std::string nuscenes_points(const ScanView& scan, std::span<const std::uint32_t>
     const Vec3f p = scan.positions[i];
     const float measured = scan.intensities.empty() ? 0.0F : scan.intensities[i];
     const std::size_t ring = scan.rings.empty() ? 0 : scan.rings[i];
-    // Ours are numbered from the top.
+    // Our rings are numbered from the top.
     const std::size_t from_below = ring < rings ? rings - 1 - ring : ring;
     const NuscenesPoint point = {-p.y, p.x, p.z, std::isnan(measured) ? 0.0F : measured,
                                  static_cast<float>(from_below)};
@@ -53,7 +53,7 @@ std::string nuscenes_points(const ScanView& scan, std::span<const std::uint32_t>
   return bytes;
 }
 
-/// The points of a file that was written, in our axes.
+/// Reads the points of a written file, in our axes.
 std::vector<Vec3f> points_of_file(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   std::vector<Vec3f> points(bytes.size() / sizeof(NuscenesPoint));
@@ -134,11 +134,11 @@ class NuscenesWriter final : public WriterWithPoses {
     if (!frame.is_key) return frame;
     if (!with_classes_.empty()) {
       frame.classes_file = class_file(index);
-      // Every sample needs one, also where nothing returned.
+      // Every sample needs one, even without returns.
       if (!with_classes_.contains(index)) write_file(folder() / frame.classes_file, "");
     }
     if (!options_.boxes) return frame;
-    Scan scan;  // interrupted runs have left the file alone
+    Scan scan;  // an interrupted run left only the file
     scan.positions = points_of_file(folder() / frame.points_file);
     scan.time_s = pose.time_s;
     scan.world_from_sensor = pose.world_from_sensor;

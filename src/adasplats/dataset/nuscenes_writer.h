@@ -9,14 +9,14 @@
 
 namespace adasplats {
 
-/// Scans as a scene of nuScenes (Caesar et al., "nuScenes: A multimodal dataset for autonomous
-/// driving", 2020, and its devkit): the tables of write_nuscenes_tables(), samples/LIDAR_TOP/
-/// NNNNNN.pcd.bin of every scan that is half a second after the one before it, or the nearest to
-/// that, sweeps/LIDAR_TOP/NNNNNN.pcd.bin of the others; of samples with classes lidarseg/v1.0-mini/
-/// NNNNNN_lidarseg.bin, where `options.labels` names the classes. Points are float32 x (right), y
-/// (forward), z (up), intensity, ring (0 the lowest), column by column from the lowest ring on
-/// (driver_order()), or as fired. Objects of the world with a point in a sample are annotated.
-/// Errors: cannot_create, io, data (times that are no date).
+/// Writes scans as a scene of nuScenes (Caesar et al., "nuScenes: A multimodal dataset for
+/// autonomous driving", 2020, and its devkit): the tables of write_nuscenes_tables();
+/// samples/LIDAR_TOP/ NNNNNN.pcd.bin for the scans nearest to every half second;
+/// sweeps/LIDAR_TOP/NNNNNN.pcd.bin for the others; and, for samples with classes if
+/// `options.labels` names them, lidarseg/v1.0-mini/ NNNNNN_lidarseg.bin. Points are float32 x
+/// (right), y (forward), z (up), intensity, ring (0 is the lowest), column by column from the
+/// lowest ring (driver_order()), or as fired. Objects of the world with a point in a sample are
+/// annotated. Errors: cannot_create, io, data (times that are not dates).
 std::unique_ptr<ScanWriter> make_nuscenes_writer(const std::filesystem::path& folder,
                                                  const ScanWriterOptions& options);
 

@@ -20,10 +20,10 @@ namespace adasplats {
 namespace {
 
 constexpr double kFirstLatitude_deg = 49, kFirstLongitude_deg = 8.4;
-constexpr double kEarthRadius_m = 6378137;  // as the devkit has it
+constexpr double kEarthRadius_m = 6378137;  // value of the devkit
 constexpr double kGravity_m_s2 = 9.81;
 
-/// Name and meaning of each value, in their order.
+/// Name and meaning of each value, in order.
 constexpr std::array<std::pair<const char*, const char*>, 30> kOxtsValues = {{
     {"lat", "latitude (deg)"},
     {"lon", "longitude (deg)"},
@@ -57,7 +57,7 @@ constexpr std::array<std::pair<const char*, const char*>, 30> kOxtsValues = {{
     {"orimode", "mode of the orientation"},
 }};
 
-/// Yaw, pitch and roll that rotation_from_yaw_pitch_roll() makes `r` of.
+/// The inverse of rotation_from_yaw_pitch_roll(): yaw, pitch and roll of `r`.
 struct Angles {
   double yaw_rad, pitch_rad, roll_rad;
 
@@ -67,7 +67,7 @@ struct Angles {
         roll_rad(std::atan2(r.rows[2].y, r.rows[2].z)) {}
 };
 
-/// The turn from a to b as an axis with the length of its angle, radians, world axes.
+/// The rotation from a to b as a rotation vector, radians, world axes.
 Vec3d turn_between(const Mat3d& a, const Mat3d& b) {
   const Quaternion q = quaternion_from_rotation(b * a.transposed());
   const Vec3d axis = {q.x, q.y, q.z};
@@ -75,7 +75,7 @@ Vec3d turn_between(const Mat3d& a, const Mat3d& b) {
   return sine < 1e-12 ? 2.0 * axis : (2 * std::atan2(sine, q.w) / sine) * axis;
 }
 
-/// Latitude and longitude of a place in metres, whose first record is at the origin.
+/// Latitude and longitude of a position in metres relative to the first record.
 std::array<double, 2> degrees_of(Vec3d from_first_m) {
   const double mercator_m = std::cos(kFirstLatitude_deg * kDegree) * kEarthRadius_m;
   constexpr double kQuarter = std::numbers::pi / 4;
@@ -148,7 +148,7 @@ std::string OxtsRecords::line(std::size_t index) const {
                              w_level.y,
                              w_level.z})
     line += exact_text(value) + ' ';
-  // Accuracies, and the states that KITTI's records have most of the time.
+  // Accuracies, and the usual states of KITTI's records.
   return line + "0.05 0.01 4 10 4 4 0\n";
 }
 
@@ -163,7 +163,7 @@ std::string date_and_time(double time_s, std::string_view what) {
   constexpr double kNanoseconds = 1e9;
   if (!(time_s >= kFirst_s && time_s < kEnd_s - 1))
     throw Error(ErrorKind::data, std::string(what) + ": the time " + exact_text(time_s) +
-                                     " s cannot be a date, expected seconds since 1970");
+                                     " s is not a date, expected seconds since 1970");
   double whole_s = std::floor(time_s);
   auto nanoseconds = static_cast<std::int64_t>(std::llround((time_s - whole_s) * kNanoseconds));
   if (nanoseconds == static_cast<std::int64_t>(kNanoseconds)) {

@@ -10,23 +10,23 @@
 
 namespace adasplats {
 
-/// Where a record is, and how fast.
+/// Position and velocity of a record.
 struct OxtsPlace {
   double latitude_deg, longitude_deg, altitude_m;
   Vec3d velocity_m_s;  ///< east, north, up
 };
 
-/// Poses as records of KITTI's GPS/IMU unit (devkit of the raw data, dataformat.txt): what
-/// open_kitti_raw_drive() and the devkit's formulas read back. The first record is at latitude 49
-/// and longitude 8.4 degrees, where KITTI was recorded; altitudes are the z of the poses.
+/// Poses as records of KITTI's GPS/IMU unit (devkit of the raw data, dataformat.txt), from which
+/// open_kitti_raw_drive() and the devkit's formulas recover them. The first record is at latitude
+/// 49 and longitude 8.4 degrees, where KITTI was recorded; altitudes are the z of the poses.
 class OxtsRecords {
  public:
   /// world_from_imu, by time; kept by reference.
   explicit OxtsRecords(const Trajectory& imu);
 
-  /// The 30 values of record `index` in one line: place, angles, velocities, accelerations (with
-  /// gravity), angular rates by differences of neighbouring poses (0 where times do not ascend),
-  /// accuracies and states of a unit with a fix.
+  /// The 30 values of record `index` in one line: position, angles, velocities, accelerations (with
+  /// gravity), angular rates from differences of neighbouring poses (0 if times do not ascend),
+  /// accuracies and states of a GPS receiver with a fix.
   std::string line(std::size_t index) const;
   OxtsPlace place(std::size_t index) const;
 
@@ -40,11 +40,11 @@ class OxtsRecords {
   const Trajectory& imu_;
 };
 
-/// What the values of a record are, a line each: oxts/dataformat.txt.
+/// The text of oxts/dataformat.txt: one line per value of a record.
 std::string oxts_data_format();
 
-/// "2011-09-26 13:02:25.964389445" of seconds since 1970. Errors: data (`what` says whose) where a
-/// year has not four digits.
+/// Formats seconds since 1970 as "2011-09-26 13:02:25.964389445". Errors: data (naming `what`) if
+/// the year does not have four digits.
 std::string date_and_time(double time_s, std::string_view what);
 
 }  // namespace adasplats

@@ -22,9 +22,9 @@ namespace {
 constexpr double kNanosecondsInSecond = 1e9;
 constexpr std::uint64_t kNanosecondsInMicrosecond = 1000;
 constexpr double kSecondsInHour = 3600;
-constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are not quite regular
+constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are slightly irregular
 
-/// As sensors leave the factory; locally administered hardware addresses.
+/// Factory settings of sensors; locally administered hardware addresses.
 UdpEndpoint sensor_end(std::uint16_t port) {
   return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port};
 }
@@ -34,9 +34,10 @@ UdpEndpoint everyone(std::uint16_t port) {
 
 PacketSensor sensor_of(const PacketOptions& options) {
   if (options.sensor == nullptr)
-    throw Error(ErrorKind::usage,
-                "packets need the sensor that measured the scans: they are written by a "
-                "simulation, not of scans alone");
+    throw Error(
+        ErrorKind::usage,
+        "packets need the sensor that measured the scans; only a simulation can write them, "
+        "not a conversion of scans");
   require_packets(*options.sensor, options);
   return packet_sensor(*options.sensor);
 }
@@ -58,7 +59,7 @@ class PacketWriter final : public WriterWithPoses {
     encoded.points = scan.size();
     if (scan.rings.size() != scan.size() || scan.columns.size() != scan.size() ||
         scan.ranges_m.size() != scan.size())
-      throw std::logic_error("packets of a scan without rings, columns or ranges");
+      throw std::logic_error("packets need rings, columns and ranges of the scan");
     encoded.packet_returns.resize(sensor_.lasers() * sensor_.model.columns);
     for (std::size_t i = 0; i < scan.size(); ++i) {
       const std::size_t ring = scan.rings[i];
@@ -110,11 +111,12 @@ class PacketWriter final : public WriterWithPoses {
   void require_time(double begin_s, std::size_t index) const {
     const std::string scan =
         "scan " + std::to_string(index) + " begins at " + std::to_string(begin_s) + " s";
-    if (begin_s < 0) throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot say");
+    if (begin_s < 0)
+      throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot represent");
     if (end_s_ && *end_s_ - begin_s > kMaxOverlap * turn_s_)
-      throw Error(ErrorKind::data,
-                  scan + ", before the last one ended at " + std::to_string(*end_s_) +
-                      " s: one sensor cannot send both; take fewer poses, or a faster rotation");
+      throw Error(ErrorKind::data, scan + ", before the last one ended at " +
+                                       std::to_string(*end_s_) +
+                                       " s; use fewer poses or a higher rotation rate");
   }
 
   void add_column(double begin_s, std::uint32_t column, std::span<const PacketReturn> returns) {
@@ -140,7 +142,7 @@ class PacketWriter final : public WriterWithPoses {
     returns_.clear();
   }
 
-  /// Turns on until the packet is full.
+  /// Adds columns without returns until the packet is full.
   void flush() {
     for (std::uint32_t more = 0; !columns_.empty(); ++more)
       add_column(*end_s_ - turn_s_, sensor_.model.columns + more, nothing_);
@@ -150,12 +152,12 @@ class PacketWriter final : public WriterWithPoses {
   PacketSensor sensor_;
   CaptureWriter capture_;
   double turn_s_, column_s_;
-  double shift_s_ = 0;  ///< of all times
+  double shift_s_ = 0;  ///< added to all times
   std::vector<PacketReturn> nothing_;
   std::optional<double> end_s_;  ///< of the last scan
   std::uint64_t frame_ = 0, packets_ = 0, sent_us_ = 0;
   std::vector<PacketColumn> columns_;              ///< of the open packet
-  std::deque<std::vector<PacketReturn>> returns_;  ///< theirs
+  std::deque<std::vector<PacketReturn>> returns_;  ///< of these columns
 };
 
 }  // namespace
@@ -163,28 +165,31 @@ class PacketWriter final : public WriterWithPoses {
 void require_packets(const LidarModel& model, const PacketOptions& options) {
   const PacketSensor sensor = packet_sensor(model);
   const auto reject = [&](const std::string& why) {
-    throw Error(ErrorKind::usage, "packets of sensor '" + model.name + "': " + why);
+    throw Error(ErrorKind::usage, "cannot write packets of sensor '" + model.name + "': " + why);
   };
   if (sensor.format > PacketFormat::ouster_legacy)
-    reject("written are those of profile LEGACY alone");
-  if (options.returns > 1) reject("hold one return a firing; --returns 1");
+    reject("only the packet profile LEGACY can be written");
+  if (options.returns > 1) reject("they hold one return per firing; use --returns 1");
   if (options.has_angular_noise && model.angular_noise_rad > 0)
     reject(
-        "do not hold the angles of beams, so their noise would be lost; --no-noise, or a sensor "
-        "without");
-  if (!options.is_raw) reject("are as measured, with the motion in them; --points raw");
+        "they do not hold beam angles, so angular noise would be lost; use --no-noise or a sensor "
+        "without angular noise");
+  if (!options.is_raw)
+    reject("they hold points as measured, without motion compensation; use --points raw");
   const double max_m = sensor.facts.max_counts * sensor.facts.quantum_m;
   if (model.max_range_m > max_m)
-    reject("hold ranges up to " + std::to_string(max_m) + " m, and the sensor measures up to " +
-           std::to_string(model.max_range_m) + " m; --max-range");
+    reject("they hold ranges up to " + std::to_string(max_m) +
+           " m, but the sensor measures up to " + std::to_string(model.max_range_m) +
+           " m; reduce --max-range");
   if (!is_ouster(sensor.format)) return;
   const std::string mode =
       std::to_string(model.columns) + "x" + std::to_string(std::lround(model.rotation_hz));
   constexpr const char* kModes[] = {"512x10", "512x20", "1024x10", "1024x20", "2048x10", "4096x5"};
   if (std::ranges::find(kModes, mode) == std::end(kModes) ||
       model.rotation_hz != std::round(model.rotation_hz))
-    reject("its mode " + mode + " is none of 512x10, 512x20, 1024x10, 1024x20, 2048x10, 4096x5");
-  calibration_file(sensor);  // says what metadata cannot
+    reject("its mode " + mode +
+           " is not supported, expected 512x10, 512x20, 1024x10, 1024x20, 2048x10 or 4096x5");
+  calibration_file(sensor);  // throws if the metadata cannot represent the sensor
 }
 
 std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,

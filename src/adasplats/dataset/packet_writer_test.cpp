@@ -70,7 +70,7 @@ TEST(PacketWriter, RangesAndIntensities) {
   EXPECT_EQ(drive.packets, 3U * 76);  // 1808 columns and 16 more, 24 a packet
 }
 
-TEST(PacketWriter, PacketsGoOnFromScanToScan) {
+TEST(PacketWriter, PacketsContinueAcrossScans) {
   const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
   ScanWriterOptions options;
   options.packets.sensor = &sensor;
@@ -101,7 +101,7 @@ TEST(PacketWriter, TimesBefore1970) {
   EXPECT_NEAR(1e-9 * static_cast<double>(reader.next().value().time_ns), 3600 - 0.05, 0.002);
 }
 
-TEST(PacketWriter, WhatPacketsCannotHoldIsRefused) {
+TEST(PacketWriter, RejectsWhatPacketsCannotHold) {
   LidarModel sensor = load_lidar_model("velodyne-vlp-16");
   PacketOptions options;
   const auto refused = [&](const std::string& why) {

@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-/// What PandaSet calls the kinds of objects of KITTI.
+/// PandaSet's names of KITTI's object types.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kPandaLabels = {
     {{"Car", "Car"},
      {"Truck", "Medium-sized Truck"},
@@ -87,7 +87,7 @@ struct CuboidColumns {
   }
 };
 
-/// Of point `i`; as measured, it was seen from where the sensor was at its time.
+/// World position of point `i`; a raw point was measured from the sensor pose at its time.
 Vec3d world_place(const ScanView& scan, std::uint32_t i) {
   const Vec3d point = vec_cast<double>(scan.positions[i]);
   const bool is_raw = scan.frame == PointFrame::raw && scan.knots.size() > 1;
@@ -107,7 +107,7 @@ std::string pandaset_points(const ScanView& scan, std::span<const std::uint32_t>
     y.push_back(p.y);
     z.push_back(p.z);
     const double intensity = scan.intensities.empty() ? 0.0 : double{scan.intensities[i]};
-    // Networks that are trained on such files do not survive a NaN.
+    // A NaN would break the training of networks on these files.
     intensities.push_back(std::isnan(intensity) ? 0.0 : intensity);
     times.push_back(scan.moved() && !scan.times_s.empty() ? scan.begin_s() + double{scan.times_s[i]}
                                                           : scan.time_s);

@@ -11,7 +11,7 @@
 
 namespace adasplats {
 
-/// lidar/NN.pkl.gz of PandaSet: x, y, z, i, t, d of the points; `order` says which is the i-th.
+/// lidar/NN.pkl.gz of PandaSet: x, y, z, i, t, d of the points; `order` lists their indices.
 std::string pandaset_points(const ScanView& scan, std::span<const std::uint32_t> order);
 
 /// annotations/semseg/NN.pkl.gz: their classes.

@@ -103,7 +103,7 @@ class PandaSetWriter final : public WriterWithPoses {
     write_file(path, json.dump());
   }
   void finish_classes() const {
-    // Readers take the n-th file for the n-th scan: those without a return need one, too.
+    // Readers expect the n-th file to be the n-th scan, so scans without returns need one, too.
     for (std::size_t i = 0; i < trajectory().size(); ++i)
       if (!with_classes_.contains(i))
         write_file(folder() / class_file(i), pandaset_classes(ScanView(), {}));

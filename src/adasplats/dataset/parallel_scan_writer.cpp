@@ -22,8 +22,7 @@ constexpr std::size_t kScansUnderWayPerThread = 3;
 
 }  // namespace
 
-/// `turn` counts the calls of write(), so that what is appended follows them whatever scans those
-/// were of.
+/// `turn` counts the calls of write(): appending follows their order, whatever the scan numbers.
 struct ParallelScanWriter::Impl {
   struct Waiting {
     std::size_t turn = 0;
@@ -41,7 +40,7 @@ struct ParallelScanWriter::Impl {
   std::mutex mutex;
   std::condition_variable work, room;  ///< for threads; for the caller
   std::deque<Waiting> waiting;
-  std::map<std::size_t, Written> written;  ///< by turn, whose turn has not come
+  std::map<std::size_t, Written> written;  ///< by turn, not yet appended
   std::size_t taken = 0, appended = 0;     ///< turns
   bool is_appending = false;
   bool closed = false;
@@ -62,7 +61,7 @@ struct ParallelScanWriter::Impl {
       try {
         Written done = write_files(next);
         const std::size_t turn = next.turn;
-        next.scan = {};  // others can have its memory
+        next.scan = {};  // releases its memory for reuse
         append_in_turn(turn, std::move(done));
       } catch (...) {
         fail();
@@ -94,7 +93,7 @@ struct ParallelScanWriter::Impl {
     return done;
   }
 
-  /// Whoever finishes the scan whose turn it is appends it and those behind it that are ready.
+  /// The thread that finishes the next scan in order appends it and the following ready ones.
   void append_in_turn(std::size_t turn, Written done) {
     std::unique_lock lock(mutex);
     written.emplace(turn, std::move(done));

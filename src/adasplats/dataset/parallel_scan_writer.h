@@ -17,33 +17,33 @@
 namespace adasplats {
 
 struct ParallelWriteOptions {
-  int threads = 1;  ///< that encode and write, beside the caller's; at least 1
+  int threads = 1;  ///< that encode and write, in addition to the caller's; at least 1
   FileWrites writes = FileWrites::atomic;
-  bool hashed = false;  ///< whether `written` needs the SHA-256 of files; else they are empty
-  /// More files of a scan; several threads call it at once.
+  bool hashed = false;  ///< whether `written` needs the SHA-256 of files; otherwise they are empty
+  /// Returns additional files of a scan; must be thread-safe.
   std::function<std::vector<EncodedFile>(std::size_t index, const ScanView& scan)> more_files;
-  /// Hears of every scan whose files are written, in the order of write() and one at a time, on any
+  /// Called for every scan with written files, in the order of write() and one at a time, on any
   /// thread; the main file is the last one.
   std::function<void(std::size_t index, std::size_t points, std::span<const FileDigest> files)>
       written;
 };
 
-/// Writes scans beside the thread that makes them: several threads encode and write their files,
-/// what all scans have in common is appended in the order in which scans came. The same bytes for
-/// any number of threads. Memory: three scans and their bytes a thread; who is faster waits.
+/// Writes scans in the background: several threads encode and write their files; data common to all
+/// scans is appended in the order of the scans. The bytes do not depend on the number of threads.
+/// Memory: three scans and their bytes per thread; a faster caller waits.
 class ParallelScanWriter {
  public:
-  /// `writer` has to outlive it.
+  /// `writer` must outlive it.
   ParallelScanWriter(ScanWriter& writer, ParallelWriteOptions options);
-  /// Without finish() what is not written yet is given up.
+  /// Without finish(), pending scans are discarded.
   ~ParallelScanWriter();
   ParallelScanWriter(const ParallelScanWriter&) = delete;
   ParallelScanWriter& operator=(const ParallelScanWriter&) = delete;
 
-  /// Takes a scan; waits while too many are under way. What a thread failed with is thrown here or
-  /// in finish(), whichever is called next. One call at a time, by ascending numbers.
+  /// Queues a scan; waits while too many are pending. Exceptions of threads are rethrown here or in
+  /// finish(), whichever is called next. Not thread-safe; numbers must ascend.
   void write(std::size_t index, HeldScan scan);
-  /// Waits until all scans are written, then for ScanWriter::finish(). Call once, last.
+  /// Waits until all scans are written, then calls ScanWriter::finish(). Call once, last.
   void finish();
 
  private:

@@ -65,11 +65,11 @@ TEST(ParallelScanWriter, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-// What is told is in order, of files that are there, the main one last.
-TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
+// Reports are in order, name existing files, and have the main file last.
+TEST(ParallelScanWriter, ReportsCompleteScansInOrder) {
   const TemporaryFolder folder;
   const auto writer = make_scan_writer(folder.path(), ScanFormat::npy);
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> reported;
   ParallelWriteOptions options;
   options.threads = 4;
   options.hashed = true;
@@ -80,7 +80,7 @@ TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
         {"more/" + std::to_string(index) + ".txt", std::to_string(scan.size())}};
   };
   options.written = [&](std::size_t index, std::size_t points, std::span<const FileDigest> files) {
-    told.push_back(index);
+    reported.push_back(index);
     EXPECT_EQ(points, points_of(index));
     ASSERT_EQ(files.size(), 3U);
     EXPECT_EQ(files[0].name, "more/" + std::to_string(index) + ".txt");
@@ -92,11 +92,11 @@ TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
   for (std::size_t i = 0; i < kScans; ++i)
     parallel.write(i, held_scan(scan_number(i, points_of(i))));
   parallel.finish();
-  ASSERT_EQ(told.size(), kScans);
-  for (std::size_t i = 0; i < kScans; ++i) EXPECT_EQ(told[i], i);
+  ASSERT_EQ(reported.size(), kScans);
+  for (std::size_t i = 0; i < kScans; ++i) EXPECT_EQ(reported[i], i);
 }
 
-TEST(ParallelScanWriter, FewScansAreUnderWay) {
+TEST(ParallelScanWriter, FewScansArePending) {
   const TemporaryFolder folder;
   const auto writer = make_scan_writer(folder.path(), ScanFormat::pcd);
   std::atomic<std::size_t> begun = 0;
@@ -147,7 +147,7 @@ TEST(ParallelScanWriter, FailuresReachTheCaller) {
   expect_error(ErrorKind::data, {"-1"}, [&] { parallel.finish(); });
 }
 
-TEST(ParallelScanWriter, GivenUpWithoutFinish) {
+TEST(ParallelScanWriter, PendingScansAreDiscardedWithoutFinish) {
   const TemporaryFolder folder;
   const auto writer = make_scan_writer(folder.path(), ScanFormat::semantickitti);
   {

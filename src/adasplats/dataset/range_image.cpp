@@ -21,7 +21,7 @@ std::vector<std::uint16_t> levels_of(std::span<const float> ranges_m) {
   levels.reserve(ranges_m.size());
   for (const float range : ranges_m) {
     const double steps = std::nearbyint(kStepsPerMetre * static_cast<double>(range));
-    // A return is never 0, however near it is.
+    // A return is never 0, even at close range.
     levels.push_back(range > 0 ? static_cast<std::uint16_t>(std::clamp(steps, 1.0, 65535.0))
                                : std::uint16_t{0});
   }
@@ -60,7 +60,7 @@ RangeImage range_image(const ScanView& scan, ImageSize size) {
   const std::vector<std::uint32_t> labels = packed_labels(scan);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.rings[i] >= size.rings || scan.columns[i] >= size.columns)
-      throw std::logic_error("range_image: a point outside the image");
+      throw std::logic_error("range_image: point outside the image");
     const std::size_t pixel = scan.rings[i] * size.columns + scan.columns[i];
     if (image.ranges_m[pixel] > 0) continue;
     image.ranges_m[pixel] = scan.ranges_m[i];

@@ -40,7 +40,7 @@ std::vector<T> png_values(const std::filesystem::path& path, png_uint_32 format,
 }
 
 // Oracle: by hand.
-TEST(RangeImage, FirstReturnsAtTheirPlaces) {
+TEST(RangeImage, HasFirstReturnsAtTheirPixels) {
   const RangeImage image = range_image(small_scan(), {2, 3});
   EXPECT_EQ(image.ranges_m, (std::vector<float>{0, 0, 10.5F, 0.001F, 300, 0}));
   EXPECT_EQ(image.labels, (std::vector<std::uint32_t>{0, 0, 40, 3U << 16 | 50, 12345, 0}));

@@ -34,7 +34,7 @@ constexpr std::string_view kHeader =
     "builtin_interfaces/Time stamp\n"
     "string frame_id\n";
 
-/// Values as CDR lays them out: each at a multiple of its size behind the encapsulation.
+/// Values in CDR layout: each at a multiple of its size after the encapsulation.
 class CdrWriter {
  public:
   explicit CdrWriter(std::size_t bytes) {
@@ -59,7 +59,7 @@ class CdrWriter {
     put(static_cast<std::uint32_t>(time_ns % kNanoseconds));
     return text(frame);
   }
-  /// Room for an array of bytes; where it begins.
+  /// Reserves an array of bytes and returns its begin.
   char* array(std::size_t size) {
     put(static_cast<std::uint32_t>(size));
     bytes_.resize(bytes_.size() + size);
@@ -72,7 +72,7 @@ class CdrWriter {
   std::string bytes_;
 };
 
-/// The numbers of sensor_msgs/PointField.
+/// Type numbers of sensor_msgs/PointField.
 std::uint8_t point_field_type(ColumnType type) {
   switch (type) {
     case ColumnType::i8: return 1;
@@ -87,8 +87,8 @@ std::uint8_t point_field_type(ColumnType type) {
   }
 }
 
-/// Column and range follow from the rest, or nearly; the widest come first, so that all are
-/// aligned.
+/// Without column and range, which follow (nearly) from the rest; the widest fields come first, so
+/// all are aligned.
 std::vector<ColumnView> message_columns(const ScanView& scan, std::span<const float> times) {
   std::vector<ColumnView> columns = scan_columns(scan, times);
   std::erase_if(columns, [](const ColumnView& column) {
@@ -153,10 +153,10 @@ std::string transforms_definition() {
 std::uint64_t ros_time_ns(double time_s) {
   constexpr double kEnd_s = 2147483648.0;
   if (!(time_s >= 0 && time_s < kEnd_s))
-    throw Error(ErrorKind::data, "a scan at " + std::to_string(time_s) +
-                                     " s: the times of ROS messages are 0 to 2147483647 s; "
+    throw Error(ErrorKind::data, "scan at " + std::to_string(time_s) +
+                                     " s: times of ROS messages must be 0 to 2147483647 s; "
                                      "shift the times of the poses");
-  // Seconds and their fraction apart: nanoseconds since 1970 are more than a double holds.
+  // Seconds and fraction separately: a double cannot hold nanoseconds since 1970.
   const double seconds = std::floor(time_s);
   const double fraction_ns = std::round((time_s - seconds) * static_cast<double>(kNanoseconds));
   return static_cast<std::uint64_t>(seconds) * kNanoseconds +
@@ -176,7 +176,7 @@ std::string point_cloud2_message(const ScanView& scan, std::string_view frame, d
   constexpr std::size_t kAlignment = 4;
   step = (step + kAlignment - 1) / kAlignment * kAlignment;
   if (scan.size() > std::numeric_limits<std::uint32_t>::max() / step)
-    throw Error(ErrorKind::data, "a scan of " + std::to_string(scan.size()) +
+    throw Error(ErrorKind::data, "a scan with " + std::to_string(scan.size()) +
                                      " points is too large for one message");
   constexpr std::size_t kHeadBytes = 1024;
   CdrWriter message(scan.size() * step + kHeadBytes);

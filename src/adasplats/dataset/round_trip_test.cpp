@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scans of a sensor that drives, written and read again: points are where the beams ended, and the
-// beams begin where they did, which ranges tell.
+// Scans of a moving sensor, written and read again: the points are at the ends of the beams, and
+// the beams start at their origins, which is verified by the ranges.
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,7 @@ constexpr ScanFormat kFormatsWithTimes[] = {ScanFormat::mcap, ScanFormat::ply, S
 std::string name_of_format(ScanFormat format) { return std::string(word_of(format, kScanFormats)); }
 
 // Oracle: the beams as they were cast. A revolution that is half a turn late is 40 cm off.
-TEST(RoundTrip, ScansWithAMotionAreReadWhereTheyWereMeasured) {
+TEST(RoundTrip, MovingScansAreReadWhereTheyWereMeasured) {
   const DrivenCourt court({});
   for (const ScanFormat format : kFormatsWithTimes) {
     SCOPED_TRACE(name_of_format(format));
@@ -161,7 +161,7 @@ TEST(RoundTrip, ScansWithAMotionAreReadWhereTheyWereMeasured) {
 }
 
 // Oracle: as above; nothing is to be taken out of them, whatever the sensor's own times are.
-TEST(RoundTrip, ScansOfASensorThatStoodAreReadAsTheyAre) {
+TEST(RoundTrip, ScansOfASensorAtRestAreReadUnchanged) {
   const DrivenCourt court({.rolls = false});
   for (const ScanFormat format : kFormatsWithTimes) {
     SCOPED_TRACE(name_of_format(format));
@@ -178,7 +178,7 @@ TEST(RoundTrip, ScansOfASensorThatStoodAreReadAsTheyAre) {
 }
 
 // Oracle: as above.
-TEST(RoundTrip, ScansWhoseMotionWasTakenOutKeepTheirPointsAndOrigins) {
+TEST(RoundTrip, DeskewedScansKeepTheirPointsAndOrigins) {
   const DrivenCourt court({.frame = PointFrame::deskewed});
   LoadOptions stated;
   stated.points_in = PointsIn::sensor;
@@ -192,7 +192,7 @@ TEST(RoundTrip, ScansWhoseMotionWasTakenOutKeepTheirPointsAndOrigins) {
 }
 
 // Oracle: as above. The first revolution begins before 0, which no message of ROS can say.
-TEST(RoundTrip, DrivesThatBeginAtZeroAreASecondLater) {
+TEST(RoundTrip, DrivesThatBeginAtZeroAreShiftedByASecond) {
   const DrivenCourt court({.first_s = 0});
   const Faults faults = faults_of(court, court.read_again(ScanFormat::mcap));
   EXPECT_LT(faults.point_m, 0.001);

@@ -21,7 +21,7 @@ namespace adasplats {
 
 namespace {
 
-/// By rows.
+/// Row-major.
 std::array<double, 16> matrix_of(const RigidTransform& transform) {
   std::array<double, 16> values = {};
   std::size_t place = 0;
@@ -39,7 +39,7 @@ PcdViewpoint viewpoint_of(const RigidTransform& pose) {
   return {t.x, t.y, t.z, q.w, q.x, q.y, q.z};
 }
 
-/// The names of scan_columns() as those of whole arrays.
+/// The array names of scan_columns().
 std::string array_name(std::string_view column) {
   if (column == "intensity") return "intensities";
   if (column == "return_index") return "return_indices";
@@ -48,7 +48,7 @@ std::string array_name(std::string_view column) {
 
 constexpr std::uint16_t kMaxLasClass = 255;
 
-/// What LAS has fields of its own for.
+/// Columns with their own LAS fields.
 struct LasFields {
   std::vector<std::uint16_t> intensities;
   std::vector<std::uint8_t> classes, return_numbers, returns;
@@ -61,7 +61,7 @@ struct LasFields {
       intensities.push_back(
           static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))));
     }
-    // Never classified is the truth of a field that cannot hold the class; `label` can.
+    // A class that does not fit the field is written as "never classified"; `label` holds it.
     for (const std::uint16_t id : scan.classes)
       classes.push_back(id > kMaxLasClass ? std::uint8_t{0} : static_cast<std::uint8_t>(id));
     for (std::size_t i = 0; i < scan.size(); ++i) {
@@ -84,7 +84,7 @@ struct LasFields {
   }
 };
 
-/// Most formats have as many bytes a point.
+/// Most formats have a fixed number of bytes per point.
 constexpr std::size_t kExpectedPointBytes = 48;
 
 std::string ply_bytes(const ScanView& scan) {
@@ -168,22 +168,22 @@ ScanBytes scan_bytes(ScanFormat format) {
   switch (format) {
     case ScanFormat::semantickitti: return {16, 20, 0, 0};
     case ScanFormat::kitti_raw: return {16, 16, 0, 0};
-    // Half of what is packed at least: coordinates are noise in their last bits.
+    // At least half of the uncompressed size: the last bits of coordinates are noise.
     case ScanFormat::pandaset: return {20, 56, 0, 0};
     case ScanFormat::nuscenes: return {20, 21, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
-    case ScanFormat::pcap: return {0, 0, 3, 13};  // Velodyne's channels, Ouster's and their heads
+    case ScanFormat::pcap: return {0, 0, 3, 13};  // channels of Velodyne, of Ouster, and headers
     case ScanFormat::ply:
     case ScanFormat::pcd:
     case ScanFormat::npz: return {kLeast, kMost, 0, 0};
     case ScanFormat::las:
       return {30 + 10, 30 + 18, 0, 0};  // point format 6 and extra bytes
-    // Scans of an HDL-64E with all attributes take 9 bytes a return.
+    // Scans of an HDL-64E with all attributes have 9 bytes per return.
     case ScanFormat::laz: return {6, 30 + 18, 0, 0};
     case ScanFormat::range_image: return {0, 0, 4, 4 + 2 + 4 + 3};
     case ScanFormat::mcap: return {20, 28, 0, 0};  // fields are aligned, without range and column
   }
-  throw std::logic_error("scan_bytes: no such format");
+  throw std::logic_error("scan_bytes: unknown format");
 }
 
 void write_scan_ply(const std::filesystem::path& path, const ScanView& scan) {
@@ -233,7 +233,7 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::kitti_raw:
     case ScanFormat::pandaset:
     case ScanFormat::nuscenes:
-    case ScanFormat::pcap: throw std::logic_error("encode_scan_files: no format of points");
+    case ScanFormat::pcap: throw std::logic_error("encode_scan_files: not a point format");
   }
   return files;
 }

@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// What scans are written as: the tree of a data set, files of one kind, pictures, or messages.
+/// Output format of scans: the tree of a data set, point files, pictures, or messages.
 enum class ScanFormat : std::uint8_t {
   semantickitti,
   ply,
@@ -45,22 +45,22 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"nuscenes", ScanFormat::nuscenes},
     {"pcap", ScanFormat::pcap}};
 
-/// Whether the format is the tree of a data set, with points in the order of its own files.
+/// Whether the format is the tree of a data set, with points in the order of that data set.
 constexpr bool is_tree(ScanFormat format) {
   return format == ScanFormat::semantickitti ||
          (format >= ScanFormat::kitti_raw && format != ScanFormat::pcap);
 }
 
-/// Bytes that scans become, but for headers and what all have in common.
+/// Estimated bytes of scans, without headers and common data.
 struct ScanBytes {
-  double min_a_return;  ///< positions and what every scan has
-  double max_a_return;  ///< with everything that a scan can have
-  double min_a_ray;     ///< whether it returns or not
+  double min_a_return;  ///< positions and mandatory attributes
+  double max_a_return;  ///< with all attributes
+  double min_a_ray;     ///< for every ray, with or without return
   double max_a_ray;     ///< likewise, before compression
 };
 ScanBytes scan_bytes(ScanFormat format);
 
-/// Attributes that files of the format hold or their order needs; others need not be computed.
+/// Attributes that the format stores or that its point order needs.
 ScanFields fields_of(ScanFormat format);
 
 // One scan as a file, in the sensor frame. All are atomic.
@@ -69,10 +69,10 @@ ScanFields fields_of(ScanFormat format);
 void write_scan_ply(const std::filesystem::path& path, const ScanView& scan);
 
 /// .npy: PATH (float32, N x 4: x y z intensity) and PATH with "_label" before the extension
-/// (uint32, N: instance << 16 | class). Zeros for what the scan does not have.
+/// (uint32, N: instance << 16 | class). Zeros for missing attributes.
 void write_scan_npy(const std::filesystem::path& path, const ScanView& scan);
 
-/// .npz with, as far as the scan has them, points (float32, N x 3), intensities, labels (class
+/// .npz with, if the scan has them, points (float32, N x 3), intensities, labels (class
 /// ids), instances, rings, columns, times (times_from_pose()), ranges, return_indices (N each),
 /// world_from_sensor (float64, 4 x 4) and time (float64, 1).
 void write_scan_npz(const std::filesystem::path& path, const ScanView& scan);
@@ -80,16 +80,15 @@ void write_scan_npz(const std::filesystem::path& path, const ScanView& scan);
 /// PCD, binary, with the columns of scan_columns(); VIEWPOINT is world_from_sensor.
 void write_scan_pcd(const std::filesystem::path& path, const ScanView& scan);
 
-/// LAS 1.4 (LAZ where the path ends in .laz), point format 6, in millimetres. Intensity:
-/// 0..`full_intensity` becomes 0..65535. Classification is the low byte of the class, GPS time when
-/// the point was measured, or the scan's time where the sensor stood still meanwhile
-/// (times_from_pose() has why). Extra bytes: intensity_value, label, instance, ring, column, range,
-/// as far as the scan has them.
+/// LAS 1.4 (LAZ if the path ends in .laz), point format 6, in millimetres. Intensity:
+/// 0..`full_intensity` becomes 0..65535. Classification is the low byte of the class. GPS time is
+/// the time of the point, or the scan's time if the sensor was at rest (see times_from_pose()).
+/// Extra bytes, if the scan has them: intensity_value, label, instance, ring, column, range.
 void write_scan_las(const std::filesystem::path& path, const ScanView& scan,
                     double full_intensity = 1.0);
 
-/// The same as bytes: the files of `format` (ply, npy, npz, pcd, las or laz, else std::logic_error)
-/// that a scan becomes, named `stem` with their extensions. Errors: those of the formats.
+/// The same as bytes: the files of a scan in `format` (ply, npy, npz, pcd, las or laz, otherwise
+/// std::logic_error), named `stem` with their extensions. Errors: those of the formats.
 std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
                                            const ScanView& scan, double full_intensity = 1.0);
 

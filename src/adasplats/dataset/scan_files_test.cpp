@@ -136,7 +136,7 @@ TEST(ScanFiles, Las) {
 }
 
 // Oracle: the same scan as LAS.
-TEST(ScanFiles, LazHasWhatLasHas) {
+TEST(ScanFiles, LazMatchesLas) {
   const TemporaryFolder folder;
   const Scan scan = scan_with_returns();
   write_scan_las(folder.path() / "scan.las", scan);

@@ -23,7 +23,7 @@ std::string points_with_intensity(const ScanView& scan, std::span<const std::uin
     const std::size_t from = order.empty() ? i : order[i];
     const Vec3f p = positions[from];
     const float measured = intensities == nullptr ? 0.0F : intensities[from];
-    // Networks that are trained on such files do not survive a NaN.
+    // A NaN would break the training of networks on these files.
     const Record record = {p.x, p.y, p.z, std::isnan(measured) ? 0.0F : measured};
     std::memcpy(to, record.data(), sizeof(record));
   }
@@ -54,7 +54,7 @@ std::vector<std::uint8_t> returns_of_firings(const ScanView& scan) {
                       scan.columns[end] == scan.columns[begin] &&
                       scan.return_indices[end] > scan.return_indices[end - 1];
     if (same) continue;
-    // Where a return was dropped the others keep their numbers.
+    // If a return was dropped, the others keep their numbers.
     const int most = scan.return_indices[end - 1] + 1;
     for (std::size_t i = begin; i < end; ++i) counts[i] = static_cast<std::uint8_t>(most);
     begin = end;
@@ -75,7 +75,7 @@ std::vector<float> times_from_pose(const ScanView& scan) {
 std::vector<ColumnView> scan_columns(const ScanView& given, std::span<const float> times) {
   ScanView scan = given;
   scan.times_s = times;
-  // An empty scan has no first point to take addresses from.
+  // An empty scan has no first point whose address could be used.
   const Vec3f* const first = scan.positions.data();
   std::vector<ColumnView> columns = {
       {"x", ColumnType::f32, first != nullptr ? &first->x : nullptr, sizeof(Vec3f)},

@@ -14,33 +14,31 @@
 
 namespace adasplats {
 
-/// x, y, z (sensor frame, m) and intensity of each point, four floats; intensity 0 where it is not
-/// known. As the bytes of a file: a copy less of what is most of a data set.
-/// `order`: which point is the i-th; empty: the i-th.
+/// x, y, z (sensor frame, m) and intensity of each point, four floats; unknown intensities are 0.
+/// Returned as the bytes of a file, which saves a copy. `order`: indices of the points; empty: as
+/// in the scan.
 std::string points_with_intensity(const ScanView& scan, std::span<const std::uint32_t> order = {});
 
-/// instance << 16 | class of each point, 0 for what the scan does not have.
-/// `order` as there.
+/// instance << 16 | class of each point, 0 for missing attributes. `order`: as above.
 std::vector<std::uint32_t> packed_labels(const ScanView& scan,
                                          std::span<const std::uint32_t> order = {});
 
-/// How many returns the firing of each point has; points of one firing stand side by side.
+/// Number of returns of each point's firing; points of one firing must be adjacent.
 std::vector<std::uint8_t> returns_of_firings(const ScanView& scan);
 
-/// When each point was measured, s from the scan's own time (negative before it), which is that of
-/// its pose; who takes the motion out needs no more. Empty where the sensor stood still: there is
-/// no motion to take out of its points, whenever they were measured.
+/// Time of each point relative to the scan's time, which is that of its pose, s; sufficient for
+/// motion compensation. Empty if the sensor was at rest: its points need no motion compensation.
 std::vector<float> times_from_pose(const ScanView& scan);
 
-/// What the scan has, as columns of a file: x y z [intensity] [label] [instance] [ring] [column]
-/// [time] [range] [return_index]. They are views of `scan` and of `times`, the column `time`.
-/// Attributes with another number of values than points are left out.
+/// The attributes of a scan as columns of a file: x y z [intensity] [label] [instance] [ring]
+/// [column] [time] [range] [return_index]. They are views of `scan` and of `times`, the column
+/// `time`. Attributes without a value for every point are omitted.
 std::vector<ColumnView> scan_columns(const ScanView& scan, std::span<const float> times);
 
-/// "000042": how data sets name scan `index`.
+/// Name of scan `index` in data sets, such as "000042".
 std::string scan_name(std::size_t index);
 
-/// Creates a folder and those above it. Errors: cannot_create.
+/// Creates a folder and its parents. Errors: cannot_create.
 void create_folder(const std::filesystem::path& folder);
 
 }  // namespace adasplats

@@ -49,7 +49,7 @@ class SequenceWriter final : public ScanWriter {
   SemanticKittiWriter writer_;
 };
 
-/// Files of their own for every scan.
+/// Separate files for every scan.
 class FileWriter final : public WriterWithPoses {
  public:
   FileWriter(std::filesystem::path folder, ScanFormat format, const ScanWriterOptions& options)
@@ -64,7 +64,7 @@ class FileWriter final : public WriterWithPoses {
         format_ == ScanFormat::range_image
             ? encode_range_image(stem, range_image(scan, options_.image_size), options_.labels)
             : encode_scan_files(format_, stem, scan, options_.full_intensity);
-    // The main file comes first there.
+    // encode_scan_files() returns the main file first.
     std::rotate(encoded.files.begin(), encoded.files.begin() + 1, encoded.files.end());
     return encoded;
   }
@@ -79,7 +79,7 @@ class FileWriter final : public WriterWithPoses {
   ScanWriterOptions options_;
 };
 
-/// All scans as messages of one file.
+/// Writes all scans as messages of one file.
 class MessageWriter final : public WriterWithPoses {
  public:
   MessageWriter(std::filesystem::path folder, double later_s)

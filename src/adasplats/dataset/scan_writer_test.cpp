@@ -67,7 +67,7 @@ TEST(ScanWriter, SequenceIsReadBack) {
 }
 
 // Oracle: the files of a scan whose points were put in order before.
-TEST(ScanWriter, SequencesHaveKittisOrderOrThatOfFirings) {
+TEST(ScanWriter, SequencesHaveKittiOrFiringOrder) {
   const TemporaryFolder folder;
   Scan scan = scan_number(0, 90);
   for (std::size_t i = 0; i < 90; ++i) {  // two rings that turn to the right
@@ -98,7 +98,7 @@ TEST(ScanWriter, SequencesHaveKittisOrderOrThatOfFirings) {
   EXPECT_EQ(kitti.instances, expected.instances);
 }
 
-TEST(ScanWriter, FolderThatIsNotThere) {
+TEST(ScanWriter, MissingFolder) {
   const TemporaryFolder folder;
   const auto writer = make_scan_writer(folder.path() / "missing", ScanFormat::pcd);
   expect_error(ErrorKind::cannot_create, {"000000.pcd"},

@@ -19,11 +19,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "KITTI files are little-endian");
 
-// Camera axes (x right, y down, z forward) against LiDAR axes (x forward, y left, z up). A change
-// of axes alone is exact in floating point, so poses read back as they were.
+// Camera axes (x right, y down, z forward) from LiDAR axes (x forward, y left, z up). A permutation
+// of axes is exact in floating point, so poses are read back unchanged.
 constexpr RigidTransform kCameraFromVelodyne = {{{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}}, {}};
 
-/// Twelve numbers: the upper 3x4 of the matrix by rows.
+/// Twelve numbers: the upper 3x4 of the matrix, row-major.
 std::string matrix_text(const RigidTransform& transform) {
   std::string text;
   for (int r = 0; r < 3; ++r) {
@@ -41,7 +41,7 @@ constexpr std::size_t kPointBytes = 4 * sizeof(float);
 std::size_t size_of(const std::filesystem::path& path) {
   std::error_code problem;
   const auto bytes = std::filesystem::file_size(path, problem);
-  if (problem) throw system_error(ErrorKind::io, path, "cannot be looked at", problem.value());
+  if (problem) throw system_error(ErrorKind::io, path, "cannot be accessed", problem.value());
   return static_cast<std::size_t>(bytes);
 }
 
@@ -50,7 +50,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// Scans of an earlier, longer run would belong to no pose.
+/// Rejects scans of an earlier, longer run, which would have no pose.
 void refuse_other_scans(const std::filesystem::path& folder, std::size_t scans) {
   std::error_code problem;
   std::filesystem::directory_iterator entry(folder, problem);
@@ -61,9 +61,9 @@ void refuse_other_scans(const std::filesystem::path& folder, std::size_t scans) 
     const bool ours = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos &&
                       name.size() < 18 && std::stoull(name) < scans;
     if (!ours)
-      throw Error(ErrorKind::cannot_create, path.string() + ": is of another run, this one wrote " +
-                                                std::to_string(scans) +
-                                                " scans; remove it or write elsewhere");
+      throw Error(ErrorKind::cannot_create,
+                  path.string() + ": belongs to another run; this one wrote " +
+                      std::to_string(scans) + " scans; remove it or use another folder");
   }
   if (problem) throw system_error(ErrorKind::io, folder, "cannot be listed", problem.value());
 }
@@ -79,10 +79,10 @@ bool ascends(const Trajectory& trajectory) {
 SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder,
                                          std::filesystem::path more_poses)
     : folder_(std::move(sequence_folder)), more_poses_(std::move(more_poses)) {
-  std::error_code ignored;  // what cannot be looked into cannot be written either
+  std::error_code ignored;  // a folder that cannot be read fails on writing, too
   if (std::filesystem::exists(folder_ / "poses.txt", ignored))
     throw Error(ErrorKind::cannot_create,
-                folder_.string() + ": already holds a whole sequence (poses.txt)");
+                folder_.string() + ": already contains a complete sequence (poses.txt)");
   create_folder(folder_ / "velodyne");
 }
 
@@ -103,7 +103,7 @@ void SemanticKittiWriter::require_alike(const EncodedScan& scan) {
   has_labels_ = has_labels_ || scan.has_classes;
   has_unlabelled_ = has_unlabelled_ || (!scan.has_classes && scan.points != 0);
   if (has_labels_ && has_unlabelled_)
-    throw std::logic_error("SemanticKittiWriter: scans with and without classes");
+    throw std::logic_error("SemanticKittiWriter: only some scans have classes");
 }
 
 void SemanticKittiWriter::note_written(std::size_t index, const EncodedScan& scan) {
@@ -124,7 +124,7 @@ void SemanticKittiWriter::keep_scan(std::size_t index, const TimedPose& pose) {
   const std::size_t count = size_of(points) / kPointBytes;
   const bool labelled = std::filesystem::exists(labels);
   if (labelled && size_of(labels) != count * sizeof(std::uint32_t))
-    throw Error(ErrorKind::io, labels.string() + ": has another number of points than " +
+    throw Error(ErrorKind::io, labels.string() + ": does not have the same number of points as " +
                                    points.string() + "; remove both");
   has_labels_ = has_labels_ || labelled;
   has_unlabelled_ = has_unlabelled_ || (!labelled && count != 0);
@@ -154,7 +154,7 @@ void SemanticKittiWriter::finish() {
     times += exact_text(trajectory_[i].time_s) + "\n";
   }
   write_file(folder_ / "calib.txt", "Tr: " + matrix_text(kCameraFromVelodyne) + "\n");
-  // Several drives one after another have no common clock; readers then count scans.
+  // Concatenated drives have no common clock; readers then count scans.
   if (ascends(trajectory_)) write_file(folder_ / "times.txt", times);
   if (!more_poses_.empty()) {
     create_folder(more_poses_.parent_path());

@@ -14,29 +14,28 @@
 
 namespace adasplats {
 
-/// Writes scans as a SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (where
-/// the scans have classes), poses.txt (camera frame), calib.txt (with a Tr), times.txt (where the
-/// times ascend). Every file is atomic; poses come last, in finish(), so a folder with poses is
-/// whole, and the same scans written again after an interruption give the same bytes.
+/// Writes scans as a SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (if
+/// the scans have classes), poses.txt (camera frame), calib.txt (with a Tr), times.txt (if the
+/// times ascend). Every file is atomic; poses are written last, in finish(), so a folder with poses
+/// is complete. A resumed run gives the same bytes.
 class SemanticKittiWriter {
  public:
-  /// `sequence_folder` is created; the parent must exist or be creatable. `more_poses`: a file that
-  /// gets the text of poses.txt, too; empty: none.
-  /// Errors: cannot_create (also where the folder already holds a whole sequence).
+  /// Creates `sequence_folder` and its parents. `more_poses`: a file for a copy of poses.txt;
+  /// empty: none. Errors: cannot_create (also if the folder already contains a complete sequence).
   explicit SemanticKittiWriter(std::filesystem::path sequence_folder,
                                std::filesystem::path more_poses = {});
 
-  /// The files of scan number `index`, named relative to the sequence folder. Several threads may
-  /// call it at once. `order`: which point is the i-th; empty: the i-th.
+  /// The files of scan number `index`, named relative to the sequence folder. Thread-safe. `order`:
+  /// indices of the points; empty: as in the scan.
   static EncodedScan encode(std::size_t index, const ScanView& scan,
                             std::span<const std::uint32_t> order = {});
-  /// Scan number `index` is written: its pose is kept for finish(). One call at a time. Scans have
-  /// classes all or none (std::logic_error otherwise; empty ones fit both).
+  /// Stores the pose of the written scan number `index` for finish(). Not thread-safe. Either all
+  /// or no scans have classes (otherwise std::logic_error); empty scans fit both.
   void note_written(std::size_t index, const EncodedScan& scan);
-  /// Encodes, writes and notes scan number `index`. One call at a time.
+  /// Encodes, writes and records scan number `index`. Not thread-safe.
   void write_scan(std::size_t index, const ScanView& scan);
-  /// Scan number `index` was written before an interruption: keeps its pose for finish(). Throws
-  /// Errors of kind io where its files are missing or have other numbers of points.
+  /// Stores the pose of scan number `index`, which was written before an interruption, for
+  /// finish(). Errors: io (its files are missing or have different numbers of points).
   void keep_scan(std::size_t index, const TimedPose& pose);
   /// Every index from 0 to the largest must have been written (std::logic_error otherwise).
   void finish();
@@ -47,7 +46,7 @@ class SemanticKittiWriter {
 
   std::filesystem::path folder_, more_poses_;
   Trajectory trajectory_;                                 ///< by index
-  std::vector<std::optional<std::size_t>> point_counts_;  ///< by index; nothing: not written yet
+  std::vector<std::optional<std::size_t>> point_counts_;  ///< by index; empty: not written yet
   bool has_labels_ = false;
   bool has_unlabelled_ = false;
 };

@@ -74,7 +74,7 @@ TEST(SemanticKittiWriter, ScansWithoutClassesHaveNoLabels) {
   EXPECT_EQ(read_kitti_scan(sequence, 0).intensities, std::vector<float>(3, 0.0F));
 }
 
-TEST(SemanticKittiWriter, TimesThatDoNotAscendAreLeftOut) {
+TEST(SemanticKittiWriter, NonAscendingTimesAreOmitted) {
   const TemporaryFolder folder;
   SemanticKittiWriter writer(folder.path() / "s");
   writer.write_scan(0, scan_number(5, 1));
@@ -128,7 +128,7 @@ TEST(SemanticKittiWriter, KeptScansGiveTheSameFiles) {
         << name;
 }
 
-TEST(SemanticKittiWriter, KeptScansMustBeThere) {
+TEST(SemanticKittiWriter, KeptScansMustExist) {
   const TemporaryFolder folder;
   SemanticKittiWriter writer(folder.path() / "s");
   expect_error(ErrorKind::io, {"000004.bin"}, [&] { writer.keep_scan(4, {}); });

@@ -13,15 +13,15 @@
 
 namespace adasplats {
 
-/// An object of the world with a point in a scan, as trees of data sets list them.
+/// An object of the world with a point in a scan, as listed in data sets.
 struct TreeBox {
   ObjectBox box;           ///< in the world
   std::string type;        ///< kitti_type() of its class
-  bool moves = false;      ///< by its class, or by where it is a tenth of a second later
-  std::size_t points = 0;  ///< of the scan, sensed_boxes()
+  bool moves = false;      ///< by its class, or by its position a tenth of a second later
+  std::size_t points = 0;  ///< points of the scan in the box: sensed_boxes()
 };
 
-/// The objects of scan `index` that have a point in it.
+/// The objects with a point in scan `index`.
 std::vector<TreeBox> boxes_with_points(const BoxesOfScan& boxes, std::size_t index,
                                        const ScanView& scan, const LabelScheme* labels);
 

@@ -8,14 +8,13 @@
 
 namespace adasplats {
 
-/// Number `index` with at least so many digits, zeros before it.
+/// Number `index`, zero-padded to at least this number of digits.
 std::string padded_number(std::size_t index, std::size_t digits);
 
-/// 32 hexadecimal digits that stand for `name`, always the same, as nuScenes' tokens are: made of
-/// its SHA-256.
+/// A deterministic token for `name`, like those of nuScenes: 32 hexadecimal digits of its SHA-256.
 std::string token_of(std::string_view name);
 
-/// The same with the dashes of a UUID.
+/// The same, with the dashes of a UUID.
 std::string uuid_of(std::string_view name);
 
 }  // namespace adasplats

@@ -9,7 +9,7 @@
 
 namespace adasplats {
 
-/// What stands beside the scans: poses.csv, world_from_sensor of every one.
+/// Writes poses.csv, world_from_sensor of every scan, next to the scans.
 class WriterWithPoses : public ScanWriter {
  public:
   using ScanWriter::ScanWriter;
@@ -20,7 +20,7 @@ class WriterWithPoses : public ScanWriter {
   void finish() override { write_trajectory_csv(folder() / "poses.csv", trajectory_); }
 
  protected:
-  /// Of the scans so far, by their numbers.
+  /// Poses of the scans so far, by number.
   const Trajectory& trajectory() const { return trajectory_; }
 
  private:

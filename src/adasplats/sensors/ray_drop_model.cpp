@@ -161,7 +161,7 @@ bool RayDropModel::blocks(Vec3f direction) const {
 
 std::string ray_drop_toml(const RayDropModel& model, const std::string& prefix) {
   std::string text =
-      "# How likely a beam that met something is not told: logistic(weights * (1, r, "
+      "# Probability that an echo is dropped: logistic(weights * (1, r, "
       "r^2, log r,\n# 1 - cos, (1 - cos)^2, log reflectance, r * log reflectance)), "
       "r in units of 10 m, cos of the\n# incidence; always in blocked directions.\n";
   text += "fitted_to = " + quoted(model.fitted_to) + "\n";

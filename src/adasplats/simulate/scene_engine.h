@@ -15,12 +15,12 @@ class SceneEngine {
  public:
   virtual ~SceneEngine() = default;
 
-  /// For rays made by the caller; on the first device.
+  /// Tracer for rays of the caller, on the first device.
   virtual const Tracer& tracer() const = 0;
-  /// For scans.
+  /// Caster for scans.
   virtual const SceneCaster& scan_caster() const = 0;
-  /// For pictures, on the first device. `scene.view` must be the traced scene. The engine, and
-  /// whatever `scene` views, must outlive the renderer.
+  /// Renderer for pictures, on the first device. `scene.view` must be the traced scene. The engine
+  /// and the data viewed by `scene` must outlive the renderer.
   virtual std::unique_ptr<ImageRenderer> renderer(const ImageScene& scene,
                                                   const ImageOptions& options) const = 0;
 };

@@ -36,8 +36,8 @@ void cuda_check(cudaError_t status, std::string_view doing) {
   if (status == cudaErrorMemoryAllocation) {
     throw Error(ErrorKind::unavailable, where + out_of_memory());
   }
-  throw Error(ErrorKind::unavailable, where + "CUDA says '" + cudaGetErrorString(status) + "' (" +
-                                          cudaGetErrorName(status) + ")");
+  throw Error(ErrorKind::unavailable, where + "CUDA reports '" + cudaGetErrorString(status) +
+                                          "' (" + cudaGetErrorName(status) + ")");
 }
 
 DeviceGuard::DeviceGuard(int device) {

@@ -9,12 +9,12 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: throws an Error (`unavailable`) where a CUDA call failed. `doing` says what was
-/// being done ("copy the rays to the GPU"). Out of memory is reported with what is free and with
-/// what helps. Also used after a kernel launch: cuda_check(cudaGetLastError(), "sort the points").
+/// Private to gpu/: throws an Error (`unavailable`) if a CUDA call failed. `doing` names the action
+/// ("copy the rays to the GPU"). Out-of-memory errors report the free memory and a remedy. Also
+/// used after a kernel launch: cuda_check(cudaGetLastError(), "sort the points").
 void cuda_check(cudaError_t status, std::string_view doing);
 
-/// Makes a device the current one of this thread and restores the former one.
+/// Makes a device the current one of this thread and restores the previous one on destruction.
 class DeviceGuard {
  public:
   explicit DeviceGuard(int device);
@@ -26,8 +26,8 @@ class DeviceGuard {
   int before_ = 0;
 };
 
-/// Makes a GPU the current one. Errors: unavailable ("cannot <doing> on a GPU: ..."; there is none,
-/// or not that one).
+/// Makes a GPU the current one. Errors: unavailable ("cannot <doing> on a GPU: ...": no GPU, or no
+/// such device).
 [[nodiscard]] DeviceGuard enter_gpu(int device, const std::string& doing);
 
 }  // namespace adasplats::gpu

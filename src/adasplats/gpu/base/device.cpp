@@ -15,7 +15,7 @@ std::string capability_text(int capability) {
   return std::to_string(capability / 10) + "." + std::to_string(capability % 10);
 }
 
-/// Why this build has no code for a card.
+/// The reason why this build cannot use a GPU.
 std::string why_too_old(const std::string& name, int capability) {
   if (capability < kOldest)
     return name + " is too old: compute capability 7.5 (Turing) or newer is needed";
@@ -54,7 +54,7 @@ GpuSearch find_gpus() {
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) {
-    cudaGetLastError();  // not the business of the next call
+    cudaGetLastError();  // clears the error for the next call
     search.reason = why_none(status, driver_version);
     return search;
   }
@@ -86,11 +86,11 @@ std::size_t free_memory_bytes(int device) {
   int before = 0;
   std::size_t free_bytes = 0, total_bytes = 0;
   cudaGetDevice(&before);
-  const bool told = cudaSetDevice(device) == cudaSuccess &&
-                    cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess;
+  const bool has_info = cudaSetDevice(device) == cudaSuccess &&
+                        cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess;
   cudaSetDevice(before);
-  cudaGetLastError();  // not the business of the next call
-  return told ? free_bytes : 0;
+  cudaGetLastError();  // clears the error for the next call
+  return has_info ? free_bytes : 0;
 }
 
 bool built_with_cuda() { return true; }

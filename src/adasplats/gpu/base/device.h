@@ -10,26 +10,26 @@ namespace adasplats {
 
 /// A GPU that CUDA can use.
 struct GpuDevice {
-  int index = 0;  ///< CUDA's number of it, in this process
+  int index = 0;  ///< CUDA device number in this process
   std::string name;
   int compute_major = 0;  ///< compute capability
   int compute_minor = 0;
   std::size_t memory_bytes = 0;
 };
 
-/// What a search for GPUs found.
+/// Result of a search for GPUs.
 struct GpuSearch {
   std::vector<GpuDevice> devices;
   std::string driver;  ///< highest CUDA version that the driver supports, "13.0"; empty: no driver
-  std::string reason;  ///< where there are none: why, and what to do about it
+  std::string reason;  ///< why there are none, and the remedy; empty if there are GPUs
 };
 
-/// Looks for GPUs. Never throws and changes nothing: on a machine without a GPU, with an old driver
-/// or in a build without CUDA it says so in `reason`.
+/// Searches for GPUs. Never throws and changes nothing; without a GPU, with an old driver or in a
+/// build without CUDA, `reason` explains it.
 GpuSearch find_gpus();
 
-/// What other work leaves of a GPU's memory, bytes; 0 where it is not known. Starts CUDA on
-/// it, which takes a while and some memory.
+/// Free memory of a GPU, bytes; 0 if unknown. Starts CUDA on the device, which takes some time and
+/// memory.
 std::size_t free_memory_bytes(int device);
 
 /// Whether this build has CUDA code.

@@ -11,7 +11,7 @@
 namespace adasplats::gpu {
 namespace {
 
-/// Guards of one pool nest: the last one gives the memory back.
+/// Guards of a pool nest: the last one releases the memory.
 std::mutex guards_mutex;                 // NOLINT: shared by the guards alone
 std::map<cudaMemPool_t, int> guards_of;  // NOLINT
 

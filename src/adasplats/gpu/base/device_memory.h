@@ -14,8 +14,8 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: owners of what CUDA gives. All of them are moved, never copied, and give back
-/// what they hold.
+/// Private to gpu/: owners of CUDA resources. All are movable, not copyable, and release what they
+/// own.
 
 /// A queue of work on the current device.
 class Stream {
@@ -33,14 +33,14 @@ class Stream {
   }
 
   cudaStream_t get() const { return stream_; }
-  /// Waits for everything queued so far; errors of kernels show here.
+  /// Waits for everything queued so far; kernel errors are reported here.
   void wait(std::string_view doing) const { cuda_check(cudaStreamSynchronize(stream_), doing); }
 
  private:
   cudaStream_t stream_ = nullptr;
 };
 
-/// A point in a stream that can be waited for and timed.
+/// A point in a stream, to wait for or to time.
 class Event {
  public:
   Event() { cuda_check(cudaEventCreate(&event_), "make a CUDA event"); }
@@ -55,7 +55,7 @@ class Event {
 
   void record(cudaStream_t stream) { cuda_check(cudaEventRecord(event_, stream), "time the GPU"); }
   void wait(std::string_view doing) const { cuda_check(cudaEventSynchronize(event_), doing); }
-  /// Seconds from `start` to this; both must have happened.
+  /// Seconds from `start` to this event; both must be complete.
   double seconds_since(const Event& start) const {
     float milliseconds = 0;
     cuda_check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "time the GPU");
@@ -67,9 +67,9 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Device memory for `size()` values, allocated and freed in the order of a stream (the memory of
-/// freed buffers is used again without asking the driver). Contents are undefined at first. The
-/// stream must outlive the buffer, and other streams must have finished with it.
+/// Device memory for `size()` values, allocated and freed in stream order (freed memory is reused
+/// without a call to the driver). Initially undefined. The stream must outlive the buffer, and
+/// other streams must have finished using it.
 template <class T>
 class DeviceBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -82,7 +82,7 @@ class DeviceBuffer {
     cuda_check(cudaMallocAsync(&memory, size * sizeof(T), stream), "get memory of the GPU");
     data_ = static_cast<T*>(memory);
   }
-  /// A copy of host memory; pageable memory is free again when this returns.
+  /// A copy of host memory; pageable memory may be reused when this returns.
   DeviceBuffer(std::span<const T> values, cudaStream_t stream)
       : DeviceBuffer(values.size(), stream) {
     upload(values);
@@ -109,7 +109,7 @@ class DeviceBuffer {
         cudaMemcpyAsync(data_, values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream_),
         "copy to the GPU");
   }
-  /// All values on the host, when everything queued before has run.
+  /// Copies all values to the host after everything queued before.
   std::vector<T> download() const { return download(size_); }
   std::vector<T> download(std::size_t count) const {
     std::vector<T> values(count);
@@ -138,8 +138,7 @@ class DeviceBuffer {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Host memory that the GPU copies to and from at full speed, and that it can be given the address
-/// of.
+/// Page-locked host memory: copies run at full speed, and the GPU can access it directly.
 template <class T>
 class PinnedBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -173,8 +172,8 @@ class PinnedBuffer {
   std::size_t size_ = 0;
 };
 
-/// While this lives, memory of freed buffers of a device stays with the process to be used again;
-/// then all of it is given back.
+/// Keeps the memory of freed buffers of a device for reuse by the process; releases it on
+/// destruction.
 class MemoryPoolGuard {
  public:
   explicit MemoryPoolGuard(int device);

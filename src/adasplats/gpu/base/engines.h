@@ -10,18 +10,18 @@
 
 namespace adasplats {
 
-// CUDA implementations of the engines of other stages. `device`: CUDA's number. They free device
-// memory when they, or the steps they made, end. Errors: unavailable (no such GPU, not enough
-// memory), with a remedy.
+// CUDA implementations of the engines of other stages. `device`: CUDA device number. Engines, and
+// the steps they create, free their device memory on destruction. Errors: unavailable (no such GPU,
+// not enough memory), with a remedy.
 
-/// Builds models: the steps of build_model() with the CPU's bits.
+/// Builds models: the steps of build_model(), bit-identical to the CPU.
 std::unique_ptr<ModelEngine> make_cuda_model_engine(int device);
 
-/// The steps of calibrate() with the CPU's bits. Points are copied to the GPU once.
+/// The steps of calibrate(), bit-identical to the CPU. Points are copied to the GPU once.
 std::unique_ptr<CalibrationSteps> make_cuda_calibration_steps(int device);
 
-/// Runs networks: grids and neighbourhoods have the CPU's bits; matrix products are summed in
-/// another order (docs/segmentation.md gives the differences of logits).
+/// Runs networks: grids and neighbourhoods are bit-identical to the CPU; matrix products are summed
+/// in a different order (docs/segmentation.md gives the differences of logits).
 std::unique_ptr<SegmentEngine> make_cuda_segment_engine(int device);
 
 }  // namespace adasplats

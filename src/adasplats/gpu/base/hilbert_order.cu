@@ -73,7 +73,7 @@ DeviceBuffer<std::uint64_t> curve_keys(const Vec3f* points, std::size_t count,
   return keys;
 }
 
-/// Places of keys that occur more than once in sorted keys.
+/// Positions of keys that occur more than once in sorted keys.
 DeviceBuffer<std::uint32_t> repeated(const DeviceBuffer<std::uint64_t>& keys, cudaStream_t stream) {
   const std::size_t count = keys.size();
   DeviceBuffer<std::uint8_t> flags(count, stream);
@@ -84,7 +84,7 @@ DeviceBuffer<std::uint32_t> repeated(const DeviceBuffer<std::uint64_t>& keys, cu
   return flagged(flags.data(), count, stream);
 }
 
-/// The bits of a point's value, which sort as the value does.
+/// The bits of a point's value, in an order-preserving encoding.
 struct ValueBits {
   TieBreaker by;
 
@@ -100,7 +100,7 @@ struct ValueBits {
   }
 };
 
-/// Sorts points by a value and keeps the order of equal ones.
+/// Stable sort of points by a value.
 void sort_by(TieBreaker by, DeviceBuffer<std::uint32_t>& points, cudaStream_t stream) {
   DeviceBuffer<std::uint32_t> keys(points.size(), stream);
   for_each(points.size(), stream, "order points",
@@ -109,15 +109,15 @@ void sort_by(TieBreaker by, DeviceBuffer<std::uint32_t>& points, cudaStream_t st
   sort_pairs(keys, points, stream);
 }
 
-/// Sorts the points that share a cell of the curve: by one value after another, the least
-/// important first, and at last by the cell.
+/// Sorts the points that share a cell of the curve: by one value after another, least significant
+/// first, and finally by the cell.
 void sort_within_cells(const Vec3f* points, const DeviceBuffer<std::uint64_t>& keys,
                        std::span<const TieBreaker> more, DeviceBuffer<std::uint32_t>& order,
                        cudaStream_t stream) {
   const DeviceBuffer<std::uint32_t> places = repeated(keys, stream);
   if (places.empty()) return;
   DeviceBuffer<std::uint32_t> crowded(places.size(), stream);
-  DeviceBuffer<std::uint32_t> cells(order.size(), stream);  // of a point: where its cell begins
+  DeviceBuffer<std::uint32_t> cells(order.size(), stream);  // begin of each point's cell
   for_each(places.size(), stream, "order points",
            [keys = keys.data(), order = order.data(), places = places.data(),
             crowded = crowded.data(), cells = cells.data()] __device__(std::uint64_t i) {

@@ -12,12 +12,12 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: one value a point, in device memory, that decides where others are equal.
+/// Private to gpu/: one value per point, in device memory, that breaks ties.
 struct TieBreaker {
   enum class Kind : std::uint8_t { real, whole_32, whole_16, whole_8 };
   Kind kind = Kind::real;
   const void* values = nullptr;
-  std::uint32_t stride = 1;  ///< from point to point, in values
+  std::uint32_t stride = 1;  ///< between points, in values
 
   static TieBreaker of(const float* values) { return {Kind::real, values}; }
   static TieBreaker of(const std::uint32_t* values) { return {Kind::whole_32, values}; }
@@ -28,13 +28,13 @@ struct TieBreaker {
   }
 };
 
-/// Private to gpu/: the order that hilbert_order() of neighbors/hilbert.h gives, of points in
-/// device memory. `more` decides where the coordinates are equal, the least important first, and
-/// then the index. Any number of points may be equal. Waits for the stream.
+/// Private to gpu/: hilbert_order() of neighbors/hilbert.h for points in device memory. `more`
+/// breaks ties of equal coordinates, least significant first, then the index. Any number of points
+/// may be equal. Waits for the stream.
 DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
                                           cudaStream_t stream,
                                           std::span<const TieBreaker> more = {});
-/// The same over a box that holds them all.
+/// The same over a given box that contains all points.
 DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
                                           const CurveBox& box, cudaStream_t stream,
                                           std::span<const TieBreaker> more = {});

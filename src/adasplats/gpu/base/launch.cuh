@@ -17,7 +17,7 @@ __global__ void __launch_bounds__(kBlockThreads) for_each_kernel(std::uint64_t c
   if (i < count) body(i);
 }
 
-/// Private to gpu/: calls body(i) for i in [0, count), each in a thread of its own, on the stream.
+/// Private to gpu/: calls body(i) for i in [0, count) on the stream, one thread per i.
 template <class F>
 void for_each(std::uint64_t count, cudaStream_t stream, const char* doing, F body) {
   if (count == 0) return;

@@ -11,15 +11,15 @@
 
 namespace adasplats::gpu {
 
-// Private to gpu/: the steps of ModelEngine in the memory of one GPU. The cloud is copied there in
-// load(), the splats come back in take_splats(). Everything has the CPU's bits. Errors: unavailable
-// (no such GPU, not enough memory), usage (neighbourhoods of more than 512 points or cells), with a
-// remedy; after one, the steps can only be destroyed.
+// Private to gpu/: the steps of ModelEngine on one GPU. load() copies the cloud to it,
+// take_splats() copies the splats back. All results are bit-identical to the CPU. Errors, with a
+// remedy: unavailable (no such GPU, not enough memory), usage (neighbourhoods of more than 512
+// points or cells). After an error, the steps can only be destroyed.
 
 /// The steps of the paper's methods.
 std::unique_ptr<PaperSteps> make_cuda_paper_steps(int device);
 
-/// The steps of the ray-consistent method. They also show their state (consistent_state.h).
+/// The steps of the ray-consistent method. They also expose their state (consistent_state.h).
 std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device);
 
 /// ModelEngine::measure_reflectances().

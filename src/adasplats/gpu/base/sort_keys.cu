@@ -50,7 +50,7 @@ struct BeginsRun {
   __device__ bool operator()(std::uint32_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
-/// Numbers below `count` for which `is_wanted` holds, and `spare` entries behind them.
+/// Numbers below `count` for which `is_wanted` holds, followed by `spare` entries.
 template <class F>
 DeviceBuffer<std::uint32_t> numbers_where(std::size_t count, std::size_t spare, F is_wanted,
                                           cudaStream_t stream) {

@@ -11,11 +11,11 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: sorts, selections and sums of device memory on a stream. The only place that
-/// includes CUB, which is slow to compile. All results are the same on every run and every GPU.
+/// Private to gpu/: sorts, selections and sums of device memory on a stream. CUB, which is slow to
+/// compile, is included only here. All results are the same on every run and every GPU.
 /// At most 2^31 - 1 values.
 
-/// Bits that sort as floats do, negative ones too; -0 and 0 are equal.
+/// Encodes a float, also a negative one, as bits in the same order; -0 and 0 are equal.
 ADASPLATS_HD inline std::uint32_t sortable_bits(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
   return bits >> 31 != 0 ? ~bits : bits | 0x80000000U;
@@ -25,7 +25,7 @@ ADASPLATS_HD inline float from_sortable_bits(std::uint32_t bits) {
   return std::bit_cast<float>(bits >> 31 != 0 ? bits & 0x7fffffffU : ~bits);
 }
 
-/// Sorts by key, the values along; stable. Bits outside [first_bit, end_bit) must be equal in all
+/// Stable sort of keys and their values. Bits outside [first_bit, end_bit) must be equal in all
 /// keys.
 void sort_pairs(DeviceBuffer<std::uint64_t>& keys, DeviceBuffer<std::uint32_t>& values,
                 cudaStream_t stream, int first_bit = 0, int end_bit = 64);
@@ -35,7 +35,7 @@ void sort_pairs(DeviceBuffer<std::uint32_t>& keys, DeviceBuffer<std::uint32_t>& 
 /// 0, 1, 2, ...
 DeviceBuffer<std::uint32_t> ascending_numbers(std::size_t count, cudaStream_t stream);
 
-/// Sorts the keys and gives the permutation: order[i] is the index before sorting. Stable, as
+/// Sorts the keys and returns the permutation: order[i] is the index before sorting. Stable, as
 /// Executor::sort_keys.
 DeviceBuffer<std::uint32_t> sort_order(DeviceBuffer<std::uint64_t>& keys, cudaStream_t stream,
                                        int first_bit = 0, int end_bit = 64);
@@ -44,8 +44,8 @@ DeviceBuffer<std::uint32_t> sort_order(DeviceBuffer<std::uint64_t>& keys, cudaSt
 DeviceBuffer<std::uint32_t> flagged(const std::uint8_t* flags, std::size_t count,
                                     cudaStream_t stream);
 
-/// Where runs of equal keys begin in sorted keys, ascending, and `count` behind the last: one entry
-/// more than there are runs; {0} for no keys. Waits for the stream.
+/// Begins of the runs of equal keys in sorted keys, ascending, followed by `count`; {0} for no
+/// keys. Waits for the stream.
 DeviceBuffer<std::uint32_t> run_begins(const std::uint64_t* sorted_keys, std::size_t count,
                                        cudaStream_t stream);
 
@@ -53,16 +53,16 @@ DeviceBuffer<std::uint32_t> run_begins(const std::uint64_t* sorted_keys, std::si
 DeviceBuffer<std::uint64_t> running_sums(const std::uint32_t* counts, std::size_t count,
                                          cudaStream_t stream);
 
-/// values[i] becomes the sum of those before it.
+/// Exclusive prefix sum, in place.
 void sum_in_place(std::uint64_t* values, std::size_t count, cudaStream_t stream);
 
-/// Sum of floats in double: the same bits as Executor::sum_chunks over chunks of 4096. Waits for
+/// Sum of floats in double, bit-identical to Executor::sum_chunks over chunks of 4096. Waits for
 /// the stream.
 double sum_in_chunks(const float* values, std::size_t count, cudaStream_t stream);
-/// Of whole numbers. Waits for the stream.
+/// Sum of integers. Waits for the stream.
 std::uint64_t sum_of(const std::uint32_t* values, std::size_t count, cudaStream_t stream);
 
-/// One value from the device. Waits for the stream.
+/// Copies one value from the device. Waits for the stream.
 template <class T>
 T read_value(const T* value, cudaStream_t stream) {
   T result{};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr unsigned kDriverVersion = 12000;  // of the functions below
 
-/// A function of the driver, which is not linked: it is found where there is one.
+/// Finds a function of the driver, which is not linked.
 template <class Function>
 Function driver_function(const char* name) {
   void* function = nullptr;
@@ -28,11 +28,11 @@ Function driver_function(const char* name) {
       "ask the driver for its functions");
   if (found != cudaDriverEntryPointSuccess || function == nullptr)
     throw Error(ErrorKind::unavailable,
-                std::string("the driver of the GPU has no ") + name + ": a newer one has");
+                std::string("the GPU driver has no ") + name + "; update the driver");
   return reinterpret_cast<Function>(function);
 }
 
-/// What reserves addresses and puts memory behind them.
+/// Driver functions that reserve addresses and map memory to them.
 struct Driver {
   decltype(&cuMemGetAllocationGranularity) granularity =
       driver_function<decltype(&cuMemGetAllocationGranularity)>("cuMemGetAllocationGranularity");

@@ -9,21 +9,21 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: addresses on the current device, pages of which have memory behind them while
-/// somebody holds them.
+/// Private to gpu/: a range of addresses on the current device; its pages have memory while they
+/// are held.
 class ReservedDeviceMemory {
  public:
-  /// Errors: unavailable (the driver has no such range of addresses).
+  /// Errors: unavailable (the driver cannot reserve the range).
   explicit ReservedDeviceMemory(std::size_t bytes);
   ~ReservedDeviceMemory();
   ReservedDeviceMemory(const ReservedDeviceMemory&) = delete;
   ReservedDeviceMemory& operator=(const ReservedDeviceMemory&) = delete;
 
   std::byte* data() const { return data_; }
-  /// Memory behind [begin, end), whose contents are undefined at first. Errors: unavailable (there
-  /// is not enough; then nothing was taken).
+  /// Maps memory to [begin, end), initially undefined. Errors: unavailable (not enough memory; then
+  /// nothing is mapped).
   void hold(std::size_t begin, std::size_t end);
-  /// The end of a hold() of the same range. Nothing on the device uses it any more.
+  /// Ends a hold() of the same range, which the device must no longer use.
   void release(std::size_t begin, std::size_t end);
 
  private:
@@ -41,8 +41,8 @@ class ReservedDeviceMemory {
   std::vector<Page> pages_;
 };
 
-/// An array on the current device with a place for every element of something larger than its
-/// memory. One thread at a time holds and releases.
+/// An array on the current device that may be larger than its memory; only held parts have memory.
+/// hold() and release() are not thread-safe.
 template <class T>
 class SparseDeviceArray {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -8,20 +8,20 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what the 32 threads of a warp work out together. All lanes call these, and all
-/// get the same bits.
+/// Private to gpu/: reductions over the 32 threads of a warp. All lanes call them, and all get the
+/// same bits.
 
 inline constexpr std::uint32_t kWarpLanes = 32;
 inline constexpr std::uint32_t kAllLanes = 0xffffffffU;
 
 __device__ inline std::uint32_t lane_of_thread() { return threadIdx.x % kWarpLanes; }
 
-/// How many lanes before this one are set.
+/// Number of set lanes before this one.
 __device__ inline std::uint32_t lanes_before(std::uint32_t mask) {
   return __popc(mask & ((1U << lane_of_thread()) - 1U));
 }
 
-/// Added in pairs that stand 16, 8, 4, 2 and 1 apart: always the same order.
+/// Adds pairs 16, 8, 4, 2 and 1 lanes apart: always the same order.
 __device__ inline double warp_sum(double value) {
   for (int apart = kWarpLanes / 2; apart > 0; apart /= 2)
     value += __shfl_xor_sync(kAllLanes, value, apart);
@@ -50,7 +50,7 @@ __device__ inline std::uint32_t warp_min(std::uint32_t value) {
 
 __device__ inline std::uint32_t warp_max(std::uint32_t value) { return ~warp_min(~value); }
 
-/// Of floats that are not negative: their bits sort as they do.
+/// For non-negative floats, whose bits have the same order.
 __device__ inline float warp_largest(float value) {
   return __uint_as_float(warp_max(__float_as_uint(value)));
 }
@@ -74,7 +74,7 @@ __global__ void __launch_bounds__(kBlockThreads) for_each_warp_kernel(std::uint6
   if (i < count) body(static_cast<std::uint32_t>(i));
 }
 
-/// Private to gpu/: calls body(i) for i in [0, count), each with the 32 lanes of a warp.
+/// Private to gpu/: calls body(i) for i in [0, count) with all 32 lanes of a warp for each.
 template <class F>
 void for_each_warp(std::uint64_t count, cudaStream_t stream, const char* doing, F body) {
   if (count == 0) return;

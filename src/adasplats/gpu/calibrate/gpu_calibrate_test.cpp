@@ -13,7 +13,7 @@
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/base/engines.h"
 
-// The oracle of all tests here is the CPU on the same drive.
+// The oracle of all tests is the CPU on the same drive.
 namespace adasplats {
 namespace {
 
@@ -28,7 +28,7 @@ class CalibrateOnGpu : public testing::Test {
   Executor executor_{2};
 };
 
-/// How many values differ in any bit; those that one side has more differ, too.
+/// Number of values that differ in any bit, including surplus values of either side.
 template <class T>
 std::size_t count_different(const std::vector<T>& a, const std::vector<T>& b) {
   const std::size_t common = std::min(a.size(), b.size());
@@ -48,7 +48,7 @@ void expect_same(const PlaneStep& a, const PlaneStep& b) {
   EXPECT_EQ(count_different(a.lasers, b.lasers), 0U) << "lasers";
 }
 
-/// Every other point is one of few; the corrections are those of a wrong mount.
+/// Every other point belongs to the coarse set; the corrections are those of a mount error.
 struct Drive {
   const PointCloud& cloud;
   ChosenPoints few, all;
@@ -80,7 +80,7 @@ struct Drive {
   }
 };
 
-/// All steps one after the other; gives the number of planes.
+/// Runs all steps in sequence; returns the number of planes.
 std::size_t compare_steps(const Drive& drive, PointSet set, const RowOptions& options,
                           const Executor& executor) {
   const auto cpu = make_cpu_calibration_steps(executor);
@@ -120,15 +120,15 @@ RowOptions row_options() {
   return options;
 }
 
-TEST_F(CalibrateOnGpu, EveryStepIsTheSame) {
+TEST_F(CalibrateOnGpu, EveryStepMatchesTheCpu) {
   const PointCloud cloud = record_hall({0.3, 0.1, 0.03, 0.05}).cloud;
   const Drive drive(cloud);
   EXPECT_GT(compare_steps(drive, PointSet::all, row_options(), executor_), 100U);
-  // Of a fifth of the points fewer planes are found.
+  // A fifth of the points gives fewer planes.
   EXPECT_GT(compare_steps(drive, PointSet::few, row_options(), executor_), 20U);
 }
 
-TEST_F(CalibrateOnGpu, StepsWithoutLasersPosesOrOneOffsetAreTheSame) {
+TEST_F(CalibrateOnGpu, PartialUnknownsMatchTheCpu) {
   PointCloud cloud = record_hall({0.3, 0.1, 0.03, 0.05}).cloud;
   RowOptions options = row_options();
   options.ranges = false;
@@ -136,14 +136,14 @@ TEST_F(CalibrateOnGpu, StepsWithoutLasersPosesOrOneOffsetAreTheSame) {
   options.poses = false;
   options.ranges = true;
   EXPECT_GT(compare_steps(Drive(cloud), PointSet::all, options, executor_), 100U);
-  // Some lasers are not known.
+  // Some lasers are unknown.
   for (std::size_t i = 0; i < cloud.size(); i += 3) cloud.lasers[i] = kNoLaser;
   EXPECT_GT(compare_steps(Drive(cloud), PointSet::all, row_options(), executor_), 100U);
   cloud.lasers.clear();
   EXPECT_GT(compare_steps(Drive(cloud), PointSet::all, row_options(), executor_), 100U);
 }
 
-TEST_F(CalibrateOnGpu, NoPlanesAndNoPointsAreTheSame) {
+TEST_F(CalibrateOnGpu, NoPlanesAndNoPointsMatchTheCpu) {
   PointCloud cloud = record_hall({}, 2).cloud;
   for (std::uint32_t& scan : cloud.scan_indices) scan = 1;  // no plane was seen by two
   EXPECT_EQ(compare_steps(Drive(cloud), PointSet::all, row_options(), executor_), 0U);
@@ -162,7 +162,7 @@ void expect_same(const Calibration& a, const Calibration& b) {
   EXPECT_EQ(a.smooth_s, b.smooth_s);
 }
 
-/// Gives the CPU's report.
+/// Returns the report of the CPU.
 CalibrationReport compare(const PointCloud& cloud, const CalibrateOptions& options,
                           const Executor& executor) {
   const auto [cpu, report] = calibrate(cloud, options, executor);
@@ -186,11 +186,11 @@ CalibrationReport compare(const PointCloud& cloud, const CalibrateOptions& optio
   return report;
 }
 
-TEST_F(CalibrateOnGpu, CalibrationsAreTheSame) {
+TEST_F(CalibrateOnGpu, CalibrationsMatchTheCpu) {
   PointCloud cloud = record_hall({0.3, 0.1, 0.03, 0.05}).cloud;
   EXPECT_EQ(compare(cloud, {}, executor_).objection, "");
   CalibrateOptions options;
-  options.points_a_scan = 2000;  // some points are passed over
+  options.points_a_scan = 2000;  // some points are skipped
   options.poses = false;
   compare(cloud, options, executor_);
   cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
@@ -200,8 +200,8 @@ TEST_F(CalibrateOnGpu, CalibrationsAreTheSame) {
   compare(cloud, {}, executor_);
 }
 
-// Where a mount is found to be wrong, it is judged on both.
-TEST_F(CalibrateOnGpu, MountsAreTheSame) {
+// A mount error is validated on both.
+TEST_F(CalibrateOnGpu, MountsMatchTheCpu) {
   PointCloud cloud = record_hall({0, 0, 0, 0}, 16).cloud;
   const RigidTransform fault = {rotation_from_yaw_pitch_roll(0.03, 0.02, 0), {0.2, 0.1, 0}};
   for (TimedPose& pose : cloud.scan_poses) {
@@ -220,7 +220,7 @@ TEST_F(CalibrateOnGpu, MountsAreTheSame) {
   EXPECT_GT(report.mount->given_m, 0) << report.mount->objection;
 }
 
-TEST_F(CalibrateOnGpu, NothingAppliedIsTheSame) {
+TEST_F(CalibrateOnGpu, RejectedCalibrationsMatchTheCpu) {
   EXPECT_NE(compare(record_hall({}).cloud, {}, executor_).objection, "");
 }
 

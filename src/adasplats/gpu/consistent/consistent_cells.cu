@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kKeyBits = 63;
 
-/// Points sorted by cell, and where each cell begins.
+/// Points sorted by cell, and the begin of each cell.
 struct SortedCells {
-  DeviceBuffer<std::uint32_t> begins;  ///< one more than cells
+  DeviceBuffer<std::uint32_t> begins;  ///< number of cells + 1
   DeviceBuffer<std::uint32_t> members;
 
   std::size_t size() const { return begins.size() - 1; }
@@ -40,7 +40,7 @@ void put_means(const Vec3f* points, const SortedCells& cells, Vec3f* means, cuda
            });
 }
 
-/// Cells along the curve of their means; cell i has the members from first[i] on, so many.
+/// Cells in the order of the curve through their means, with the begin and number of their members.
 struct LooseCells {
   DeviceBuffer<Vec3f> means;
   DeviceBuffer<std::uint32_t> first;
@@ -77,7 +77,7 @@ DeviceCells in_curve_order(const LooseCells& loose, std::size_t points, const Cu
   return cells;
 }
 
-/// Puts where cells begin and how many members they have behind those there are.
+/// Appends the begins and member counts of cells.
 void put_cells(const CellsView& cells, std::uint32_t first_member, std::uint64_t first_cell,
                LooseCells& loose, cudaStream_t stream) {
   for_each(cells.size, stream, "order cells",
@@ -94,7 +94,7 @@ void copy(const std::uint32_t* from, std::size_t count, std::uint32_t* to, cudaS
       "copy cells");
 }
 
-/// The points of cells that are split, ascending, so that small cells list theirs so too.
+/// The points of split cells, ascending, so that the small cells list theirs in ascending order.
 DeviceBuffer<std::uint32_t> points_to_split(const CellsView& cells, const std::uint8_t* split,
                                             std::size_t points, cudaStream_t stream) {
   DeviceBuffer<std::uint8_t> is_loose(points, stream);
@@ -144,7 +144,7 @@ DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
            [split, to = stays.data()] __device__(std::uint64_t i) { to[i] = split[i] == 0; });
   const DeviceBuffer<std::uint32_t> whole = flagged(stays.data(), cells.size(), stream);
 
-  // Small cells first, then those that stay; members of the small ones, then all former ones.
+  // Small cells first, then the unsplit ones; members of the small cells first, then all old ones.
   const std::size_t size = small.size() + whole.size();
   LooseCells loose{DeviceBuffer<Vec3f>(size, stream), DeviceBuffer<std::uint32_t>(size, stream),
                    DeviceBuffer<std::uint32_t>(size, stream),

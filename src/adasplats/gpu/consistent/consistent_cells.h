@@ -17,7 +17,7 @@ namespace adasplats::gpu {
 /// Private to gpu/: FusedPoints in device memory.
 struct DeviceCells {
   DeviceBuffer<Vec3f> positions;
-  DeviceBuffer<std::uint32_t> begins;  ///< one more than cells
+  DeviceBuffer<std::uint32_t> begins;  ///< number of cells + 1
   DeviceBuffer<std::uint32_t> members;
 
   std::size_t size() const { return positions.size(); }
@@ -28,11 +28,11 @@ struct DeviceCells {
   FusedPoints download() const;
 };
 
-/// fuse_points() of points in device memory: the same bits.
+/// fuse_points() for points in device memory, bit-identical.
 DeviceCells fuse_on_device(const Vec3f* points, std::size_t count, double cell_m,
                            const CurveBox& box, cudaStream_t stream);
 
-/// split_cells() in device memory: the same bits. One flag a cell.
+/// split_cells() in device memory, bit-identical. One flag per cell.
 DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
                             const std::uint8_t* split, double cell_m, const CurveBox& box,
                             cudaStream_t stream);

@@ -10,19 +10,19 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kPlacesAtFirst = 64;  // in the lists, a seed; more where they do not do
-constexpr int kRoundsAtOnce = 4;            // before the host asks how many disks are open
+constexpr std::size_t kPlacesAtFirst = 64;  // initial list entries per seed; grows if needed
+constexpr int kRoundsAtOnce = 4;            // before the host reads the number of open disks
 
-/// Grows one seed over its neighbours and lists what it covers.
+/// Grows one seed over its neighbours and lists the seeds that it covers.
 struct Grow {
   CoverView cover;
   const std::uint8_t* unchecked;  ///< flags of seeds; null: none
   std::uint64_t* begins;
   CoverOptions options;
-  unsigned long long* listed;  ///< places taken of the lists
+  unsigned long long* listed;  ///< used entries of the lists
   unsigned long long capacity;
 
-  /// The k-th neighbour, if there is one.
+  /// The k-th neighbour, if it exists.
   __device__ bool is_there(const std::uint64_t* keys, std::uint32_t size, std::uint32_t k,
                            Disk& other) const {
     if (k >= size) return false;
@@ -88,7 +88,7 @@ struct Grow {
       cover.lengths[seed] = length;
     }
     begin = __shfl_sync(kAllLanes, begin, 0);
-    if (begin + length > capacity) return;  // done again with more places
+    if (begin + length > capacity) return;  // repeated with a larger capacity
     std::uint32_t* to = cover.lists + begin;
     covered(disk, covered_m, keys, size, [&](std::uint32_t rank, bool is_covered) {
       const std::uint32_t lanes = __ballot_sync(kAllLanes, is_covered);
@@ -98,8 +98,8 @@ struct Grow {
   }
 };
 
-/// Takes out of a disk's list what it does not cover any more: radii only become smaller, and
-/// disks do not come back.
+/// Removes from a disk's list the seeds that it no longer covers: radii only shrink, and removed
+/// disks do not return.
 struct ShortenList {
   CoverView cover;
 
@@ -122,20 +122,20 @@ struct ShortenList {
   }
 };
 
-/// One choice of disks while it is made.
+/// State of one choice of disks.
 struct Choice {
   static constexpr std::uint8_t kOpen = 0, kChosen = 1, kClosed = 2;
   CoverView cover;
   std::uint8_t* states;
-  std::uint32_t* blocked;  ///< last round in which an open disk that comes before covered it
+  std::uint32_t* blocked;  ///< last round in which an earlier open disk covered it
 
-  /// Whether greed sees disk `a` before `b`.
+  /// Whether the greedy order has disk `a` before `b`.
   __device__ bool comes_before(std::uint32_t a, std::uint32_t b) const {
     const std::uint32_t covers_a = cover.lengths[a], covers_b = cover.lengths[b];
     return covers_a > covers_b || (covers_a == covers_b && a < b);
   }
 
-  /// Calls body(other) for the disks that disk `i` covers and that come after it.
+  /// Calls body(other) for the later disks that disk `i` covers.
   template <class F>
   __device__ void for_later(std::uint32_t i, const F& body) const {
     const std::uint32_t* const list = cover.lists + cover.begins[i];
@@ -147,7 +147,7 @@ struct Choice {
   }
 };
 
-/// The numbers of open disks, in no order, and how many they are.
+/// The open disks, unordered, and their number.
 struct OpenDisks {
   std::uint32_t* numbers;
   std::uint32_t* count;
@@ -190,7 +190,7 @@ struct ListOpen {
   }
 };
 
-/// Chooses until no disk is open; gives the number of rounds.
+/// Chooses until no disk is open; returns the number of rounds.
 int choose_in_rounds(const Choice& choice, std::uint32_t open_count, OpenDisks now, OpenDisks next,
                      cudaStream_t stream) {
   int rounds = 0;
@@ -231,7 +231,7 @@ DeviceBuffer<Disk> chosen_disks(const Choice& choice, cudaStream_t stream) {
   return chosen;
 }
 
-/// Gives the number of places that the lists need.
+/// Returns the number of entries that the lists need.
 std::uint64_t grow(const DevicePointIndex& index, const Grow& grow_seed, cudaStream_t stream) {
   cuda_check(cudaMemsetAsync(grow_seed.listed, 0, sizeof(*grow_seed.listed), stream), "grow disks");
   for_each_neighborhood_of(

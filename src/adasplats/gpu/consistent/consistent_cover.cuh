@@ -11,33 +11,31 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what kernels read and change of DeviceCover, by disk.
+/// Private to gpu/: kernel view of DeviceCover, by disk.
 struct CoverView {
   Disk* seeds = nullptr;
   float* radii_m = nullptr;
-  std::uint32_t* lists = nullptr;         ///< seeds that a disk covers
+  std::uint32_t* lists = nullptr;         ///< seeds covered by a disk
   const std::uint64_t* begins = nullptr;  ///< of a disk's list in `lists`
-  std::uint32_t* lengths = nullptr;       ///< 0 for disks that are not there
+  std::uint32_t* lengths = nullptr;       ///< 0 for absent disks
   double overlap = 0;
   std::uint32_t size = 0;
 };
 
-/// Private to gpu/: SurfaceCover in device memory: the same disks, chosen in rounds. A disk is
-/// chosen when none that comes before it in the greedy order and covers it is open any more; what
-/// it covers of those that come after it is closed. So all that greed would choose one after the
-/// other are chosen, many at a time.
+/// Private to gpu/: SurfaceCover in device memory. Chooses the same disks in parallel rounds: a
+/// disk is chosen once no open disk that precedes it in the greedy order covers it, and then closes
+/// the later disks that it covers. The result is that of the sequential greedy choice.
 class DeviceCover {
  public:
-  /// `seeds`: device memory, one a point of `index` in its order, copied; without a radius: not
-  /// there. `unchecked`: flags of seeds that have options.unchecked_sectors (null: none). Waits
-  /// for the stream.
-  /// Errors: usage (more neighbours than DevicePointIndex::kMaxNeighbors).
+  /// `seeds`: device memory, one per point of `index` in its order, copied; absent if they have no
+  /// radius. `unchecked`: flags of seeds that have options.unchecked_sectors (null: none). Waits
+  /// for the stream. Errors: usage (more neighbours than DevicePointIndex::kMaxNeighbors).
   DeviceCover(const Disk* seeds, const std::uint8_t* unchecked, const DevicePointIndex& index,
               const CoverOptions& options, cudaStream_t stream);
 
-  /// The chosen disks, the others with no radius. Waits for the stream.
+  /// All disks; those not chosen have no radius. Waits for the stream.
   DeviceBuffer<Disk> choose();
-  /// How many rounds the last choose() took.
+  /// Number of rounds of the last choose().
   int rounds() const { return rounds_; }
 
   CoverView view() const;

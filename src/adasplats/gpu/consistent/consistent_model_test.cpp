@@ -23,7 +23,7 @@
 #include "adasplats/splats/consistent/scanned_room_test.h"
 #include "adasplats/splats/model_engine.h"
 
-// The oracle of all tests here is the CPU's steps on the same cloud.
+// The oracle of all tests is the CPU steps on the same cloud.
 namespace adasplats {
 namespace {
 
@@ -42,13 +42,13 @@ ConsistentState state_of(const Steps& steps) {
   return dynamic_cast<const ShowsConsistentState&>(*steps).state();
 }
 
-/// How many bytes of a value are no padding, which may hold anything.
+/// Number of bytes of a value without padding, which is undefined.
 template <class T>
 constexpr std::size_t kBytesOf = sizeof(T);
 template <>
 constexpr std::size_t kBytesOf<LocalPlane> = offsetof(LocalPlane, scale) + 1;
 
-/// How many values differ in any bit; those that one side has more differ, too.
+/// Number of values that differ in any bit, including surplus values of either side.
 template <class T>
 std::size_t count_different(const std::vector<T>& a, const std::vector<T>& b) {
   const std::size_t common = std::min(a.size(), b.size());
@@ -83,7 +83,7 @@ void expect_same(const Reflectances& a, const Reflectances& b) {
   EXPECT_EQ(a.response.empty(), b.response.empty());
 }
 
-/// CPU and GPU side by side: after every step not one bit may differ.
+/// Runs CPU and GPU in parallel: all bits must agree after every step.
 class SideBySide {
  public:
   explicit SideBySide(const PointCloud& cloud, const ClassTables& tables = {}) {
@@ -109,7 +109,7 @@ class SideBySide {
     EXPECT_EQ(count_different(cpu.contradicted, gpu.contradicted), 0U);
   }
 
-  /// Gives the number of seeds that were looked at.
+  /// Returns the number of processed seeds.
   std::uint64_t origins(const ConsistentOptions& options) {
     const OriginCheck cpu = origin_check(cpu_->check_origins(options));
     const OriginCheck gpu = origin_check(gpu_->check_origins(options));
@@ -120,14 +120,14 @@ class SideBySide {
     return gpu.seeds;
   }
 
-  /// Gives the number of splats.
+  /// Returns the number of splats.
   std::size_t finish() {
     const ConsistentSplats cpu = cpu_->take_splats(), gpu = gpu_->take_splats();
     expect_same(cpu, gpu);
     return gpu.disks.size();
   }
 
-  /// Of all steps, and of the splats; gives whether enough rays show reflectances.
+  /// Runs all steps and compares the splats; returns whether enough rays have reflectances.
   bool reflectances(const ConsistentOptions& options) {
     const auto finish = [&](const Steps& steps) {
       consistent_disks(*steps, true, options, [](std::string_view, int) {});
@@ -145,7 +145,7 @@ class SideBySide {
   Steps gpu_ = gpu::make_cuda_consistent_steps(0);
 };
 
-/// All steps, compared after each; gives the number of splats.
+/// Runs all steps and compares after each; returns the number of splats.
 std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
                     const ClassTables& tables = {}) {
   SideBySide both(cloud, tables);
@@ -178,7 +178,7 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
   return splats;
 }
 
-/// Points at random heights on a lattice, as seen from two places above it.
+/// Points at random heights on a lattice, seen from two positions above it.
 PointCloud lattice(int n, double step_m, double noise_m) {
   PointCloud cloud;
   for (int y = 0; y < n; ++y) {
@@ -197,7 +197,7 @@ PointCloud without_sensors(PointCloud cloud) {
   return cloud;
 }
 
-TEST_F(ConsistentOnGpu, ScannedRoomIsTheSameAfterEveryStep) {
+TEST_F(ConsistentOnGpu, ScannedRoomMatchesTheCpuAfterEveryStep) {
   EXPECT_GT(compare(scanned_room(), {}), 1000U);
 }
 
@@ -208,8 +208,8 @@ TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
   EXPECT_GT(compare(scanned_room(), options), 1000U);
 }
 
-// Every third beam is said to have returned nothing: some of them contradict what others bear out.
-TEST_F(ConsistentOnGpu, BeamsWithoutReturnCountTheSame) {
+// Every third beam is marked as without return: some of them contradict the evidence of others.
+TEST_F(ConsistentOnGpu, BeamsWithoutReturnMatchTheCpu) {
   PointCloud cloud = scanned_room();
   const std::size_t without = compare(cloud, {});
   for (std::size_t i = 0; i < cloud.size(); i += 3) {
@@ -219,7 +219,7 @@ TEST_F(ConsistentOnGpu, BeamsWithoutReturnCountTheSame) {
   EXPECT_NE(compare(cloud, {}), without);
 }
 
-TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
+TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsMatchTheCpu) {
   PointCloud cloud = scanned_room();
   for (std::size_t i = 0; i < 3000; ++i) cloud.positions[i + 1000] = cloud.positions[i % 7];
   ConsistentOptions options;
@@ -230,21 +230,21 @@ TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
   }
 }
 
-TEST_F(ConsistentOnGpu, EqualPrioritiesAreTakenInTheirOrder) {
-  // Nearly all disks of a flat lattice cover the same number: the order decides, one by one.
+TEST_F(ConsistentOnGpu, EqualPrioritiesKeepTheirOrder) {
+  // Nearly all disks of a flat lattice cover the same number, so the order decides one by one.
   const ConsistentOptions options;
   EXPECT_GT(compare(lattice(150, 0.05, 0), options), 100U);
   EXPECT_GT(compare(lattice(150, 0.05, 0.01), options), 100U);
 }
 
-TEST_F(ConsistentOnGpu, CloudsWithoutSensorPositionsAreTheSame) {
+TEST_F(ConsistentOnGpu, CloudsWithoutSensorPositionsMatchTheCpu) {
   EXPECT_GT(compare(without_sensors(scanned_room()), {}), 1000U);
-  for (const double noise_m : {0.0, 0.01}) {  // without noise seeds stand on borders of sectors
+  for (const double noise_m : {0.0, 0.01}) {  // without noise, seeds are on sector borders
     EXPECT_GT(compare(without_sensors(lattice(150, 0.05, noise_m)), {}), 100U);
   }
 }
 
-TEST_F(ConsistentOnGpu, OriginsOfSeveralKindsAreTheSame) {
+TEST_F(ConsistentOnGpu, OriginsOfSeveralKindsMatchTheCpu) {
   PointCloud cloud = scanned_room();
   cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
   EXPECT_GT(compare(cloud, {}), 1000U);
@@ -256,21 +256,21 @@ TEST_F(ConsistentOnGpu, OriginsOfSeveralKindsAreTheSame) {
   EXPECT_GT(compare(cloud, {}), 1000U);
 }
 
-TEST_F(ConsistentOnGpu, WithoutRoundsNoRayIsAsked) {
+TEST_F(ConsistentOnGpu, NoRayIsCastWithoutRounds) {
   ConsistentOptions options;
   options.balance_rounds = 0;
   options.cover.unchecked_sectors = 0;
   EXPECT_GT(compare(scanned_room(), options), 1000U);
 }
 
-TEST_F(ConsistentOnGpu, RemovedClassesAreLeftOut) {
+TEST_F(ConsistentOnGpu, RemovedClassesAreSkipped) {
   ClassTables tables;
   tables.removed.resize(1 << 16);
   tables.removed[kPerson] = 1;
   EXPECT_GT(compare(scanned_room(), {}, tables), 1000U);
 }
 
-/// Intensities that fall with the range, of several units, some not known.
+/// Intensities of several sensors that decrease with range; some are unknown.
 PointCloud room_with_intensities(float unit) {
   PointCloud cloud = scanned_room();
   cloud.intensities.clear();
@@ -283,7 +283,7 @@ PointCloud room_with_intensities(float unit) {
   return cloud;
 }
 
-TEST_F(ConsistentOnGpu, ReflectancesAreTheSame) {
+TEST_F(ConsistentOnGpu, ReflectancesMatchTheCpu) {
   ClassTables tables;
   tables.removed.resize(1 << 16);
   for (const bool removes : {false, true}) {
@@ -300,8 +300,8 @@ TEST_F(ConsistentOnGpu, ReflectancesAreTheSame) {
   EXPECT_FALSE(SideBySide(dark).reflectances({}));
 }
 
-// Oracle: the CPU's engine. What the methods of the paper end with.
-TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksAreTheSame) {
+// Oracle: the CPU engine. The last step of the methods of the paper.
+TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksMatchTheCpu) {
   const Executor executor(2);
   const PointCloud cloud = room_with_intensities(1);
   std::vector<Disk> disks;
@@ -317,8 +317,8 @@ TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksAreTheSame) {
   EXPECT_TRUE(gpu::measure_reflectances(0, {}, {}, cloud).values.empty());
 }
 
-// Oracle: the CPU's engine. Half of the room, with the rays that pass it, as a tile of a city.
-TEST_F(ConsistentOnGpu, PiecesOfAPlaceAreTheSame) {
+// Oracle: the CPU engine. Half of the room, with the rays that pass it, as a tile of a city.
+TEST_F(ConsistentOnGpu, CityTilesMatchTheCpu) {
   const Executor executor(2);
   const PointCloud room = room_with_intensities(1);
   std::vector<std::uint32_t> near, far;
@@ -395,7 +395,7 @@ TEST_F(ConsistentOnGpu, TwoRunsGiveTheSameBytes) {
   for (int run = 0; run < 3; ++run) expect_same(one, model_of(cloud));
 }
 
-TEST_F(ConsistentOnGpu, ErrorsSayWhatHelpsAndLeaveTheStepsDestructible) {
+TEST_F(ConsistentOnGpu, ErrorsNameARemedyAndLeaveTheStepsDestructible) {
   const auto error_of = [&](const ConsistentOptions& options) -> std::string {
     try {
       const Steps steps = gpu::make_cuda_consistent_steps(0);

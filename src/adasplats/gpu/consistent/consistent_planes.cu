@@ -9,14 +9,14 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kListBytes = std::size_t{1} << 30;  // of the neighbours at once
+constexpr std::size_t kListBytes = std::size_t{1} << 30;  // of the lists of neighbours in memory
 
 struct alignas(16) WeightedCell {
   Vec3f position;
   float count;
 };
 
-/// The neighbours of one cell, the nearest first, as fit_at_best_scale() takes them.
+/// The neighbours of one cell, nearest first, in the form that fit_at_best_scale() needs.
 struct Neighborhood {
   const WeightedCell* cells;
   const std::uint32_t* ranks;
@@ -30,7 +30,7 @@ struct Neighborhood {
   }
 };
 
-/// Neighbours of the cells [first, first + lengths.size()), so many places each.
+/// Neighbours of the cells [first, first + lengths.size()), a fixed number of entries each.
 struct NeighborLists {
   std::uint32_t first = 0;
   std::uint32_t places = 0;
@@ -78,7 +78,7 @@ DeviceBuffer<LocalPlane> planes_on_device(const CellsView& cells, const DevicePo
     lists.ranks = DeviceBuffer<std::uint32_t>(count * lists.places, stream);
     lists.lengths = DeviceBuffer<std::uint32_t>(count, stream);
     find_lists(index, lists, stream);
-    // One thread a cell adds its neighbours in their order, as the CPU does.
+    // One thread per cell adds its neighbours in order, like the CPU.
     for_each(
         count, stream, "fit planes",
         [first, places = lists.places, options, from = weighted.data(), ranks = lists.ranks.data(),

@@ -9,9 +9,8 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: adaptive_planes() in device memory, the same bits. `index` holds the cells in
-/// their order.
-/// Errors: usage (scales above DevicePointIndex::kMaxNeighbors).
+/// Private to gpu/: adaptive_planes() in device memory, bit-identical. `index` contains the cells
+/// in order. Errors: usage (scales above DevicePointIndex::kMaxNeighbors).
 DeviceBuffer<LocalPlane> planes_on_device(const CellsView& cells, const DevicePointIndex& index,
                                           const AdaptivePlaneOptions& options, cudaStream_t stream);
 

@@ -17,16 +17,16 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kMaxRays = std::size_t{1} << 22;  // at once
+constexpr std::size_t kMaxRays = std::size_t{1} << 22;  // per batch
 constexpr int kPostponeInCheck = 10;                    // as for scans, cuda_scene.cu
 
-/// Adds to a number that is not negative, or to one that wraps: the same bits.
+/// Adds as unsigned integers, also for signed numbers: the bits are the same.
 __device__ void add_to(std::int64_t& sum, std::int64_t value) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(value));
 }
 
-/// Calls body(i, point, ray, hit) on the device for all rays, i counting them, with the nearest hit
-/// of each within `reach`, which may be none.
+/// Calls body(i, point, ray, hit) on the device for every ray i, with its nearest hit within
+/// `reach` or none.
 template <class Body>
 void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
                   const DeviceBuffer<std::uint32_t>& numbers, RayReach reach, cudaStream_t stream,
@@ -54,7 +54,7 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
   }
 }
 
-/// Counts every disk that one ray crosses, as a tree offers them.
+/// Counts every disk that one ray crosses, as the tree traversal visits them.
 struct EvidenceOfRay {
   const Disk* disks;
   EvidenceView counts;

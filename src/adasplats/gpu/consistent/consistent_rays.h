@@ -25,11 +25,11 @@ struct DeviceEvidence {
   RayEvidence download() const { return {confirmed.download(), contradicted.download()}; }
 };
 
-/// Private to gpu/: MeasuredRays in device memory, in the same order, and what is counted with them
-/// on disks in device memory: the same whole numbers.
+/// Private to gpu/: MeasuredRays in device memory, in the same order, and their counts on disks in
+/// device memory: identical integers.
 class DeviceRays {
  public:
-  /// `points` (device memory, with sensors) must outlive the rays. Points nearer to their sensor
+  /// `points` (device memory, with sensors) must outlive the rays. Points closer to their sensor
   /// than `min_range_m` have no ray. Waits for the stream.
   DeviceRays(const MeasuredPoints& points, std::size_t count, double min_range_m,
              cudaStream_t stream, RayEnds ends = RayEnds::at_surfaces);
@@ -38,18 +38,18 @@ class DeviceRays {
   /// The rays' points, in the order of the rays.
   const DeviceBuffer<std::uint32_t>& points() const { return numbers_; }
 
-  /// Those of one part of so many, in device memory.
+  /// The points of one of `parts` parts, in device memory.
   std::span<const std::uint32_t> points_of(std::uint32_t parts, std::uint32_t part) const;
   const MeasuredPoints& measured() const { return measured_; }
   RayEnds ends() const { return ends_; }
 
-  /// What every disk's rays say of its place: one sum a disk.
+  /// Evidence of the rays of every disk about its position: one sum per disk.
   DeviceBuffer<ShiftSums> shifts(const Disk* disks, std::size_t count,
                                  const SettleOptions& options) const;
-  /// Calls `observe` for all rays with their nearest hits.
+  /// Calls `observe` for all rays and their nearest hits.
   void observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const;
-  /// One flag a point: whether its ray meets no disk near it. Where there is no
-  /// disk at all, none is missed. Waits for the stream.
+  /// One flag per point: whether its ray hits no disk near it. All flags are 0 if there are no
+  /// disks. Waits for the stream.
   DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, RayReach reach) const;
 
  private:
@@ -58,7 +58,7 @@ class DeviceRays {
   cudaStream_t stream_;
   RayEnds ends_;
   DeviceBuffer<std::uint32_t> numbers_;
-  DeviceBuffer<std::uint32_t> by_part_;  ///< the rays' points part by part
+  DeviceBuffer<std::uint32_t> by_part_;  ///< points of the rays, part by part
   RayPartBegins begins_;
 };
 

@@ -12,11 +12,11 @@ namespace {
 
 constexpr int kClassBits = 16;
 
-/// The class that most points of every cell have.
+/// The most frequent class of the points of every cell.
 DeviceBuffer<std::uint16_t> majority_classes(const CellsView& cells,
                                              const DeviceBuffer<std::uint16_t>& classes,
                                              cudaStream_t stream) {
-  // Cells' classes sorted within each: where a cell begins does not change.
+  // Classes are sorted within their cell, so the begins of cells do not change.
   DeviceBuffer<std::uint64_t> keys(classes.size(), stream);
   for_each(cells.size, stream, "find classes of cells",
            [cells, from = classes.data(), to = keys.data()] __device__(std::uint64_t cell) {
@@ -53,7 +53,7 @@ DeviceBuffer<float> mean_intensities(const CellsView& cells, const DeviceBuffer<
 
 double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer<float>& units_m,
                       cudaStream_t stream) {
-  // The bits of floats that are not negative sort as they do; cells that do not count come last.
+  // The bits of non-negative floats have the same order; excluded cells come last.
   const std::size_t size = planes.size();
   DeviceBuffer<std::uint32_t> bits(size, stream), counted(size, stream);
   for_each(size, stream, "find the spacing of cells",

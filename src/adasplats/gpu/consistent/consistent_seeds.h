@@ -11,17 +11,17 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what the steps make of cells and planes, in device memory.
+// Private to gpu/: seeds and splats from cells and planes, in device memory.
 
 /// Median of the planes' spacings over their units, of those with a unit; 0 where there is none.
 /// Waits for the stream.
 double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer<float>& units_m,
                       cudaStream_t stream);
 
-/// How many disks have a radius. Waits for the stream.
+/// Number of disks with a radius. Waits for the stream.
 std::size_t count_present(const DeviceBuffer<Disk>& disks, cudaStream_t stream);
 
-/// The disks that have a radius, with the attributes of their cells' points, on the host.
+/// Copies the disks with a radius, and the attributes of their cells' points, to the host.
 ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,
                            const DeviceCloud& cloud, cudaStream_t stream);
 

@@ -17,7 +17,7 @@
 namespace adasplats::gpu {
 namespace {
 
-/// What the steps of the consistent method need of a GPU.
+/// GPU backend of the steps of the consistent method.
 class ConsistentOnGpu : public RaysOnGpu {
  public:
   using Cells = DeviceCells;

@@ -11,7 +11,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: a GpuBackend that casts measured rays, as RaysOnCpu.
+/// Private to gpu/: a GpuBackend that casts measured rays, like RaysOnCpu.
 class RaysOnGpu : public GpuBackend {
  public:
   using Rays = DeviceRays;

@@ -21,7 +21,7 @@ DeviceBuffer<T> copied(const std::vector<T>& values, cudaStream_t stream) {
   return DeviceBuffer<T>(std::span<const T>(values), stream);
 }
 
-/// One array of clouds one after another, that which `of` gives.
+/// Concatenates one array, returned by `of`, of several clouds.
 template <class Of>
 auto concatenated(std::span<const DeviceCloud* const> clouds, const Of& of, cudaStream_t stream) {
   using Buffer = std::decay_t<decltype(of(*clouds.front()))>;
@@ -30,7 +30,7 @@ auto concatenated(std::span<const DeviceCloud* const> clouds, const Of& of, cuda
   return concatenate(std::span<const Buffer* const>(parts), stream);
 }
 
-/// The values that decide between points at one place, the least important last.
+/// The values that break ties between coincident points, least significant last.
 void add_tie_breakers(std::vector<TieBreaker>& breakers, const DeviceBuffer<Vec3f>& values) {
   for (int axis = 0; axis < 3; ++axis) breakers.push_back(TieBreaker::of(values.data(), axis));
 }
@@ -42,7 +42,7 @@ void add_tie_breakers(std::vector<TieBreaker>& breakers, const DeviceBuffer<T>& 
   breakers.push_back(TieBreaker::of(values.data()));
 }
 
-/// Removes from an order the points whose class has a flag.
+/// Removes the points of flagged classes from an order.
 DeviceBuffer<std::uint32_t> without_classes(const DeviceBuffer<std::uint32_t>& order,
                                             const DeviceBuffer<std::uint16_t>& classes,
                                             std::span<const std::uint8_t> removed,
@@ -61,7 +61,7 @@ DeviceBuffer<std::uint32_t> without_classes(const DeviceBuffer<std::uint32_t>& o
 
 DeviceCloud copy_to_device(const PointCloud& cloud, cudaStream_t stream) {
   if (cloud.size() >= std::size_t{1} << 31)
-    throw Error(ErrorKind::unavailable, "2^31 points or more do not fit a GPU; use `device` cpu");
+    throw Error(ErrorKind::unavailable, "a GPU supports fewer than 2^31 points; use `device` cpu");
   DeviceCloud copy;
   copy.positions = copied(cloud.positions, stream);
   for_each_attribute(
@@ -148,7 +148,7 @@ bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
 
 namespace {
 
-/// What decides between points at one place, the least important first.
+/// The values that break ties between coincident points, least significant first.
 std::vector<TieBreaker> tie_breakers(const DeviceCloud& cloud) {
   std::map<int, std::vector<TieBreaker>> ranked;
   for_each_attribute([&](const auto& attribute) {

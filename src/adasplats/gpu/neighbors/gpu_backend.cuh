@@ -17,12 +17,12 @@
 
 namespace adasplats::gpu {
 
-/// Adds what every `strands`-th element says, from the strand's own number on.
+/// Sums every `strands`-th element, starting at the strand's number.
 template <class Sums, class Step>
 struct SumStrand {
   Step step;
   std::uint64_t count, strands;
-  Sums* sums;  ///< one a strand
+  Sums* sums;  ///< one per strand
 
   __device__ void operator()(std::uint64_t strand) const {
     Sums sum{};
@@ -38,8 +38,8 @@ struct AddPart {
   __device__ void operator()(std::uint64_t i, Sums& sum) const { sum += parts[i]; }
 };
 
-/// Private to gpu/: where the steps of a method run and what they keep is, as CpuBackend: a stream
-/// and the memory of one GPU. Nothing else of the GPU may live longer than the place.
+/// Private to gpu/: the GPU counterpart of CpuBackend, which runs the steps of a method and owns
+/// their memory: a stream and the memory pool of one GPU. It must outlive its other GPU objects.
 class GpuBackend {
  public:
   template <class T>
@@ -48,9 +48,9 @@ class GpuBackend {
   using Lent = DeviceBuffer<T>;
   using Cloud = DeviceCloud;
 
-  /// The device must be the current one.
+  /// The device must be current.
   explicit GpuBackend(int device) : device_(device), pool_(device) {}
-  /// The pool gives back what is free when its guard ends.
+  /// The pool releases free memory when its guard is destroyed.
   ~GpuBackend() { static_cast<void>(cudaStreamSynchronize(stream())); }
   GpuBackend(const GpuBackend&) = delete;
   GpuBackend& operator=(const GpuBackend&) = delete;
@@ -88,7 +88,7 @@ class GpuBackend {
   /// Waits for the stream.
   template <class Sums, class Step>
   Sums sum(std::size_t count, const char* doing, const Step& step) const {
-    // Sums stand in the memory of a thread: 2^15 of them fill a GPU and are soon added up.
+    // Every thread has a sum in memory: 2^15 threads fill a GPU, and their sums are added quickly.
     constexpr std::size_t kStrands = std::size_t{1} << 15, kParts = std::size_t{1} << 9;
     const DeviceBuffer<Sums> strands = in_strands<Sums>(count, kStrands, doing, step);
     Sums all{};

@@ -14,7 +14,7 @@ constexpr std::uint32_t kChildren = PointIndexView::kChildren;
 
 std::uint32_t groups_over(std::uint32_t count) { return (count + kChildren - 1) / kChildren; }
 
-/// Where the six coordinates of all boxes are.
+/// The six coordinates of all boxes.
 struct Boxes {
   float* values;
   std::uint32_t count;
@@ -25,12 +25,12 @@ struct Boxes {
   }
 };
 
-/// Makes the boxes of a level over groups of boxes of the level below (of points: low and high are
-/// the same).
+/// Makes the boxes of a level over groups of boxes of the level below (for points, low and high are
+/// equal).
 struct Surround {
   const float* low[3];
   const float* high[3];
-  std::uint32_t members;  ///< present ones
+  std::uint32_t members;  ///< without padding
   Boxes boxes;
   std::uint32_t begin;
 
@@ -49,7 +49,7 @@ struct Surround {
   }
 };
 
-/// Splits points into coordinates and pads these with points that are farther than any bound.
+/// Splits points into coordinates and pads them with points beyond any bound.
 void copy_coordinates(const Vec3f* points, std::size_t count, std::size_t padded, float* to,
                       cudaStream_t stream) {
   for_each(padded, stream, "index points", [=] __device__(std::uint64_t i) {
@@ -65,7 +65,7 @@ void copy_coordinates(const Vec3f* points, std::size_t count, std::size_t padded
 DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaStream_t stream) {
   if (count >= std::size_t{1} << 31)
     throw Error(ErrorKind::unavailable, std::to_string(count) +
-                                            " points are more than a GPU takes at once (2^31); "
+                                            " points exceed the limit of a GPU (2^31); "
                                             "use `device` cpu");
   view_.size = static_cast<std::uint32_t>(count);
   view_.leaves = groups_over(view_.size);
@@ -76,7 +76,7 @@ DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaS
     view_.coordinates[axis] = coordinates_.data() + axis * padded;
   copy_coordinates(points, count, padded, coordinates_.data(), stream);
 
-  // Levels until one group of boxes is left, each padded to whole groups.
+  // Levels up to a single group of boxes, each padded to full groups.
   std::uint32_t sizes[PointIndexView::kMaxLevels] = {};
   std::uint32_t boxes = 0;
   for (std::uint32_t size = view_.leaves;; size = groups_over(size)) {
@@ -105,7 +105,7 @@ DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaS
 void check_neighbors(std::uint64_t neighbors) {
   if (neighbors <= DevicePointIndex::kMaxNeighbors) return;
   throw Error(ErrorKind::usage, "neighbourhoods of " + std::to_string(neighbors) +
-                                    " points are more than a GPU takes (" +
+                                    " points exceed the limit of a GPU (" +
                                     std::to_string(DevicePointIndex::kMaxNeighbors) +
                                     "); use `device` cpu");
 }

@@ -14,11 +14,11 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: searches in a DevicePointIndex, one warp a query. A neighbour is a key: the
-/// bits of its squared distance << 32 | its rank, as NeighborList::key gives it. Keys are distinct
-/// and sort by (distance, rank), so the nearest are a set that does not depend on how it is found.
+// Private to gpu/: searches in a DevicePointIndex, one warp per query. A neighbour is a key: the
+// bits of its squared distance << 32 | its rank, as in NeighborList::key. Keys are distinct and
+// sort by (distance, rank), so the set of the nearest does not depend on the order of the search.
 
-/// As on the CPU, bit for bit.
+/// Bit-identical to the CPU.
 __device__ inline float squared_distance(Vec3f a, Vec3f b) {
   const Vec3f d = a - b;
   return (d.x * d.x + d.y * d.y) + d.z * d.z;
@@ -35,7 +35,7 @@ __device__ inline float distance_of_key(std::uint64_t key) {
 namespace search {
 
 /// Pending nodes of one warp: the squared distance of their box << 32 | level << 27 | group of
-/// boxes. A node is taken from the stack before its children go there.
+/// boxes. A node is popped before its children are pushed.
 inline constexpr std::uint32_t kStackSize = 32 * PointIndexView::kMaxLevels;
 inline constexpr std::uint32_t kGroupBits = 27;
 
@@ -43,8 +43,8 @@ __device__ inline Vec3f point_of(const PointIndexView& index, std::uint32_t rank
   return {index.coordinates[0][rank], index.coordinates[1][rank], index.coordinates[2][rank]};
 }
 
-/// Squared distance to a box: not greater than that of any point in it, since every operation
-/// rounds monotonously and they are those of squared_distance().
+/// Squared distance to a box: not greater than that of any point in it, because it uses the
+/// operations of squared_distance(), and each rounds monotonically.
 __device__ inline float box_distance(const PointIndexView& index, std::uint32_t box, Vec3f q) {
   const auto outside = [&](int axis) {
     return fmaxf(fmaxf(index.low[axis][box] - q[axis], q[axis] - index.high[axis][box]), 0.0F);
@@ -53,14 +53,14 @@ __device__ inline float box_distance(const PointIndexView& index, std::uint32_t 
   return (x * x + y * y) + z * z;
 }
 
-/// The least key that a point of a box can have: one that is exactly as far as the bound counts if
-/// its rank is low enough. Where many points are equal, this ends the search.
+/// The smallest key that a point of a box can have: a point exactly at the bound counts if its rank
+/// is low enough. This ends the search if many points are equal.
 __device__ inline std::uint64_t box_key(float distance, std::uint32_t level, std::uint32_t box) {
   return neighbor_key(distance,
                       static_cast<std::uint32_t>(std::uint64_t{box} << (5 * (level + 1))));
 }
 
-/// Calls leaf(l) for the leaves of a group that are within bound(), nearest first.
+/// Calls leaf(l) for the leaves of a group within bound(), nearest first.
 template <class Bound, class Leaf>
 __device__ void visit_group_of_leaves(const PointIndexView& index, Vec3f q, std::uint32_t group,
                                       std::uint32_t first_done, std::uint32_t last_done,
@@ -79,8 +79,8 @@ __device__ void visit_group_of_leaves(const PointIndexView& index, Vec3f q, std:
   }
 }
 
-/// Puts the nodes of a group of boxes that are within the bound on the stack: that above
-/// `near_leaf` is taken first, then those of the lowest ranks.
+/// Pushes the nodes of a group of boxes that are within the bound. The node above `near_leaf` is
+/// popped first, then those of the lowest ranks.
 __device__ inline std::uint32_t push_group(const PointIndexView& index, Vec3f q,
                                            std::uint32_t level, std::uint32_t group,
                                            std::uint32_t near_leaf, std::uint64_t bound,
@@ -100,8 +100,7 @@ __device__ inline std::uint32_t push_group(const PointIndexView& index, Vec3f q,
 }
 
 /// Calls leaf(l), with all lanes of the warp, for every leaf that may have keys up to bound(),
-/// which may shrink meanwhile: first for those of `near_leaf` and `beside` leaves before and behind
-/// it.
+/// which may shrink meanwhile: first for `near_leaf` and `beside` leaves before and after it.
 template <class Bound, class Leaf>
 __device__ void visit_leaves(const PointIndexView& index, Vec3f q, std::uint32_t near_leaf,
                              std::uint32_t beside, std::uint64_t* stack, const Bound& bound,
@@ -129,15 +128,15 @@ __device__ void visit_leaves(const PointIndexView& index, Vec3f q, std::uint32_t
   }
 }
 
-/// Room for the keys of a warp that looks for `most` neighbours.
+/// Buffer size for the keys of a warp that searches for `most` neighbours.
 constexpr std::uint32_t key_capacity(std::uint32_t most) {
   const std::uint32_t whole = (most + 31) / 32 * 32;
   return whole + (whole > 96 ? whole : 96);
 }
 
-/// Drops the largest of more than `most` keys until `least` to `most` are left, and gives their
-/// number; `bound` becomes a key that these do not exceed and the dropped ones do. Halves the range
-/// of distances; where many are equal, the range of keys.
+/// Drops the largest of more than `most` keys until `least` to `most` remain, and returns their
+/// number; `bound` becomes a key that separates the kept keys (up to it) from the dropped ones.
+/// Bisects the range of distances or, if many are equal, the range of keys.
 template <std::uint32_t kCapacity>
 __device__ std::uint32_t keep_smallest(std::uint64_t* keys, std::uint32_t count,
                                        std::uint32_t least, std::uint32_t most,
@@ -188,7 +187,7 @@ __device__ std::uint32_t keep_smallest(std::uint64_t* keys, std::uint32_t count,
   return kept;
 }
 
-/// Sorts keys: the place of each is the number of smaller ones.
+/// Sorts keys: the position of each is the number of smaller ones.
 template <std::uint32_t kMost>
 __device__ void sort_ascending(std::uint64_t* keys, std::uint32_t count) {
   constexpr std::uint32_t kOwn = (kMost + kWarpLanes - 1) / kWarpLanes;
@@ -211,7 +210,7 @@ __device__ void sort_ascending(std::uint64_t* keys, std::uint32_t count) {
   __syncwarp();
 }
 
-/// Leaves the keys of the neighbours of a point in `keys` and gives their number.
+/// Writes the keys of the neighbours of a point to `keys` and returns their number.
 template <std::uint32_t kMost>
 __device__ std::uint32_t find_neighbors(const PointIndexView& index, std::uint32_t rank,
                                         NeighborLimit limit, std::uint64_t* keys,
@@ -231,7 +230,7 @@ __device__ std::uint32_t find_neighbors(const PointIndexView& index, std::uint32
         if (is_near) keys[count + lanes_before(near_lanes)] = key;
         count += __popc(near_lanes);
         __syncwarp();
-        // Not all too many are dropped yet: an exact bound takes longer to find.
+        // Some excess keys are kept for now: an exact bound takes longer to find.
         if (count > kCapacity - kWarpLanes)
           count = keep_smallest<kCapacity>(keys, count, wanted, wanted + (kCapacity - kMost) / 4,
                                            bound);
@@ -260,10 +259,10 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpLanes)
 
 }  // namespace search
 
-/// Queues body(rank, keys, size), called by all 32 lanes of a warp, for every indexed point whose
-/// limit(rank) has a count and a radius that is not negative. `keys` is shared memory; they are in
-/// no order, or ascending with kAscending; the point itself is one of them. Counts are at most
-/// kMost (the caller's business). Both are device functions by value.
+/// Queues body(rank, keys, size), called by all 32 lanes of a warp, for every indexed point with a
+/// positive count and a non-negative radius in limit(rank). `keys` is in shared memory; the keys
+/// are unordered, or ascending with kAscending, and include the point itself. The caller ensures
+/// that counts are at most kMost. Both are device functions by value.
 template <std::uint32_t kMost, bool kAscending = false, class Limit, class Body>
 void for_each_neighborhood(const DevicePointIndex& index, cudaStream_t stream, const char* doing,
                            Limit limit, Body body) {
@@ -276,7 +275,7 @@ void for_each_neighborhood(const DevicePointIndex& index, cudaStream_t stream, c
   cuda_check(cudaGetLastError(), doing);
 }
 
-/// The same for counts that are known at run time only: `most` is their largest.
+/// The same for counts known only at run time: `most` is their maximum.
 /// Errors: usage (more than DevicePointIndex::kMaxNeighbors).
 template <bool kAscending = false, class Limit, class Body>
 void for_each_neighborhood_of(std::uint64_t most, const DevicePointIndex& index,

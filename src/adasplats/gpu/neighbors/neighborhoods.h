@@ -10,8 +10,8 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what kernels read of a DevicePointIndex. Boxes of a level stand in groups of 32
-/// that have the same parent; absent ones are inverted and infinitely far.
+/// Private to gpu/: kernel view of a DevicePointIndex. The boxes of a level form groups of 32 with
+/// the same parent; absent ones are inverted and infinitely far away.
 struct PointIndexView {
   static constexpr std::uint32_t kChildren = 32;  ///< of a node, and points of a leaf
   static constexpr std::uint32_t kMaxLevels = 6;
@@ -19,7 +19,7 @@ struct PointIndexView {
   const float* coordinates[3] = {};  ///< by rank, padded to whole leaves with infinity
   const float* low[3] = {};          ///< of the boxes of all levels
   const float* high[3] = {};
-  std::uint32_t begins[kMaxLevels] = {};  ///< where a level's boxes begin; level 0 are the leaves
+  std::uint32_t begins[kMaxLevels] = {};  ///< of the boxes of each level; level 0 are the leaves
   std::uint32_t levels = 0;               ///< the last has one group of boxes
   std::uint32_t leaves = 0;
   std::uint32_t size = 0;
@@ -27,11 +27,11 @@ struct PointIndexView {
 
 /// Private to gpu/: points along a curve (Hilbert order) under an implicit 32-ary tree of bounding
 /// boxes, in device memory: a leaf holds 32 consecutive points, a node 32 consecutive nodes of the
-/// level below, so that a warp tests a node at once. A rank is the index of a point. What
-/// neighborhoods.cuh finds in it are the sets that PointIndex finds. Needs 13 bytes a point.
+/// level below, so a warp tests a node at once. A rank is the index of a point. neighborhoods.cuh
+/// finds the same sets in it as PointIndex. Needs 13 bytes per point.
 class DevicePointIndex {
  public:
-  /// The longest neighbourhood that can be searched.
+  /// Maximum size of a neighbourhood.
   static constexpr std::uint32_t kMaxNeighbors = 512;
 
   /// `points`: device memory, copied. Errors: unavailable (2^31 points or more).
@@ -46,11 +46,11 @@ class DevicePointIndex {
   DeviceBuffer<float> boxes_;
 };
 
-/// Refuses neighbourhoods of more points than DevicePointIndex::kMaxNeighbors.
-/// Errors: usage, with what to do.
+/// Rejects neighbourhoods of more points than DevicePointIndex::kMaxNeighbors.
+/// Errors: usage, with a remedy.
 void check_neighbors(std::uint64_t neighbors);
 
-/// Number of points within the radius of every point, by rank, itself included: as
+/// Number of points within the radius of every point, by rank, including itself, as
 /// PointIndex::count_within.
 DeviceBuffer<std::uint32_t> count_within(const DevicePointIndex& index, float radius,
                                          cudaStream_t stream);

@@ -10,7 +10,7 @@
 
 namespace adasplats::gpu {
 
-/// Leaves the members of a list for which keep(rank) holds, in their order; all lanes of a warp.
+/// Keeps the members of a list for which keep(rank) holds, in order; called by all lanes of a warp.
 template <class Keep>
 __device__ void keep_in_list(const ListsView& lists, std::uint32_t point, const Keep& keep) {
   std::uint32_t* ranks = lists.of(point);
@@ -21,16 +21,16 @@ __device__ void keep_in_list(const ListsView& lists, std::uint32_t point, const 
     const std::uint32_t rank = at < size ? ranks[at] : 0;
     const bool stays = at < size && keep(rank);
     const std::uint32_t lanes = __ballot_sync(kAllLanes, stays);
-    // Members move forward only, over ones that were read.
+    // Members only move forward, over members that were already read.
     if (stays) ranks[kept + lanes_before(lanes)] = rank;
     kept += __popc(lanes);
   }
   if (lane_of_thread() == 0) lists.sizes[point] = kept;
 }
 
-/// The neighbourhoods of all indexed points as lists of ranks in no order. limit(rank) as
-/// for_each_neighborhood takes it, `most` the largest count; the list is empty where nothing is
-/// wanted. also(rank, keys, size) is called for the others by all lanes of a warp.
+/// The neighbourhoods of all indexed points as unordered lists of ranks. limit(rank): as in
+/// for_each_neighborhood; the list is empty if it requests nothing. `most`: the largest count.
+/// also(rank, keys, size) is called for the other lists by all lanes of a warp.
 /// Errors: usage (`most` is too large).
 template <bool kAscending = false, class Limit, class Also>
 DeviceLists find_lists(const DevicePointIndex& index, std::uint64_t most, cudaStream_t stream,

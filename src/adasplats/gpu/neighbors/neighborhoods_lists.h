@@ -11,7 +11,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: lists of ranks, one a point, as kernels see them.
+/// Private to gpu/: kernel view of lists of ranks, one per point.
 struct ListsView {
   const std::uint64_t* begins;  ///< in `ranks`
   std::uint32_t* sizes;
@@ -20,10 +20,10 @@ struct ListsView {
   ADASPLATS_HD std::uint32_t* of(std::uint32_t point) const { return ranks + begins[point]; }
 };
 
-/// Private to gpu/: lists of ranks in device memory, each with room of its own, so that lists can
-/// become shorter where they are.
+/// Private to gpu/: lists of ranks in device memory, each with its own range, so lists can be
+/// shortened in place.
 struct DeviceLists {
-  DeviceBuffer<std::uint64_t> begins;  ///< one more than there are lists
+  DeviceBuffer<std::uint64_t> begins;  ///< number of lists + 1
   DeviceBuffer<std::uint32_t> sizes;
   DeviceBuffer<std::uint32_t> ranks;
 
@@ -31,8 +31,8 @@ struct DeviceLists {
   ListsView view() const { return {begins.data(), sizes.data(), ranks.data()}; }
 };
 
-/// The neighbourhoods of all indexed points under one limit, as lists of ranks: in ascending order
-/// of (distance, rank), or in no order. Errors: usage (a count that is too large for a GPU).
+/// The neighbourhoods of all indexed points under one limit, as lists of ranks: ascending by
+/// (distance, rank), or unordered. Errors: usage (the count is too large for a GPU).
 DeviceLists find_lists(const DevicePointIndex& index, NeighborLimit limit, bool ascending,
                        cudaStream_t stream);
 

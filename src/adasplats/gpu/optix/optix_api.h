@@ -9,9 +9,9 @@
 struct CUctx_st;
 struct CUstream_st;
 
-/// Private to gpu/: what we use of the binary interface between a program and the OptiX library of
-/// the NVIDIA driver, in our own words. The numbers are those of ABI 87 (OptiX 8.0) and 105 (9.0),
-/// which agree in everything below but the length of the function table.
+/// Private to gpu/: our own declarations of the used part of the binary interface of the OptiX
+/// library of the NVIDIA driver. The numbers are those of ABI 87 (OptiX 8.0) and 105 (9.0), which
+/// differ here only in the length of the function table.
 namespace adasplats::optix {
 
 using Result = int;  ///< 0: success
@@ -52,7 +52,7 @@ struct PipelineOptions {
   const char* launch_parameters = nullptr;  ///< name of the variable
   unsigned primitive_types = 1;             ///< 1: custom primitives alone
   int opacity_micromaps = 0;
-  int clustered_geometry = 0;  ///< since ABI 105; older libraries do not look at it
+  int clustered_geometry = 0;  ///< since ABI 105; ignored by older libraries
 };
 static_assert(sizeof(PipelineOptions) == 48 && offsetof(PipelineOptions, launch_parameters) == 24);
 
@@ -86,7 +86,7 @@ struct ProgramGroupOptions {
 };
 static_assert(sizeof(ProgramGroupOptions) == 8);
 
-/// What the shader binding table holds for a program: no data of ours, only the library's header.
+/// Record of a program in the shader binding table: the library's header, without data of ours.
 struct alignas(16) ProgramRecord {
   std::array<std::byte, 32> header;
 };
@@ -116,13 +116,13 @@ static_assert(sizeof(Box) == 24);
 struct CustomPrimitives {
   const DeviceAddress* boxes = nullptr;  ///< one address (a list is for moving primitives)
   unsigned count = 0;
-  unsigned stride = 0;              ///< 0: boxes lie side by side
+  unsigned stride = 0;              ///< 0: boxes are contiguous
   const unsigned* flags = nullptr;  ///< one for each record of the shader binding table
   unsigned records = 1;             ///< records of the shader binding table
   DeviceAddress record_of_primitive = 0;
   unsigned record_bytes = 0;
   unsigned record_stride = 0;
-  unsigned first_index = 0;  ///< added to the index that programs see
+  unsigned first_index = 0;  ///< added to the index passed to programs
 };
 static_assert(sizeof(CustomPrimitives) == 56 && offsetof(CustomPrimitives, flags) == 16 &&
               offsetof(CustomPrimitives, first_index) == 48);

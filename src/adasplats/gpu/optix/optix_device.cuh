@@ -6,9 +6,8 @@
 
 #include "adasplats/core/maths/ray.h"
 
-/// Private to the OptiX programs: the functions that the driver offers to them. They are no
-/// functions of a library: the driver's compiler knows them by name, so a call in PTX is all that
-/// is needed.
+/// Private to the OptiX programs: functions that the driver provides. The driver's compiler
+/// resolves them by name, so calls in PTX need no library.
 namespace adasplats::optix {
 
 __device__ __forceinline__ std::uint32_t launch_index() {
@@ -17,15 +16,15 @@ __device__ __forceinline__ std::uint32_t launch_index() {
   return index;
 }
 
-/// Index of the primitive that an intersection program is to test.
+/// Index of the primitive that an intersection program tests.
 __device__ __forceinline__ std::uint32_t primitive_index() {
   std::uint32_t index;
   asm volatile("call (%0), _optix_read_primitive_idx, ();" : "=r"(index));
   return index;
 }
 
-/// The ray that is being traced, with the t_max that hits so far have left. For one geometry
-/// structure alone the ray of the scene is that of the structure.
+/// The current ray, with t_max shortened by the hits so far. With a single geometry structure, the
+/// ray of the scene is also that of the structure.
 __device__ __forceinline__ Ray current_ray() {
   Ray ray;
   asm volatile("call (%0), _optix_get_world_ray_origin_x, ();" : "=f"(ray.origin.x));
@@ -51,7 +50,7 @@ __device__ __forceinline__ void set_payload(std::uint32_t value) {
   asm volatile("call _optix_set_payload, (%0, %1);" ::"r"(kIndex), "r"(value));
 }
 
-/// Says that nothing beyond `t` is of interest any more.
+/// Ends the search beyond `t`.
 __device__ __forceinline__ void end_ray_at(float t) {
   [[maybe_unused]] std::uint32_t accepted;
   asm volatile("call (%0), _optix_report_intersection_0, (%1, %2);"
@@ -59,14 +58,13 @@ __device__ __forceinline__ void end_ray_at(float t) {
                : "f"(t), "r"(0));
 }
 
-/// Two registers that go along with a ray.
+/// The two payload registers of a ray.
 struct Payload {
   std::uint32_t first, second;
 };
 
-/// Runs the intersection programs of `record_offset` for what lies along a ray; no other programs.
-/// The call has room for 32 payload registers, of which the first two are used; and record_stride
-/// is the number of kinds of rays.
+/// Traces a ray with the intersection programs of `record_offset` only. The call has 32 payload
+/// registers, of which the first two are used; record_stride is the number of ray kinds.
 __device__ __forceinline__ Payload trace(std::uint64_t scene, const Ray& ray,
                                          std::uint32_t record_offset, std::uint32_t record_stride,
                                          Payload payload) {

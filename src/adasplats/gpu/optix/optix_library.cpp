@@ -19,20 +19,20 @@ namespace {
 
 constexpr const char* kName = "libnvoptix.so.1";
 constexpr const char* kOverride = "ADASPLATS_OPTIX_LIBRARY";
-/// Where drivers put it when the loader is not told where: packages, containers, Windows'
-/// subsystem.
+/// Folders searched after the loader's own paths: packages, containers, Windows Subsystem for
+/// Linux.
 constexpr std::array kFolders = {"/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu",
                                  "/usr/lib64", "/usr/local/nvidia/lib64", "/usr/lib/wsl/lib"};
 
 constexpr const char* kCure =
     "it comes with the NVIDIA driver, 535 or newer; a container gets it with "
     "NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility; "
-    "ADASPLATS_OPTIX_LIBRARY names it elsewhere; or use `device` cuda";
+    "set ADASPLATS_OPTIX_LIBRARY if it is elsewhere; or use `device` cuda";
 
 struct Abi {
   int number;
   std::size_t table_size;
-  std::size_t pack_record, launch;  ///< places in the table
+  std::size_t pack_record, launch;  ///< indices in the table
 };
 constexpr std::array kAbis = {Abi{105, 52, 40, 41}, Abi{87, 48, 38, 39}};
 constexpr std::size_t kLargestTable = 52;
@@ -44,7 +44,7 @@ void take(F& function, void* address) {
   function = std::bit_cast<F>(address);
 }
 
-/// The two ABIs agree about the places up to the building of micromaps.
+/// Both ABIs have the same indices up to the functions that build micromaps.
 optix::Functions functions_of(const Table& table, const Abi& abi) {
   optix::Functions functions;
   take(functions.error_name, table[0]);
@@ -65,7 +65,7 @@ optix::Functions functions_of(const Table& table, const Abi& abi) {
   return functions;
 }
 
-/// An opened library, or the reason why there is none.
+/// An opened library, or the reason why it could not be opened.
 struct Opened {
   void* handle = nullptr;
   std::string path;
@@ -74,19 +74,19 @@ struct Opened {
   Table table{};
 };
 
-/// Why the loader refused a file.
+/// The reason why the loader rejected a file.
 std::string why_not_opened(const std::string& path) {
   std::error_code ignored;
   const auto bytes = std::filesystem::file_size(path, ignored);
   if (!ignored && bytes == 0)
     return path +
-           " is empty, as in a container that was started without the driver's graphics "
+           " is empty, as in a container started without the driver's graphics "
            "libraries";
   const char* text = dlerror();
   return "the OptiX library does not load (" + std::string(text == nullptr ? path : text) + ")";
 }
 
-/// Asks for the newest ABI that we know.
+/// Queries the newest supported ABI.
 void ask_for_functions(Opened& opened) {
   const auto query =
       std::bit_cast<optix::QueryFunctionTable>(dlsym(opened.handle, "optixQueryFunctionTable"));
@@ -106,7 +106,7 @@ void ask_for_functions(Opened& opened) {
 Opened try_open(const std::string& path) {
   Opened opened;
   opened.path = path;
-  // Not taken out of memory again: the driver's threads may outlive the last of our objects.
+  // Never unloaded: the driver's threads may outlive the last of our objects.
   opened.handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (opened.handle == nullptr) {
     opened.reason = why_not_opened(path);
@@ -117,7 +117,7 @@ Opened try_open(const std::string& path) {
   return opened;
 }
 
-/// The first that opens; else the first that is there; else the reason that there is none.
+/// The first library that opens; otherwise the first one that exists; otherwise the reason.
 Opened open_anywhere() {
   if (const char* named = std::getenv(kOverride); named != nullptr && *named != '\0')
     return try_open(named);

@@ -12,17 +12,17 @@ namespace optix {
 struct Functions;
 }
 
-/// What a search for OptiX found. It is a library of the NVIDIA driver.
+/// Result of a search for OptiX, which is a library of the NVIDIA driver.
 struct OptixSearch {
   bool available = false;
-  std::string reason;   ///< where it is not available: why, and what to do about it
-  std::string library;  ///< path or name of what was opened
+  std::string reason;   ///< why it is not available, and the remedy; empty if it is
+  std::string library;  ///< path or name of the opened library
   int abi = 0;          ///< 105 (OptiX 9.0) or 87 (OptiX 8.0)
 };
 
-/// Looks for OptiX: the file that the environment variable ADASPLATS_OPTIX_LIBRARY names, else
-/// libnvoptix.so.1 where libraries are, else in the folders where drivers put it. Never throws. A
-/// GPU is another matter: find_gpus().
+/// Searches for OptiX: the file named by the environment variable ADASPLATS_OPTIX_LIBRARY,
+/// otherwise libnvoptix.so.1 in the loader's paths, otherwise in the folders used by drivers. Never
+/// throws. Does not check for a GPU: see find_gpus().
 OptixSearch find_optix();
 
 /// Private to gpu/: the opened library.
@@ -37,8 +37,8 @@ class OptixLibrary {
   const optix::Functions& functions() const { return *functions_; }
   int abi() const { return abi_; }
 
-  /// Throws where an OptiX call failed: unavailable, with what was being done, the library's name
-  /// of the error and `log`, what it wrote about it.
+  /// Throws if an OptiX call failed: unavailable, with the action, the library's name of the error
+  /// and its `log`.
   void check(int result, const char* doing, const std::string& log = {}) const;
 
  private:

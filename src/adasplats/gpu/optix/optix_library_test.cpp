@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-/// Lets the environment name the OptiX library.
+/// Sets the environment variable that names the OptiX library.
 class NamedLibrary {
  public:
   explicit NamedLibrary(const std::string& path) { setenv(kVariable, path.c_str(), 1); }
@@ -30,7 +30,7 @@ std::filesystem::path path_of_test() {
   return std::filesystem::path(testing::TempDir()) / "adasplats_optix_library_test.so";
 }
 
-/// OptiX is not there `because`, and the message says what helps; both ways of asking.
+/// Expects both searches to fail with this reason and a remedy.
 void expect_unavailable(const std::string& because) {
   if (!built_with_cuda()) GTEST_SKIP() << find_gpus().reason;
   const OptixSearch search = find_optix();
@@ -56,20 +56,20 @@ void expect_content_unavailable(const std::string& content, const std::string& b
   std::filesystem::remove(path);
 }
 
-TEST(OptixLibrary, AMissingFileIsToldWithTheCure) {
+TEST(OptixLibrary, AMissingFileIsReportedWithARemedy) {
   const NamedLibrary library(path_of_test().string() + ".missing");
   expect_unavailable(path_of_test().string() + ".missing");
 }
 
-TEST(OptixLibrary, AnEmptyFileIsToldWithTheCure) {
+TEST(OptixLibrary, AnEmptyFileIsReportedWithARemedy) {
   expect_content_unavailable("", path_of_test().string() + " is empty");
 }
 
-TEST(OptixLibrary, AFileThatIsNoLibraryIsToldWithTheCure) {
+TEST(OptixLibrary, AFileThatIsNoLibraryIsReportedWithARemedy) {
   expect_content_unavailable("no library at all\n", "does not load");
 }
 
-TEST(OptixLibrary, AnotherLibraryIsToldWithTheCure) {
+TEST(OptixLibrary, AnotherLibraryIsReportedWithARemedy) {
   const NamedLibrary library("libm.so.6");
   expect_unavailable("libm.so.6 is not the OptiX library");
 }

@@ -18,20 +18,20 @@ struct alignas(16) DiskRecord {
 };
 static_assert(sizeof(DiskRecord) == 32);
 
-/// A triangle likewise: three loads.
+/// A triangle: three loads of 16 bytes.
 struct alignas(16) TriangleRecord {
   Triangle triangle;
   float unused[3] = {};
 };
 static_assert(sizeof(TriangleRecord) == 48);
 
-/// Private to gpu/: what a launch of the OptiX programs reads. The host fills it; the programs
-/// (optix_programs.cu) are compiled on their own, for the driver.
+/// Private to gpu/: launch parameters of the OptiX programs, filled by the host. The programs
+/// (optix_programs.cu) are compiled separately, for the driver.
 struct OptixParams {
   RaySource source;
-  std::uint64_t first_ray = 0;    ///< of the source, in this launch
-  std::uint64_t first_place = 0;  ///< place_of_ray() of what `hits` begins with
-  Hit* hits = nullptr;            ///< `depth` for each ray
+  std::uint64_t first_ray = 0;    ///< first ray of the source in this launch
+  std::uint64_t first_place = 0;  ///< place_of_ray() of the first entry of `hits`
+  Hit* hits = nullptr;            ///< `depth` per ray
   std::uint64_t scene = 0;        ///< optix::Traversable
   const DiskRecord* disks = nullptr;
   const TriangleRecord* triangles = nullptr;
@@ -40,10 +40,10 @@ struct OptixParams {
 };
 static_assert(std::is_trivially_copyable_v<OptixParams>);
 
-/// Rays of a scene are cast for one of these; the index into hit groups and pipelines.
+/// Query of a launch; the index into hit groups and pipelines.
 enum class OptixQuery : std::uint32_t {
-  nearest,  ///< the nearest hit, kept in two payload registers
-  several,  ///< the nearest `depth` hits, kept in a list in memory
+  nearest,  ///< the nearest hit, in two payload registers
+  several,  ///< the nearest `depth` hits, in a list in memory
 };
 inline constexpr std::uint32_t kOptixQueries = 2;
 

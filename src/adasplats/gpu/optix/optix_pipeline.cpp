@@ -17,18 +17,18 @@ optix::PipelineOptions pipeline_options() {
   return options;
 }
 
-/// Where OptiX writes what its compiler has to say.
+/// Buffer for the log of the OptiX compiler.
 struct CompilerLog {
   std::string text = std::string(2048, '\0');
   std::size_t size = text.size();
 
-  std::string told() const { return text.c_str(); }
+  std::string written() const { return text.c_str(); }
 };
 
 optix::ProgramGroupDescription raygen(optix::Module module, const char* name) {
   optix::ProgramGroupDescription description;
   description.kind = optix::ProgramKind::raygen;
-  description.entries.closest_hit = {module, name};  // where the union has it
+  description.entries.closest_hit = {module, name};  // its position in the union
   return description;
 }
 
@@ -51,7 +51,7 @@ OptixPipeline::OptixPipeline(cudaStream_t stream) {
 }
 
 void OptixPipeline::make_context() {
-  cuda_check(cudaFree(nullptr), "start CUDA");  // OptiX takes the context that is current
+  cuda_check(cudaFree(nullptr), "start CUDA");  // OptiX uses the current context
   const optix::ContextOptions options;
   optix::Context context = nullptr;
   library_.check(optix().context_create(nullptr, &options, &context), "start");
@@ -67,7 +67,7 @@ void OptixPipeline::make_module() {
   const optix::Result result =
       optix().module_create(context(), &options, &pipeline, code, sizeof kOptixPrograms,
                             log.text.data(), &log.size, &module);
-  library_.check(result, "compile the programs", log.told());
+  library_.check(result, "compile the programs", log.written());
   module_ = {module, {optix().module_destroy}};
 }
 
@@ -86,7 +86,7 @@ void OptixPipeline::make_groups() {
   const optix::Result result =
       optix().program_group_create(context(), descriptions.data(), kPrograms, &options,
                                    log.text.data(), &log.size, groups.data());
-  library_.check(result, "prepare the programs", log.told());
+  library_.check(result, "prepare the programs", log.written());
   for (std::size_t i = 0; i < kPrograms; ++i)
     groups_[i] = {groups[i], {optix().program_group_destroy}};
 }
@@ -103,7 +103,7 @@ void OptixPipeline::make_pipeline(OptixQuery query) {
   const optix::Result result =
       optix().pipeline_create(context(), &options, &link, groups.data(), groups.size(),
                               log.text.data(), &log.size, &pipeline);
-  library_.check(result, "link the programs", log.told());
+  library_.check(result, "link the programs", log.written());
   pipelines_[static_cast<std::size_t>(query)] = {pipeline, {optix().pipeline_destroy}};
 }
 

@@ -21,20 +21,20 @@ struct OptixDelete {
 template <class T>
 using OptixHandle = std::unique_ptr<T, OptixDelete<T>>;
 
-/// Private to gpu/: OptiX on the current device with our programs (optix_programs.cu) ready to be
-/// launched. The driver compiles them when it sees them first and keeps the result on disk.
+/// Private to gpu/: OptiX on the current device with our programs (optix_programs.cu), ready to
+/// launch. The driver compiles them on first use and caches the result on disk.
 class OptixPipeline {
  public:
   /// `stream` must outlive the pipeline.
-  /// Errors: unavailable (no library, too old a driver, programs refused), with what helps.
+  /// Errors: unavailable (no library, driver too old, programs rejected), with a remedy.
   explicit OptixPipeline(cudaStream_t stream);
 
   const OptixLibrary& library() const { return library_; }
   const optix::Functions& optix() const { return library_.functions(); }
   optix::Context context() const { return context_.get(); }
 
-  /// Queues `rays` rays. `parameters` is device memory. `has_disks`: the scene's first build input
-  /// are disks (triangles follow, if there are any); else it has triangles alone.
+  /// Queues `rays` rays. `parameters` is device memory. `has_disks`: the first build input of the
+  /// scene contains disks (triangles may follow); otherwise the scene has only triangles.
   void launch(OptixQuery query, bool has_disks, const OptixParams* parameters, std::size_t rays,
               cudaStream_t stream) const;
 
@@ -50,7 +50,7 @@ class OptixPipeline {
     raygen_nearest,
     raygen_several,
     miss,
-    nearest_disk,  // from here on as OptiX counts: by build input, then by query
+    nearest_disk,  // from here on in the order of OptiX: by build input, then by query
     several_disk,
     nearest_triangle,
     several_triangle,

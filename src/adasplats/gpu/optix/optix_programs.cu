@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Compiled on its own for the driver (cmake/Optix.cmake), which finds the programs by their names.
-// OptiX walks its tree and calls an intersection program for every box that a ray enters. The
-// programs keep the hits themselves and give OptiX only how far it has to look: so the order of
-// equal distances is ours, and it does not matter whether a primitive is offered twice.
+// Compiled separately for the driver (cmake/Optix.cmake), which finds the programs by name. OptiX
+// traverses its tree and calls an intersection program for every box that a ray enters. The
+// programs store the hits themselves and report only the remaining search distance to OptiX. So we
+// define the order of equal distances, and a primitive may be tested twice.
 
 #include "adasplats/gpu/optix/optix_device.cuh"
 #include "adasplats/gpu/optix/optix_params.h"
@@ -26,7 +26,7 @@ namespace {
 
 constexpr float kLargest = 3.402823466e+38F;
 
-/// The records are read as what they are made of: 16 bytes a load.
+/// Reads a record in loads of 16 bytes.
 __device__ __forceinline__ adasplats::Disk disk_of(const DiskRecord* record) {
   const float4 a = __ldg(reinterpret_cast<const float4*>(record));
   const float4 b = __ldg(reinterpret_cast<const float4*>(record) + 1);
@@ -63,14 +63,14 @@ __device__ __forceinline__ Hit* unpack(std::uint32_t low, std::uint32_t high) {
   return reinterpret_cast<Hit*>(std::uint64_t{high} << 32U | low);
 }
 
-/// Puts a hit into the ascending list of `depth` hits, of which the last falls off.
+/// Inserts a hit into the ascending list of `depth` hits; the last one is dropped.
 __device__ __forceinline__ void keep_several(Hit hit) {
   if (!(hit.t < HUGE_VALF)) return;
   Hit* const list = unpack(optix::payload<0>(), optix::payload<1>());
   std::uint32_t place = params.depth - 1;
   const float old_end = list[place].t;
   if (!(hit < list[place])) return;
-  std::uint32_t before = place;  // how many come before it
+  std::uint32_t before = place;  // number of hits before it
   while (before > 0 && hit < list[before - 1]) --before;
   if (before > 0 && list[before - 1] == hit) return;
   for (; place > before; --place) list[place] = list[place - 1];
@@ -79,7 +79,7 @@ __device__ __forceinline__ void keep_several(Hit hit) {
   if (new_end < old_end) optix::end_ray_at(new_end);
 }
 
-/// Where the hits of ray i of the source go.
+/// Position of the hits of ray i of the source.
 __device__ __forceinline__ Hit* hits_of(std::uint64_t i) {
   return params.hits + (place_of_ray(params.source, i) - params.first_place) * params.depth;
 }

@@ -14,7 +14,7 @@
 namespace adasplats::gpu {
 namespace {
 
-/// A box for a primitive that has none, which no ray hits either: one point.
+/// A box for a primitive without one, which no ray hits: a single point.
 __device__ optix::Box box_of(Vec3f low, Vec3f high) {
   if (!is_finite(low) || !is_finite(high)) return {{0, 0, 0}, {0, 0, 0}};
   return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
@@ -66,9 +66,9 @@ optix::DeviceAddress address(const void* memory) {
   return reinterpret_cast<optix::DeviceAddress>(memory);
 }
 
-/// Disks and triangles are primitives of ours, not OptiX's triangles: so THE intersection functions
-/// decide and hits have the CPU's bits; their boxes carry the margin that keeps any from being lost
-/// by a box test in single precision. How OptiX tests boxes is not documented: the tests allow no
+/// Disks and triangles are custom primitives, not OptiX's triangles, so our intersection functions
+/// decide and hits are bit-identical to the CPU. A margin of the boxes ensures that a box test in
+/// single precision loses no hit. OptiX does not document its box test: our tests allow no
 /// difference, but cards with RT cores have not been measured (docs/performance.md).
 class OptixScene final : public DeviceScene {
  public:
@@ -100,7 +100,7 @@ class OptixScene final : public DeviceScene {
     const auto triangles = boxes_of(triangles_, stream_.get());
     const std::array boxes = {address(disks.data()), address(triangles.data())};
     const std::array counts = {disks.size(), triangles.size()};
-    // One set of flags a record: no program of ours is an any-hit program.
+    // One set of flags per record: none of our programs is an any-hit program.
     constexpr unsigned kNoAnyHit = 1;
     std::vector<optix::BuildInput> inputs;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -144,7 +144,7 @@ class OptixScene final : public DeviceScene {
     tree_ = std::move(smaller);
   }
 
-  /// Rays [first, first + count) of the source. `hits` begins with those of place `first_place`.
+  /// Casts rays [first, first + count) of the source. `hits` begins at `first_place`.
   void cast_to(const RaySource& source, std::uint64_t first, std::uint64_t count,
                std::uint32_t depth, Hit* hits, std::uint64_t first_place,
                cudaStream_t stream) const {
@@ -160,7 +160,7 @@ class OptixScene final : public DeviceScene {
     const OptixQuery query = depth == 1 ? OptixQuery::nearest : OptixQuery::several;
     for (std::uint64_t done = 0; done < count; done += optix::kMaxLaunch) {
       parameters.first_ray = first + done;
-      // Memory in the order of the stream: other casts may still be reading theirs.
+      // Allocated in stream order: other casts may still be reading their parameters.
       const DeviceBuffer<OptixParams> there({&parameters, 1}, stream);
       pipeline_.launch(query, !disks_.empty(), there.data(),
                        std::min<std::uint64_t>(count - done, optix::kMaxLaunch), stream);
@@ -173,12 +173,12 @@ class OptixScene final : public DeviceScene {
     return attributes.type == cudaMemoryTypeDevice;
   }
 
-  /// Lists are made in device memory, a part of the rays at a time: they are read and written
-  /// often.
+  /// Lists of hits are read and written often, so they are made in device memory, for a part of the
+  /// rays at a time.
   void cast_to_host(const RaySource& source, std::uint64_t count, std::uint32_t depth, Hit* hits,
                     cudaStream_t stream) const {
     constexpr std::uint64_t kMaxHits = std::uint64_t{1} << 24U;  // 128 MB
-    // Whole scans: within one, hits may come in another order than rays.
+    // Complete scans: within a scan, the order of hits may differ from that of rays.
     const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
     const std::uint64_t part =
         std::min(count, std::max<std::uint64_t>(kMaxHits / depth / scan, 1) * scan);
@@ -205,7 +205,7 @@ class OptixScene final : public DeviceScene {
 std::unique_ptr<DeviceScene> make_optix_scene(const SceneView& scene) {
   if (scene.primitive_count() > optix::kMaxPrimitives) {
     throw Error(ErrorKind::data, "the scene has " + std::to_string(scene.primitive_count()) +
-                                     " primitives and OptiX takes at most " +
+                                     " primitives and OptiX supports at most " +
                                      std::to_string(optix::kMaxPrimitives) + "; use `device` cuda");
   }
   return std::make_unique<OptixScene>(scene);

@@ -13,7 +13,7 @@
 namespace adasplats::gpu {
 namespace {
 
-/// What the steps of the paper's methods need of a GPU.
+/// GPU backend of the steps of the paper's methods.
 class PaperOnGpu : public GpuBackend {
  public:
   using Generation = DeviceGeneration;

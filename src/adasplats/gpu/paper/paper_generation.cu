@@ -26,7 +26,7 @@ DeviceBuffer<SemanticGroup> copied(const DeviceBuffer<SemanticGroup>& groups, cu
   return copy;
 }
 
-/// The neighbourhoods that splats grow in.
+/// The neighbourhoods in which splats grow.
 DeviceLists growing_lists(const DevicePointIndex& index, const AllRules& rules,
                           const SemanticGroup* groups, cudaStream_t stream) {
   std::uint32_t most = 0;
@@ -39,7 +39,7 @@ DeviceLists growing_lists(const DevicePointIndex& index, const AllRules& rules,
       [] __device__(std::uint32_t, const std::uint64_t*, std::uint32_t) {});
 }
 
-/// Normals from the groups' own neighbourhoods, where these are not the base neighbourhoods.
+/// Normals from the neighbourhoods of the groups, if these differ from the base neighbourhoods.
 void refine(const DeviceCloud& cloud, const DeviceLists& lists, const AllRules& rules,
             const SemanticGroup* groups, DeviceBuffer<Vec3f>& normals, cudaStream_t stream) {
   DeviceBuffer<std::uint8_t> wanted(cloud.size(), stream);
@@ -64,7 +64,7 @@ __device__ GrownSplat grow_splat(const SurfacePoint& seed, const ListsView& list
   const std::uint32_t* ranks = lists.of(point);
   const std::uint32_t size = lists.sizes[point];
   std::uint64_t stop = ~std::uint64_t{0};
-  std::uint32_t squared_reach = 0;  // as bits, which sort as the float does
+  std::uint32_t squared_reach = 0;  // as bits, which have the order of the float
   for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
     const SurfacePoint other = load(points, ranks[k]);
     const std::uint64_t key =
@@ -92,8 +92,8 @@ __device__ GrownSplat grow_splat(const SurfacePoint& seed, const ListsView& list
   return {splat_radius(seed, farthest), static_cast<float>(warp_sum(sum) / included)};
 }
 
-/// All candidates: what would be the splat of each point. The lists become those of discards: "all
-/// points in the neighbourhood inside the sphere of radius alpha r are discarded."
+/// The candidate splats of all points. The lists become the discard lists: "all points in the
+/// neighbourhood inside the sphere of radius alpha r are discarded."
 struct Candidates {
   DeviceBuffer<float> radii;
   DeviceBuffer<float> shifts;
@@ -123,7 +123,7 @@ Candidates grow_all(const DeviceBuffer<SurfacePoint>& points, const DeviceLists&
   return candidates;
 }
 
-/// Waits for the step before: steps are timed, and its errors are its own.
+/// Waits for the previous step, so that its time and errors are attributed to it.
 void begin(std::string_view name, cudaStream_t stream, StepSink step) {
   cuda_check(cudaStreamSynchronize(stream), "make splats");
   step(name, 0);

@@ -16,12 +16,12 @@ class GpuBackend;
 struct DeviceGeneration {
   DeviceBuffer<Disk> disks;
   DeviceBuffer<std::uint32_t> seeds;   ///< index of each splat's seed point in the cloud
-  DeviceBuffer<SemanticGroup> groups;  ///< one a point of the cloud; empty for basic splats
+  DeviceBuffer<SemanticGroup> groups;  ///< one per point of the cloud; empty for basic splats
   double radius_m = 0;                 ///< R
   double error_m = 0;                  ///< E
 };
 
-/// What generate_splats() gives, the same bits. `groups` are empty or one a point of the cloud.
+/// The result of generate_splats(), bit-identical. `groups`: empty or one per point of the cloud.
 /// Errors: usage (neighbourhoods too large for a GPU).
 DeviceGeneration generate_splats(const GpuBackend& place, const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,

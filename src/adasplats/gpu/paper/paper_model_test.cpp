@@ -44,7 +44,7 @@ DeviceBuffer<T> on_device(const std::vector<T>& values, const Stream& stream) {
   return DeviceBuffer<T>(std::span<const T>(values), stream.get());
 }
 
-/// The error that a call ends with; no kind: with none.
+/// The error thrown by a call; no kind if none.
 struct Thrown {
   std::optional<ErrorKind> kind;
   std::string what;
@@ -88,7 +88,7 @@ std::vector<Vec3f> make_points(Shape shape, std::size_t count) {
   return sorted;
 }
 
-/// Oracle: the neighbourhoods that PointIndex finds, each ascending by key.
+/// Oracle: the neighbourhoods of PointIndex, each ascending by key.
 std::vector<std::vector<std::uint32_t>> expected_lists(const std::vector<Vec3f>& points,
                                                        NeighborLimit limit) {
   const Executor executor(2);
@@ -115,7 +115,7 @@ std::vector<std::vector<std::uint32_t>> downloaded(const DeviceLists& lists) {
   return result;
 }
 
-/// Number of lists that are not those of the oracle.
+/// Number of lists that differ from the oracle.
 std::size_t wrong_lists(const std::vector<Vec3f>& points, NeighborLimit limit) {
   const Stream stream;
   const auto positions = on_device(points, stream);
@@ -135,7 +135,7 @@ std::size_t wrong_lists(const std::vector<Vec3f>& points, NeighborLimit limit) {
 
 class EveryShape : public testing::TestWithParam<Shape> {};
 
-TEST_P(EveryShape, NeighborhoodsAreThoseOfPointIndex) {
+TEST_P(EveryShape, NeighborhoodsMatchPointIndex) {
   ADASPLATS_NEEDS_GPU();
   for (const std::size_t count : {0, 1, 2, 31, 32, 33, 1024, 1025, 20000}) {
     const std::vector<Vec3f> points = make_points(GetParam(), count);
@@ -150,7 +150,7 @@ TEST_P(EveryShape, NeighborhoodsAreThoseOfPointIndex) {
   }
 }
 
-TEST_P(EveryShape, CountsAreThoseOfPointIndex) {
+TEST_P(EveryShape, CountsMatchPointIndex) {
   ADASPLATS_NEEDS_GPU();
   const Stream stream;
   const Executor executor(2);
@@ -165,7 +165,7 @@ TEST_P(EveryShape, CountsAreThoseOfPointIndex) {
   }
 }
 
-TEST_P(EveryShape, OrderIsThatOfTheCpu) {
+TEST_P(EveryShape, OrderMatchesTheCpu) {
   ADASPLATS_NEEDS_GPU();
   const Stream stream;
   const Executor executor(2);
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape,
                          testing::Values(Shape::uniform, Shape::clustered, Shape::duplicates,
                                          Shape::collinear, Shape::grid, Shape::equal));
 
-TEST(Neighborhoods, TooManyAreRefused) {
+TEST(Neighborhoods, TooManyAreRejected) {
   ADASPLATS_NEEDS_GPU();
   const Stream stream;
   const auto positions = on_device(make_points(Shape::uniform, 10), stream);
@@ -242,8 +242,8 @@ TEST(SortKeys, SortsSelectsAndAdds) {
   }
 }
 
-/// Clouds whose points differ in one attribute only, or in none.
-TEST(CanonicalOrder, IsThatOfTheCpu) {
+/// Clouds with points that differ in only one attribute or in none.
+TEST(CanonicalOrder, MatchesTheCpu) {
   ADASPLATS_NEEDS_GPU();
   const Stream stream;
   const Executor executor(2);
@@ -305,7 +305,7 @@ void expect_same_selection(const std::vector<float>& radii,
         adasplats::select_greedily(radii, discards, order, executor));
 }
 
-TEST(Selection, IsTheSequentialOne) {
+TEST(Selection, MatchesTheSequentialSelection) {
   ADASPLATS_NEEDS_GPU();
   for (const std::size_t count : {0, 1, 2, 100, 20000}) {
     for (const std::uint64_t most : {1, 12, 100}) {
@@ -313,7 +313,8 @@ TEST(Selection, IsTheSequentialOne) {
       std::vector<std::vector<std::uint32_t>> lists(count);
       for (std::size_t i = 0; i < count; ++i) {
         Random random(6, most, i);
-        // Few different radii, some of them 0; lists may name a candidate twice, and itself.
+        // Few distinct radii, some of them 0; lists may contain duplicates and the candidate
+        // itself.
         radii.push_back(static_cast<float>(random.next_bits() % 5));
         const std::uint64_t size = random.next_bits() % most;
         for (std::uint64_t k = 0; k < size; ++k) {
@@ -326,7 +327,7 @@ TEST(Selection, IsTheSequentialOne) {
   }
 }
 
-TEST(Selection, OfAChainThatIsDecidedOneByOne) {
+TEST(Selection, DecidesALongChainOneByOne) {
   ADASPLATS_NEEDS_GPU();
   constexpr std::uint32_t kCount = 401;
   std::vector<std::vector<std::uint32_t>> lists(kCount);
@@ -336,7 +337,7 @@ TEST(Selection, OfAChainThatIsDecidedOneByOne) {
 
 // ---- whole models
 
-/// The scanned room, four times with other noise: 230,400 points.
+/// The scanned room, four times with different noise: 230,400 points.
 PointCloud dense_room() {
   PointCloud cloud;
   for (std::uint64_t copy = 0; copy < 4; ++copy) {
@@ -367,7 +368,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// Not one bit of the splats and of what a report says of them may differ.
+/// All bits of the splats and of their report must agree.
 void expect_same(const std::pair<SplatModel, BuildReport>& got,
                  const std::pair<SplatModel, BuildReport>& expected) {
   EXPECT_EQ(got.first.size(), expected.first.size());
@@ -413,7 +414,7 @@ class EveryMethod : public testing::TestWithParam<Case> {
   }
 };
 
-TEST_P(EveryMethod, GivesTheModelOfTheCpu) {
+TEST_P(EveryMethod, MatchesTheCpu) {
   ADASPLATS_NEEDS_GPU();
   const auto expected = build(cloud(), options(), false);
   EXPECT_GT(expected.first.size(), 1000U);
@@ -421,7 +422,7 @@ TEST_P(EveryMethod, GivesTheModelOfTheCpu) {
   expect_same(build(cloud(), options(), true), expected);
 }
 
-TEST_P(EveryMethod, GivesTheSameBytesTwice) {
+TEST_P(EveryMethod, IsReproducible) {
   ADASPLATS_NEEDS_GPU();
   const SplatModel one = build(cloud(), options(), true).first;
   PointCloud shuffled = cloud();
@@ -444,7 +445,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                          Case{PaperVariant::semantic, false, true, true},
                                          Case{PaperVariant::semantic, true, true, true}));
 
-TEST(PaperModel, OfDegenerateCloudsIsThatOfTheCpu) {
+TEST(PaperModel, MatchesTheCpuForDegenerateClouds) {
   ADASPLATS_NEEDS_GPU();
   for (const Shape shape : {Shape::equal, Shape::collinear, Shape::grid}) {
     for (const std::size_t count : {1, 2, 39, 41, 3000}) {
@@ -458,7 +459,7 @@ TEST(PaperModel, OfDegenerateCloudsIsThatOfTheCpu) {
   }
 }
 
-TEST(PaperModel, AMillionEqualPointsEnd) {
+TEST(PaperModel, AMillionEqualPointsTerminate) {
   ADASPLATS_NEEDS_GPU();
   PointCloud cloud;
   cloud.positions.assign(1'000'000, {1, 2, 3});
@@ -471,7 +472,7 @@ TEST(PaperModel, AMillionEqualPointsEnd) {
   EXPECT_LT(seconds.count(), 20);
 }
 
-TEST(PaperModel, OptionsOfTheMethodsCount) {
+TEST(PaperModel, OptionsOfTheMethodsHaveAnEffect) {
   ADASPLATS_NEEDS_GPU();
   const PointCloud cloud = scanned_room();
   for (int variant = 0; variant < 6; ++variant) {
@@ -488,11 +489,11 @@ TEST(PaperModel, OptionsOfTheMethodsCount) {
   }
 }
 
-TEST(PaperModel, ErrorsLeaveNothingBehind) {
+TEST(PaperModel, ErrorsLeakNoMemory) {
   ADASPLATS_NEEDS_GPU();
   PaperOptions options;
   options.variant = PaperVariant::basic;
-  build(scanned_room(), options, true);  // what CUDA itself needs is there from now on
+  build(scanned_room(), options, true);  // CUDA's own memory is allocated from now on
   const std::size_t before = free_memory_bytes(0);
   options.neighbors = 1000;
   EXPECT_EQ(error_of([&] { build(scanned_room(), options, true); }).kind, ErrorKind::usage);

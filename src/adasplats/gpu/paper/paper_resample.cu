@@ -10,7 +10,7 @@
 namespace adasplats::gpu {
 namespace {
 
-/// The splats as a cloud in canonical order: centers with the attributes of their seeds.
+/// The splats as a cloud in canonical order: centres with the attributes of their seeds.
 struct Centers {
   DeviceCloud cloud;
   DeviceBuffer<Disk> disks;
@@ -23,7 +23,7 @@ Centers centers_of(const DeviceCloud& cloud, const DeviceGeneration& first, cuda
            [from = first.disks.data(), to = centers.positions.data()] __device__(std::uint64_t i) {
              to[i] = from[i].center;
            });
-  // Centers have moved off their seeds: they are put along the curve again.
+  // Centres differ from their seeds, so they are sorted along the curve again.
   const DeviceBuffer<std::uint32_t> order = canonical_order(centers, stream);
   return {gather(centers, order, stream), gather(first.disks, order, stream),
           gather(gather(first.groups, first.seeds, stream), order, stream)};
@@ -46,11 +46,11 @@ double mean_density(const DeviceBuffer<std::uint32_t>& densities,
   return count > 0 ? sum / count : 0;
 }
 
-/// Which splats may have a new point between them.
+/// Decides whether two splats may have a new point between them.
 struct Alike {
   const Disk* disks;
   const std::uint16_t* classes;  ///< decide in the semantic method
-  const SemanticGroup* groups;   ///< else
+  const SemanticGroup* groups;   ///< decide otherwise
   float smoothness;
   bool oriented;
 
@@ -68,14 +68,14 @@ Alike alike_in(const Centers& centers, const PaperOptions& options, cudaStream_t
           has_all_origins(centers.cloud, stream)};
 }
 
-/// New points, each with the splat that it takes its attributes from.
+/// New points, each with the splat whose attributes it copies.
 struct NewPoints {
   DeviceBuffer<Vec3f> positions;
   DeviceBuffer<std::uint32_t> splats;
 };
 
-/// New points around one splat, by the lanes of a warp: with its farthest neighbours (the last of
-/// the keys) first, until it has made its share.
+/// Makes new points around one splat by the lanes of a warp: between it and its farthest neighbours
+/// (the last keys) first, until it has made its share.
 struct Fill {
   Alike alike;
   const std::uint32_t* densities;
@@ -106,7 +106,7 @@ struct Fill {
   }
 };
 
-/// How many new points sparse splats can make at most.
+/// Maximum number of new points that sparse splats can make.
 std::size_t max_new_points(const DeviceBuffer<std::uint32_t>& densities, double wanted,
                            cudaStream_t stream) {
   DeviceBuffer<std::uint32_t> counts(densities.size(), stream);
@@ -120,7 +120,7 @@ std::size_t max_new_points(const DeviceBuffer<std::uint32_t>& densities, double 
   return sum_of(counts.data(), counts.size(), stream);
 }
 
-/// New points in no order, midpoints that two splats made twice.
+/// New points, unordered; midpoints that both splats made occur twice.
 NewPoints interpolate_points(const Centers& centers, double radius_m, const PaperOptions& options,
                              cudaStream_t stream) {
   const DevicePointIndex index(centers.cloud.positions.data(), centers.cloud.size(), stream);
@@ -134,7 +134,7 @@ NewPoints interpolate_points(const Centers& centers, double radius_m, const Pape
   for_each_neighborhood_of<true>(
       static_cast<std::uint64_t>(std::ceil(wanted)), index, stream, "resample splats",
       [wanted, radius, densities = densities.data()] __device__(std::uint32_t splat) {
-        // Fewer than the mean are within R, so this limit cuts nothing off.
+        // Fewer neighbours than the mean are within R, so this limit excludes none.
         const bool sparse = densities[splat] < wanted;
         return sparse ? NeighborLimit{densities[splat], radius * radius} : NeighborLimit{0, -1.0F};
       },
@@ -145,12 +145,12 @@ NewPoints interpolate_points(const Centers& centers, double radius_m, const Pape
   return {gather(made.positions, all, stream), gather(made.splats, all, stream)};
 }
 
-/// Sorts points by coordinates, equal ones by splat, and keeps the first of equal ones.
+/// Sorts points by coordinates, then by splat, and keeps the first of equal points.
 NewPoints without_duplicates(const NewPoints& points, cudaStream_t stream) {
   const std::size_t size = points.splats.size();
   DeviceBuffer<std::uint64_t> keys(size, stream);
   DeviceBuffer<std::uint32_t> order = ascending_numbers(size, stream);
-  // The less important half of the key first: the sort is stable.
+  // The less significant half of the key first: the sort is stable.
   for_each(size, stream, "resample splats",
            [positions = points.positions.data(), splats = points.splats.data(),
             to = keys.data()] __device__(std::uint64_t i) {
@@ -175,7 +175,7 @@ NewPoints without_duplicates(const NewPoints& points, cudaStream_t stream) {
   return {gather(points.positions, kept, stream), gather(points.splats, kept, stream)};
 }
 
-/// A cloud's points of thin things, the others, both or none, with their groups.
+/// The points of thin objects, the other points, both or none, with their groups.
 struct Part {
   DeviceCloud cloud;
   DeviceBuffer<SemanticGroup> groups;
@@ -194,7 +194,7 @@ Part part_of(const DeviceCloud& cloud, const DeviceBuffer<SemanticGroup>& groups
   return {gather(cloud, kept, stream), gather(groups, kept, stream)};
 }
 
-/// Parts put together in canonical order.
+/// Joins parts in canonical order.
 Part joined(std::span<const Part> parts, cudaStream_t stream) {
   std::vector<const DeviceCloud*> clouds;
   std::vector<const DeviceBuffer<SemanticGroup>*> groups;

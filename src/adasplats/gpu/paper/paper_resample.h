@@ -17,7 +17,7 @@ struct DeviceResampled {
   std::size_t new_points = 0;
 };
 
-/// What resample() gives, the same bits, but in canonical order.
+/// The result of resample(), bit-identical, but in canonical order.
 /// Errors: usage (splats are too dense for a GPU).
 DeviceResampled resample(const DeviceCloud& cloud, const DeviceGeneration& first,
                          const PaperOptions& options, cudaStream_t stream);

@@ -20,8 +20,8 @@ __device__ Moments sum_of_lanes(Moments m) {
   return m;
 }
 
-/// Moments of every list about its point. A thread of its own then does each PCA: it is long, and
-/// all lanes of a warp would do the same.
+/// Moments of every list about its point. A separate kernel with one thread per list then does the
+/// PCA, which is long and would be the same in all lanes of a warp.
 DeviceBuffer<Moments> moments_of(const Vec3f* points, const DeviceLists& lists,
                                  cudaStream_t stream) {
   DeviceBuffer<Moments> moments(lists.size(), stream);
@@ -55,7 +55,7 @@ void fit_shapes(const Vec3f* points, const DeviceLists& lists, DeviceBase& base,
            });
 }
 
-/// Where distances of neighbourhoods to their planes go.
+/// Output of the distances of neighbourhoods to their planes.
 struct PlaneSums {
   float* errors;               ///< of each point: sum over its neighbours
   std::uint32_t* memberships;  ///< nullptr: no votes
@@ -63,7 +63,7 @@ struct PlaneSums {
   double sigmas;
 };
 
-/// Adds up the distances of each list to its plane, and votes.
+/// Sums the distances of each list to its plane, and votes.
 void measure_planes(const Vec3f* points, const DeviceLists& lists, const Vec3f* normals,
                     PlaneSums sums, cudaStream_t stream) {
   for_each_warp(lists.size(), stream, "measure distances to planes",
@@ -106,7 +106,7 @@ float squared(double radius_m) {
   return radius * radius;
 }
 
-/// The K nearest of every point, and how far the last of them is.
+/// The K nearest neighbours of every point, and the distance of the last one.
 DeviceLists nearest_lists(const DevicePointIndex& index, std::uint32_t neighbors,
                           float squared_radius, float* distances, cudaStream_t stream) {
   const NeighborLimit limit{neighbors, squared_radius};
@@ -148,7 +148,7 @@ DeviceBase base_neighborhoods(const Vec3f* points, const DevicePointIndex& index
   if (options.radius_m) {
     base.radius_m = *options.radius_m;
   } else {
-    // R is known only after all K-th distances are.
+    // R depends on all K-th distances.
     const double sum = sum_in_chunks(distances.data(), size, stream);
     base.radius_m = size == 0 ? 0.0 : sum / static_cast<double>(size);
     cut_lists(points, distances.data(), squared(base.radius_m), lists, stream);
@@ -162,7 +162,7 @@ DeviceBase base_neighborhoods(const Vec3f* points, const DevicePointIndex& index
     base.memberships.fill_bytes(0);
     base.votes.fill_bytes(0);
   }
-  DeviceBuffer<float>& errors = distances;  // they are not needed any more
+  DeviceBuffer<float>& errors = distances;  // reuses their memory
   measure_planes(
       points, lists, base.normals.data(),
       {errors.data(), base.memberships.data(), base.votes.data(), options.denoise_sigmas}, stream);

@@ -21,13 +21,13 @@ struct DeviceBase {
   DeviceBuffer<std::uint32_t> votes;
 };
 
-/// What base_neighborhoods() gives, the same bits. `points` (device memory) are those of the index,
+/// The result of base_neighborhoods(), bit-identical. `points` (device memory): those of the index,
 /// by rank.
 DeviceBase base_neighborhoods(const Vec3f* points, const DevicePointIndex& index,
                               const BaseNeighborhoodOptions& options, cudaStream_t stream);
 
-/// Normals from lists of neighbours, where these are not empty and `wanted` (one flag a point) is
-/// set; the others keep what `normals` has.
+/// Sets the normals of points with a non-empty list of neighbours and a set flag in `wanted` (one
+/// per point); the others are unchanged.
 void refine_normals(const Vec3f* points, const DeviceLists& lists, const std::uint8_t* wanted,
                     DeviceBuffer<Vec3f>& normals, cudaStream_t stream);
 

@@ -12,20 +12,20 @@ namespace {
 
 enum State : std::uint32_t { kOpen, kDiscarded, kTaken };
 
-/// The selection as kernels see it. Candidate j is decided once every candidate before it that
-/// lists it is: discarded if one of those was taken, taken otherwise. So `blockers` counts those
-/// that are open, and nobody needs to be looked at but those whose count has just become 0.
+/// Kernel view of the selection. Candidate j is decided once all earlier candidates that list it
+/// are: discarded if one of them was selected, selected otherwise. `blockers` counts the open ones,
+/// so only candidates whose count has just become 0 must be processed.
 struct Selection {
   ListsView discards;
-  const std::uint32_t* turns;  ///< when each candidate has its turn; kNoTurn: never
+  const std::uint32_t* turns;  ///< position of each candidate in the order; kNoTurn: none
   std::uint32_t* blockers;
   std::uint32_t* states;
 
   static constexpr std::uint32_t kNoTurn = 0xffffffffU;
 };
 
-/// Candidates to be worked on; queues of consecutive rounds have counters of their own, so that
-/// the host need not look after each.
+/// Candidates to be processed; queues of consecutive rounds have separate counters, so the host
+/// need not read the counter after each round.
 struct Queue {
   std::uint32_t* members;
   std::uint32_t* size;
@@ -35,7 +35,7 @@ struct Queue {
 
 constexpr unsigned kRoundBlocks = 1024;
 
-/// Calls body(candidate) for the members of a queue, with a group of 8 threads for each.
+/// Calls body(candidate) for the members of a queue, with 8 threads for each.
 template <class F>
 __device__ void for_queue(const Queue& queue, const F& body) {
   constexpr std::uint32_t kGroup = 8;
@@ -45,7 +45,7 @@ __device__ void for_queue(const Queue& queue, const F& body) {
     body(queue.members[i], threadIdx.x % kGroup, kGroup);
 }
 
-/// Takes all candidates of a queue: they discard those of their lists that come after them.
+/// Selects all candidates of a queue; they discard the later candidates of their lists.
 __global__ void __launch_bounds__(kBlockThreads)
     take_kernel(Selection selection, Queue ready, Queue discarded) {
   for_queue(ready, [&](std::uint32_t candidate, std::uint32_t lane, std::uint32_t lanes) {
@@ -66,7 +66,7 @@ __global__ void __launch_bounds__(kBlockThreads)
     release_kernel(Selection selection, Queue discarded, Queue ready) {
   for_queue(discarded, [&](std::uint32_t candidate, std::uint32_t lane, std::uint32_t lanes) {
     const std::uint32_t turn = selection.turns[candidate];
-    if (turn == Selection::kNoTurn) return;  // it blocked nobody
+    if (turn == Selection::kNoTurn) return;  // it blocked no candidate
     const std::uint32_t* list = selection.discards.of(candidate);
     for (std::uint32_t k = lane; k < selection.discards.sizes[candidate]; k += lanes) {
       const std::uint32_t other = list[k];
@@ -99,7 +99,7 @@ DeviceBuffer<std::uint32_t> turns_of(const DeviceBuffer<float>& radii, const Dev
   return turns;
 }
 
-/// Counts who blocks whom, and queues candidates that nobody blocks.
+/// Counts the blockers of each candidate, and queues candidates without blockers.
 void begin(const Selection& selection, std::size_t size, const Queue& ready, cudaStream_t stream) {
   for_each_warp(size, stream, "select splats", [selection] __device__(std::uint32_t i) {
     const std::uint32_t turn = selection.turns[i];
@@ -140,7 +140,7 @@ DeviceBuffer<std::uint32_t> select_greedily(const DeviceBuffer<float>& radii,
   states.fill_bytes(0);
   const Selection selection{discards.view(), turns.data(), blockers.data(), states.data()};
 
-  // Rounds are queued many at a time; those behind the last one find nothing to do.
+  // Many rounds are queued at a time; those after the last one have nothing to do.
   constexpr std::size_t kRoundsAtOnce = 16;
   DeviceBuffer<std::uint32_t> counters(2 * kRoundsAtOnce + 1, stream);
   counters.fill_bytes(0);

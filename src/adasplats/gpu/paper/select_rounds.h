@@ -10,9 +10,9 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what select_greedily() gives, exactly, from radii and discard lists in device
-/// memory. Works in rounds: a candidate is decided when all that could discard it are. Waits for
-/// the stream.
+/// Private to gpu/: exactly the result of select_greedily(), from radii and discard lists in device
+/// memory. Works in rounds: a candidate is decided once all candidates that could discard it are.
+/// Waits for the stream.
 DeviceBuffer<std::uint32_t> select_greedily(const DeviceBuffer<float>& radii,
                                             const DeviceLists& discards, SelectionOrder order,
                                             cudaStream_t stream);

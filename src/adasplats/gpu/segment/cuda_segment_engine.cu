@@ -54,7 +54,7 @@ class CudaTileSegmenter final : public TileSegmenter {
     if (task_.options.probabilities) result.probabilities = probabilities_.download();
   }
 
-  // What follows is public for the sake of nvcc, which takes kernels' bodies from nowhere else.
+  // Public because nvcc requires it for functions with extended device lambdas.
   DeviceBuffer<float> features_of(const DeviceCellMeans& cells,
                                   const DeviceBuffer<std::uint32_t>& indices) const {
     const cudaStream_t stream = stream_.get();

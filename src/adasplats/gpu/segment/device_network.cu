@@ -11,8 +11,8 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::uint32_t kConvolveWarps = 4;                 // a block
-constexpr std::uint32_t kAtOnce = 16;                       // points of a kernel
+constexpr std::uint32_t kConvolveWarps = 4;                 // per block
+constexpr std::uint32_t kAtOnce = 16;                       // kernel points at a time
 constexpr std::size_t kMaxWeighted = std::size_t{1} << 26;  // numbers in memory at a time
 
 /// Neighbours of a layer's points.
@@ -30,8 +30,8 @@ struct Influences {
   std::uint32_t index[kWarpLanes];
 };
 
-/// Lane k works out what `kAtOnce` points of the kernel take of neighbour slot + k; gives how many
-/// of these there are.
+/// Lane k computes the weights of neighbour slot + k for `kAtOnce` kernel points; returns the
+/// number of these neighbours.
 __device__ std::uint32_t fill(const ReachView& reach, std::uint64_t point, std::uint32_t slot,
                               std::uint32_t first_kernel, Influences& mine) {
   const std::uint32_t lane = lane_of_thread();
@@ -53,8 +53,8 @@ __device__ std::uint32_t fill(const ReachView& reach, std::uint64_t point, std::
   return __popc(__ballot_sync(kAllLanes, is_there));
 }
 
-/// What each point of the kernel takes of the neighbours of points [first, first + count): a warp a
-/// point, a lane a channel; where there are fewer, groups of lanes take neighbours in turns.
+/// Weighted sums over the neighbours of points [first, first + count) for each kernel point: a warp
+/// per point, a lane per channel; with fewer channels, groups of lanes share the neighbours.
 __global__ void __launch_bounds__(kConvolveWarps* kWarpLanes)
     weighted_kernel(ReachView reach, std::uint64_t first, std::uint32_t count, const float* values,
                     std::uint32_t channels, float* weighted) {
@@ -102,7 +102,7 @@ struct Product {
   float slope;
 };
 
-/// c = activated(a * b + bias), a tile of 64 x 64 a block, 4 x 4 a thread; each sum in the order of
+/// c = activated(a * b + bias), 64 x 64 per block, 4 x 4 per thread; each sum in the order of
 /// `inner`.
 __global__ void __launch_bounds__(kProductThreads) product_kernel(Product product) {
   __shared__ float of_a[kInner][kTile + 4];
@@ -183,7 +183,7 @@ class DeviceRun {
     return std::move(values_[network_.layers.back().output].numbers);
   }
 
-  // What follows is public for the sake of nvcc, which takes kernels' bodies from nowhere else.
+  // Public because nvcc requires it for functions with extended device lambdas.
   const DeviceLevel& level(int k) const { return levels_[static_cast<std::size_t>(k)]; }
 
   DeviceValues result_of(const Layer& layer) const {

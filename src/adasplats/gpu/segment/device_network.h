@@ -14,10 +14,10 @@ namespace adasplats::gpu {
 /// Private to gpu/: a network in device memory.
 class DeviceNetwork {
  public:
-  /// `network` outlives this.
+  /// `network` must outlive this.
   DeviceNetwork(const Network& network, cudaStream_t stream);
 
-  /// run_network(): the same logits but for the order of sums in products of matrices.
+  /// run_network(): the same logits except for the order of sums in matrix products.
   DeviceBuffer<float> logits(std::span<const DeviceLevel> levels, DeviceBuffer<float> features,
                              cudaStream_t stream) const;
 

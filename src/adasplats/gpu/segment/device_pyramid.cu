@@ -14,10 +14,10 @@ namespace adasplats::gpu {
 namespace {
 
 constexpr int kKeyBits = 3 * CellGrid::kAxisBits;
-constexpr std::uint32_t kSearchWarps = 4;  // a block
+constexpr std::uint32_t kSearchWarps = 4;  // per block
 constexpr std::size_t kMaxShared = 48 * 1024;
 
-/// A grid with room for all points within 2^20 cells of the origin.
+/// A grid for points within 2^20 cells of the origin.
 CellGrid wide_grid(float cell_m) {
   constexpr std::int64_t kHalf = std::int64_t{1} << (CellGrid::kAxisBits - 1);
   return {{-kHalf, -kHalf, -kHalf}, cell_m};
@@ -33,7 +33,7 @@ DeviceBuffer<std::uint64_t> keys_of(const DeviceBuffer<Vec3f>& points, CellGrid 
   return keys;
 }
 
-/// Supports sorted into cells as wide as the radius.
+/// Support points sorted into cells as wide as the radius.
 struct SearchView {
   const Vec3f* supports;
   const std::uint64_t* keys;
@@ -64,7 +64,8 @@ struct Candidate {
   }
 };
 
-/// All supports within the radius, found by a warp: nine columns of three cells. Gives how many.
+/// Finds all support points within the radius with a warp: nine columns of three cells. Returns
+/// their number.
 __device__ std::uint32_t collect(const SearchView& search, Vec3f query, Candidate* found,
                                  std::uint32_t capacity) {
   const std::uint32_t lane = lane_of_thread();
@@ -118,14 +119,14 @@ __global__ void __launch_bounds__(kSearchWarps* kWarpLanes)
   }
 }
 
-/// How many cells a ball of the radius touches, at most: their middles are within half a diagonal
-/// of it, and a ball with another half holds them whole.
+/// Upper bound of the number of cells that a ball touches: their centres are within half a diagonal
+/// of it, so a ball larger by a full diagonal contains them.
 std::uint32_t max_cells(float radius_m, float cell_m) {
   const double reach = static_cast<double>(radius_m) / static_cast<double>(cell_m) + std::sqrt(3.0);
   return static_cast<std::uint32_t>(std::ceil(4.0 / 3 * 3.14159265 * reach * reach * reach));
 }
 
-/// find_neighbors(); supports: at most one a cell of `cell_m`.
+/// find_neighbors(); support points: at most one per cell of `cell_m`.
 DeviceBuffer<std::uint32_t> find_neighbors(const DeviceBuffer<Vec3f>& queries,
                                            const DeviceBuffer<Vec3f>& supports, float radius_m,
                                            std::uint32_t slots, float cell_m, cudaStream_t stream) {
@@ -150,7 +151,7 @@ DeviceBuffer<std::uint32_t> find_neighbors(const DeviceBuffer<Vec3f>& queries,
   return table;
 }
 
-/// Columns of 1 m, as heights_above_ground() has them.
+/// Columns of 1 m, as in heights_above_ground().
 constexpr int kReach = 4;
 
 struct ColumnBounds {
@@ -183,7 +184,7 @@ struct Columns {
   }
 };
 
-/// Combines each column with those around it, along x or y.
+/// Combines each column with its neighbours along x or y.
 template <class Body>
 DeviceBuffer<float> spread_along(const DeviceBuffer<float>& numbers, Columns columns, bool along_x,
                                  float start, cudaStream_t stream, Body body) {

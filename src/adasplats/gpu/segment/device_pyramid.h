@@ -12,9 +12,9 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: segment/pyramid in device memory, with the same bits.
+// Private to gpu/: segment/pyramid in device memory, bit-identical.
 
-/// CellMeans, and the points cell by cell: those of cell i are order[begins[i]] to
+/// CellMeans, and the points by cell: those of cell i are order[begins[i]] to
 /// order[begins[i + 1]].
 struct DeviceCellMeans {
   DeviceBuffer<Vec3f> means;

@@ -63,8 +63,8 @@ class NetworkOnGpu : public testing::Test {
   Network network_ = default_network();
 };
 
-// What docs/segmentation.md promises: the same class wherever the two best logits of the CPU differ
-// by 1e-2, and probabilities within 1e-3.
+// The guarantee of docs/segmentation.md: the same class if the two best logits of the CPU differ by
+// at least 1e-2, and probabilities within 1e-3.
 TEST_F(NetworkOnGpu, AgreesWithTheCpu) {
   SegmentOptions options;
   options.tile_m = 20;
@@ -85,12 +85,12 @@ TEST_F(NetworkOnGpu, AgreesWithTheCpu) {
   }
 }
 
-TEST_F(NetworkOnGpu, GivesTheSameBytesEveryTime) {
+TEST_F(NetworkOnGpu, IsReproducible) {
   const SegmentOptions options;
   EXPECT_EQ(on_gpu(options).classes, on_gpu(options).classes);
 }
 
-TEST_F(NetworkOnGpu, TakesFewPointsNoIntensitiesAndPartsOfClouds) {
+TEST_F(NetworkOnGpu, AcceptsFewPointsNoIntensitiesAndPartsOfClouds) {
   SegmentOptions options;
   options.intensity = false;
   options.wanted = 1000;

@@ -24,7 +24,7 @@ __device__ ScanState state_of(const LaunchPoses& poses, std::uint32_t scan) {
   return state;
 }
 
-/// Sum over the threads of a block before this one; `total`: over all. Every thread calls it.
+/// Exclusive sum over the threads of a block; `total`: over all. Every thread must call it.
 __device__ std::uint32_t sum_before(std::uint32_t value, std::uint32_t& total) {
   __shared__ std::uint32_t of_warps[kWarps];
   std::uint32_t sum = value;
@@ -45,7 +45,7 @@ __device__ std::uint32_t sum_before(std::uint32_t value, std::uint32_t& total) {
   return before;
 }
 
-/// A block is of one scan: y; x counts its blocks.
+/// A block belongs to one scan: y; x counts the blocks of the scan.
 template <int kMost>
 __global__ void __launch_bounds__(kThreads)
     report_kernel(FiringRules rules, LaunchPoses poses, const Hit* hits, ReportSpace space) {
@@ -70,7 +70,7 @@ __global__ void __launch_bounds__(kThreads)
   if (threadIdx.x == 0) space.block_counts[scan * gridDim.x + blockIdx.x] = total;
 }
 
-/// One block: counts become sums of those before, the last one the sum of all.
+/// One block: turns counts into their exclusive prefix sums, followed by the total.
 __global__ void __launch_bounds__(kThreads)
     offsets_kernel(std::uint32_t* counts, std::uint32_t count, std::uint32_t blocks_a_scan,
                    std::uint32_t* offsets) {
@@ -149,7 +149,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const PrimitiveValues* primitiv
       body_cells_(upload_values(rules.body_cells(), stream)),
       body_(upload_values(rules.body(), stream)),
       expected_(upload_values(rules.expected(), stream)) {
-  // The four tables of the response in one: nodes and gains of ranges, then of incidences.
+  // The four tables of the response in one: nodes and gains of ranges, then of incidence angles.
   std::vector<float> gains;
   GainTable* const tables[] = {&view_.range_gain, &view_.incidence_gain};
   for (const GainTable* table : tables) {
@@ -179,7 +179,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const PrimitiveValues* primitiv
   view_.primitives = primitives;
 }
 
-/// The tables of a unit's intensities, one behind the other.
+/// The intensity tables of a calibrated sensor, concatenated.
 void DeviceRules::upload_intensity(const SensorIntensity* unit, cudaStream_t stream) {
   if (unit == nullptr) return;
   std::vector<float> values;

@@ -10,7 +10,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what primitives carry, on the current device.
+/// Private to gpu/: attributes of primitives, on the current device.
 DeviceBuffer<PrimitiveValues> upload_primitives(const PrimitiveTable& table, cudaStream_t stream);
 
 /// The tables behind FiringRules on the current device. `primitives` (on it) must outlive it.
@@ -39,30 +39,30 @@ class DeviceRules {
 /// The poses of the scans of a launch, on the device.
 struct LaunchPoses {
   const ScanPose* knots = nullptr;
-  const ScanPose* frame_knots = nullptr;       ///< null: points stay as they are measured
-  const std::uint32_t* first_knots = nullptr;  ///< null: one a scan
-  std::uint64_t first_scan = 0;                ///< its number
+  const ScanPose* frame_knots = nullptr;       ///< null: points stay in the frame of measurement
+  const std::uint32_t* first_knots = nullptr;  ///< null: one per scan
+  std::uint64_t first_scan = 0;                ///< number of the first scan
   std::uint32_t scans = 0;
-  std::uint32_t firings = 0;  ///< of each
+  std::uint32_t firings = 0;  ///< per scan
 };
 
-/// What a report needs while it is made, on the device.
+/// Working memory of a report, on the device.
 struct ReportSpace {
   ReportedReturn* returns = nullptr;      ///< beam.returns of each firing
   std::uint8_t* counts = nullptr;         ///< of firings
   std::uint32_t* block_counts = nullptr;  ///< report_blocks(), then their sum
-  std::uint32_t* offsets = nullptr;       ///< of scans, one more than there are
+  std::uint32_t* offsets = nullptr;       ///< of scans; their number + 1
 };
 
-/// How many counts of blocks a launch has.
+/// Number of block counts of a launch.
 std::size_t report_blocks(std::size_t scans, std::size_t firings);
 
-/// Queues the making of returns of hits[(i * sub_rays + s) * depth + k], i all firings of all
-/// scans: `space.offsets` says how many each scan has.
+/// Queues the computation of the returns of hits[(i * sub_rays + s) * depth + k], where i counts
+/// the firings of all scans. `space.offsets` receives the number of returns of each scan.
 void queue_reports(const FiringRules& rules, const LaunchPoses& poses, const Hit* hits,
                    const ReportSpace& space, cudaStream_t stream);
 
-/// Queues the writing of their attributes, in the order of scans and firings.
+/// Queues the writing of the attributes of these returns, in the order of scans and firings.
 void queue_returns(const FiringRules& rules, const LaunchPoses& poses, const ReportSpace& space,
                    const ReturnArrays& arrays, cudaStream_t stream);
 

@@ -13,15 +13,15 @@ namespace {
 constexpr unsigned kObjectBlock = 64;
 constexpr int kMaxObjectHits = 64;
 
-/// How far an object is worth looking at for hits within `reach_m`, in its geometry's unit: some
-/// more than that, as both are rounded.
+/// Search distance in an object for hits within `reach_m`, in the unit of its geometry, with a
+/// margin for rounding.
 __device__ float object_reach(double reach_m, double begin_m, double scale) {
   constexpr double kMargin = 1e-3;
   const double reach = in_object(reach_m, begin_m, scale);
   return static_cast<float>(reach + kMargin * (fabs(reach) + 1 / scale));
 }
 
-/// Objects one after the other: rays beside each other meet the same ones.
+/// Loops over the objects one by one: neighbouring rays hit the same ones.
 template <class Best>
 __global__ void __launch_bounds__(kObjectBlock)
     add_object_hits_kernel(LaunchWorld world, RaySource source, std::uint64_t count, int depth,

@@ -16,7 +16,7 @@
 namespace adasplats::gpu {
 
 /// Private to gpu/: the geometries of a world on one device. Each is built when a scan first sees
-/// it; those that one scan alone sees are freed when nobody holds them.
+/// it; geometries of a single scan are freed when they are no longer held.
 class DeviceWorld {
  public:
   /// The world must outlive it.
@@ -28,26 +28,27 @@ class DeviceWorld {
  private:
   const World* world_;
   std::shared_ptr<const int> identity_;
-  std::shared_ptr<Stream> stream_;  ///< of the trees' memory
+  std::shared_ptr<Stream> stream_;  ///< of the memory of the trees
   std::vector<std::shared_ptr<const SceneTrees>> kept_;
   std::vector<std::weak_ptr<const SceneTrees>> held_;
 };
 
-/// What the scans of one launch see of a world, in device memory.
+/// The objects of a world seen by the scans of one launch, in device memory.
 struct LaunchWorld {
   const TreesView* trees = nullptr;
   const ObjectSighting* objects = nullptr;  ///< `geometry` is an index of `trees`
   const ObjectPose* knots = nullptr;
-  const std::uint32_t* first_objects = nullptr;  ///< of each scan, one more than there are
+  const std::uint32_t* first_objects = nullptr;  ///< of each scan; number of scans + 1
 };
 
-/// The objects of a launch: put there, then cast.
+/// The objects of a launch: copied to the device, then cast.
 class WorldObjects {
  public:
-  /// Queues the copy of what scans `first_number` + i see. Earlier ones must have been cast.
+  /// Queues the copy of the objects that scans `first_number` + i see. Earlier ones must have been
+  /// cast.
   void upload(const World& world, DeviceWorld& on_device, std::span<const ScanMotion> motions,
               std::uint64_t first_number, double scan_duration_s, cudaStream_t stream);
-  /// Queues the merging of their hits into those of the place, as World::add_hits() does.
+  /// Queues the merging of their hits into those of the scene, as World::add_hits() does.
   void add_hits(const RaySource& source, std::uint64_t rays, int depth, Hit* hits,
                 cudaStream_t stream) const;
 

@@ -13,7 +13,7 @@ namespace adasplats {
 
 namespace gpu {
 
-/// One picture that is under way.
+/// One picture in progress.
 struct RenderSlot {
   Stream stream;
   DeviceBuffer<Hit> hits;
@@ -26,7 +26,7 @@ struct RenderSlot {
 
 namespace {
 
-/// Copies a table to the GPU and lets the pointer to it point there.
+/// Copies a table to the GPU and sets the pointer to the copy.
 template <class T>
 DeviceBuffer<T> moved_table(const T*& table, std::size_t size, cudaStream_t stream) {
   if (table == nullptr || size == 0) return {};
@@ -80,7 +80,7 @@ GpuRenderer::GpuRenderer(const SceneParts& parts, const ImageScene& scene,
 GpuRenderer::~GpuRenderer() {
   const DeviceGuard guard(part_.device);
   for (auto& slot : slots_) {
-    // An exception may have left a picture under way.
+    // A picture may still be in progress after an exception.
     if (slot != nullptr) cudaStreamSynchronize(slot->stream.get());
     slot.reset();
   }
@@ -122,7 +122,7 @@ void GpuRenderer::render_all(std::span<const Camera> cameras, Sink sink) {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     auto& slot = slots_[lane];
     if (slot == nullptr) slot = std::make_unique<RenderSlot>();
-    slot->stream.wait("prepare pictures on the GPU");  // what an exception left there
+    slot->stream.wait("prepare pictures on the GPU");  // after an exception
     if (slot->hits.size() < rays) slot->hits = gpu::DeviceBuffer<Hit>(rays, slot->stream.get());
     if (slot->pixels.size() < bytes) {
       slot->frame_colors = gpu::DeviceBuffer<Vec3f>(bytes / 3, slot->stream.get());

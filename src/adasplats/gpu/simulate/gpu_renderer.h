@@ -19,8 +19,8 @@ namespace gpu {
 struct RenderSlot;
 }  // namespace gpu
 
-/// Private to gpu/: pictures on the first device of a scene, which must outlive it. Two are under
-/// way: one is copied while the next is made.
+/// Private to gpu/: renders pictures on the first device of a scene, which must outlive it. Two are
+/// in progress: one is copied while the next is rendered.
 class GpuRenderer final : public ImageRenderer {
  public:
   GpuRenderer(const gpu::SceneParts& parts, const ImageScene& scene, const ImageOptions& options);
@@ -38,7 +38,7 @@ class GpuRenderer final : public ImageRenderer {
   Vec3d origin_;
   ImageOptions options_;
   ShadingTables tables_;
-  gpu::Stream stream_;  ///< of the tables' memory
+  gpu::Stream stream_;  ///< of the memory of the tables
   gpu::DeviceBuffer<Disk> disks_;
   gpu::DeviceBuffer<Vec3f> vertices_;
   gpu::DeviceBuffer<std::array<std::uint32_t, 3>> triangles_;

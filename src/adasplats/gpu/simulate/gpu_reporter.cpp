@@ -18,7 +18,7 @@ namespace adasplats {
 namespace gpu {
 namespace {
 
-constexpr std::size_t kLanes = 3;  // launches under way on each device
+constexpr std::size_t kLanes = 3;  // launches in progress on each device
 constexpr std::size_t kMaxScansAtOnce = 256;
 
 /// Reference from sensor at all knots, in the order of BatchPoses.
@@ -54,10 +54,10 @@ void copy_returns(const ReturnArrays& from, std::size_t returns, const ReturnArr
 
 }  // namespace
 
-/// Page-locked memory that is used again: getting it from the system takes longer than filling it.
+/// Reusable page-locked memory: allocating it takes longer than filling it.
 class PinnedPool : public std::enable_shared_from_this<PinnedPool> {
  public:
-  /// At least so many bytes, as long as anyone holds them.
+  /// Returns at least this number of bytes, valid while the pointer is held.
   std::shared_ptr<std::uint8_t> get(std::size_t bytes) {
     auto buffer = take(bytes);
     if (!buffer) buffer = std::make_shared<PinnedBuffer<std::uint8_t>>(bytes);
@@ -74,7 +74,7 @@ class PinnedPool : public std::enable_shared_from_this<PinnedPool> {
     const auto found = std::find_if(free_.begin(), free_.end(),
                                     [&](const Buffer& buffer) { return buffer->size() >= bytes; });
     if (found == free_.end()) {
-      free_.clear();  // too small: others of that size will be needed now
+      free_.clear();  // too small; later requests will have the new size
       return nullptr;
     }
     Buffer buffer = std::move(*found);
@@ -91,7 +91,7 @@ class PinnedPool : public std::enable_shared_from_this<PinnedPool> {
   std::vector<Buffer> free_;
 };
 
-/// One launch that may be under way.
+/// One launch, possibly in progress.
 struct ReportLane {
   std::shared_ptr<Stream> stream = std::make_shared<Stream>();
   Event begin, traced, counted;
@@ -111,11 +111,11 @@ struct ReportLane {
   ReportSpace space() const {
     return {returns.data(), counts.data(), block_counts.data(), offsets.data()};
   }
-  /// After an exception: nothing under way writes to what is freed.
+  /// After an exception: waits until no work in progress writes to the freed memory.
   ~ReportLane() { cudaStreamSynchronize(stream->get()); }
 };
 
-/// A sensor in a place on one device.
+/// A sensor in a scene on one device.
 struct DeviceReporter {
   explicit DeviceReporter(const DevicePart& scene_part) : part(&scene_part) {}
   ~DeviceReporter() {
@@ -158,7 +158,7 @@ struct GpuReporter::Run {
   ReportTimes times;
 
   std::size_t batches() const { return (motions.size() + scans - 1) / scans; }
-  /// Batch k runs in lane k % lanes(), so batches come back in their order.
+  /// Batch k runs in lane k % lanes(), so batches are returned in order.
   std::size_t lanes() const { return devices * gpu::kLanes; }
   DeviceReporter& device_of(const GpuReporter& reporter, std::size_t k) const {
     return *reporter.devices_[k % lanes() % devices];
@@ -178,7 +178,7 @@ GpuReporter::GpuReporter(const gpu::SceneParts& scene, const ScanRules& rules)
       fields_(rules.fields()),
       deskews_(rules.deskews()),
       pinned_(std::make_shared<gpu::PinnedPool>()) {
-  if (firings_ == 0) throw Error(ErrorKind::usage, "a sensor without a single firing");
+  if (firings_ == 0) throw Error(ErrorKind::usage, "the sensor has no firings");
   const std::vector<FiringRay> rays = firing_rays(rules.sensor(), rules.cast_firings());
   const gpu::CastingOrder order = gpu::coherent_order(rules.cast_firings());
   for (const gpu::DevicePart& part : scene.parts) {
@@ -210,7 +210,7 @@ std::size_t GpuReporter::scans_at_once(std::size_t scans, std::size_t lanes) con
   return std::clamp<std::size_t>((scans + lanes - 1) / lanes, 1, most);
 }
 
-/// Memory for batches of so many scans.
+/// Allocates memory for batches of this number of scans.
 void GpuReporter::reserve(ReportLane& lane, std::size_t scans, BatchMemory memory) const {
   const cudaStream_t stream = lane.stream->get();
   const auto grow = [&]<class T>(DeviceBuffer<T>& buffer, std::size_t size) {
@@ -232,7 +232,7 @@ void GpuReporter::reserve(ReportLane& lane, std::size_t scans, BatchMemory memor
   grow(*lane.attributes, bytes);
 }
 
-/// Where there is not enough memory for batches that fill the GPU, smaller ones are made.
+/// Makes smaller batches if the memory is too small for batches that fill the GPU.
 void GpuReporter::reserve_all(Run& run) {
   run.scans = scans_at_once(run.motions.size(), run.lanes());
   while (true) {
@@ -242,7 +242,7 @@ void GpuReporter::reserve_all(Run& run) {
         const DeviceGuard guard(device.part->device);
         auto& lane = device.lanes[k % run.lanes() / run.devices];
         if (lane == nullptr) lane = std::make_unique<ReportLane>();
-        lane->stream->wait("prepare scans on the GPU");  // what an exception left there
+        lane->stream->wait("prepare scans on the GPU");  // after an exception
         reserve(*lane, run.scans, run.memory);
       }
       return;
@@ -257,7 +257,7 @@ void GpuReporter::reserve_all(Run& run) {
   }
 }
 
-/// What was built of another world, or of this one before it grew, is dropped.
+/// Drops geometries of another world, or of this one before it grew.
 void GpuReporter::prepare_world(Run& run) {
   if (run.world == nullptr) return;
   for (auto& device : devices_) {
@@ -267,7 +267,7 @@ void GpuReporter::prepare_world(Run& run) {
   }
 }
 
-/// Queues all that makes batch k, until it is known how many returns there are.
+/// Queues the work for batch k up to the counting of its returns.
 void GpuReporter::begin(Run& run, std::size_t k) {
   DeviceReporter& device = run.device_of(*this, k);
   const DeviceGuard guard(device.part->device);
@@ -314,7 +314,7 @@ void GpuReporter::begin(Run& run, std::size_t k) {
   lane.counted.record(stream);
 }
 
-/// Waits for batch k, copies it and hands it over.
+/// Waits for batch k, copies it and passes it to the sink.
 void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
   DeviceReporter& device = run.device_of(*this, k);
   const DeviceGuard guard(device.part->device);
@@ -340,7 +340,7 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
     lane.attributes = nullptr;
   } else {
     const std::size_t bytes = ReturnLayout(fields_, batch.returns(), nullptr).bytes;
-    // Of two sizes, so that memory of one batch does for any other.
+    // Two fixed sizes, so that the memory of one batch fits any other.
     const std::size_t most =
         ReturnLayout(fields_, run.scans * firings_ * returns_a_firing_, nullptr).bytes;
     auto memory = pinned_->get(bytes <= most / 2 ? most / 2 : most);

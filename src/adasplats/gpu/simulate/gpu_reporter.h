@@ -19,8 +19,8 @@ struct ReportLane;
 class PinnedPool;
 }  // namespace gpu
 
-/// Private to gpu/: from rays to points on the GPUs of a scene. Several launches are under way on
-/// every device: the returns of one are copied while the next one is traced.
+/// Private to gpu/: simulates scans, from rays to points, on the GPUs of a scene. Several launches
+/// are in progress on every device: the returns of one are copied while the next one is traced.
 class GpuReporter {
  public:
   /// The scene must outlive it.
@@ -31,9 +31,9 @@ class GpuReporter {
 
   using BatchSink = SceneCaster::BatchSink;
 
-  /// As ScanCaster::report(), in batches; `sink` has them in their order. In host memory they are
-  /// page-locked. On a device (the first one alone) they are complete.
-  /// `world`: what is cast beside the place, or null; it is the one of the rules' attributes.
+  /// As ScanCaster::report(), in batches; `sink` receives them in order. Batches in host memory are
+  /// page-locked. Batches on a device (only the first one) are complete.
+  /// `world`: objects in addition to the scene, or null; must be that of the rules' attributes.
   ReportTimes report(std::span<const ScanMotion> scans, std::uint64_t first_number,
                      const World* world, BatchMemory memory, BatchSink sink);
 

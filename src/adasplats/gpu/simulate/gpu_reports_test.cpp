@@ -24,7 +24,7 @@ Vec3f any_direction(Random& random) {
   return vec_cast<float>(normalized(v));
 }
 
-/// Everything that decides what is reported.
+/// All inputs of a report.
 struct ReportCase {
   LidarModel sensor;
   SimulateOptions options;
@@ -65,7 +65,7 @@ SensorFields some_fields(std::uint32_t rings) {
   return fields;
 }
 
-/// An option with its name; `of` sets it.
+/// A named option and the function that sets it.
 struct Option {
   const char* name;
   std::function<void(ReportCase&)> of;
@@ -200,7 +200,8 @@ class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
     return {time_s, {rotation_from_yaw_pitch_roll(yaw_rad, 0.05, 0), kPlaceOrigin + local}};
   }
 
-  /// Meshes and splats near the sensor that turn, pass by, come and go, and are there in one scan.
+  /// Meshes and splats near the sensor that turn, pass by, appear and disappear, or exist in only
+  /// one scan.
   std::shared_ptr<World> world() const {
     auto world = std::make_shared<World>(static_cast<std::uint32_t>(disks_.size()), kPlaceOrigin);
     MeshModel wall;
@@ -235,7 +236,7 @@ class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
     return world;
   }
 
-  /// By the CPU; `by_gpu`: by the GPU.
+  /// On the CPU; `by_gpu`: on the GPU.
   std::vector<Scan> reported(const ReportCase& setup, const ScanRules& rules,
                              std::span<const ScanMotion> motions, bool by_gpu) const {
     const SceneCaster& caster = by_gpu ? scene_->scan_caster() : *caster_;
@@ -248,7 +249,7 @@ class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
     return scans;
   }
 
-  /// Some stand still, where `moves` others move.
+  /// Some sensors are at rest; with `moves`, others move.
   static std::vector<ScanMotion> scans_of(bool moves) {
     const auto pose = [](double t) {
       return RigidTransform{rotation_from_yaw_pitch_roll(t, 0.1, -0.05),
@@ -301,8 +302,8 @@ class ReportsOnGpu : public testing::TestWithParam<TracingBackend> {
   std::unique_ptr<SceneCaster> caster_;
 };
 
-// The published guarantee: the bytes of the CPU for every option. Oracle: the CPU.
-TEST_P(ReportsOnGpu, AnyTwoOptionsGiveTheBytesOfTheCpu) {
+// The documented guarantee: the same bytes as the CPU for every option. Oracle: the CPU.
+TEST_P(ReportsOnGpu, AnyTwoOptionsMatchTheCpu) {
   const std::vector<Option> all = options();
   std::size_t returns = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -319,7 +320,7 @@ TEST_P(ReportsOnGpu, AnyTwoOptionsGiveTheBytesOfTheCpu) {
       if (HasFailure()) return;
     }
   }
-  EXPECT_GT(returns, 100'000U) << "the place is hardly seen";
+  EXPECT_GT(returns, 100'000U) << "the scene is hardly visible";
 }
 
 TEST_P(ReportsOnGpu, AllOptionsAtOnce) {
@@ -331,7 +332,7 @@ TEST_P(ReportsOnGpu, AllOptionsAtOnce) {
 }
 
 // Oracle: the CPU, which counts them first.
-TEST_P(ReportsOnGpu, ObjectsAreSeenFromManyScansAtOnce) {
+TEST_P(ReportsOnGpu, ManyScansSeeObjects) {
   ReportCase setup = plain();
   setup.has_objects = setup.has_classes = true;
   const auto rules = rules_of(setup);
@@ -348,7 +349,7 @@ TEST_P(ReportsOnGpu, ObjectsAreSeenFromManyScansAtOnce) {
   EXPECT_GT(of_objects, 10'000U);
   EXPECT_GT(of_the_one_scan, 0U);
   expect_same(reported(setup, *rules, motions, true), expected);
-  // The world grows: what was made of it does not hold any more.
+  // The world grows, so cached geometries are invalid.
   WorldObject more;
   more.trajectory = {object_pose(0, {1, 0, 0}, 0)};
   setup.world->add_object(more);
@@ -358,7 +359,7 @@ TEST_P(ReportsOnGpu, ObjectsAreSeenFromManyScansAtOnce) {
   EXPECT_FALSE(with_more.front().positions == expected.front().positions);
 }
 
-TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
+TEST_P(ReportsOnGpu, BatchesContainTheScans) {
   ReportCase setup = plain();
   setup.has_classes = setup.has_intensities = true;
   setup.sensor.range_noise_m = 0.02;
@@ -367,7 +368,7 @@ TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
   for (int i = 0; i < 40; ++i)
     for (const ScanMotion& motion : scans_of(false)) motions.push_back(motion);
   const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
-  std::vector<ScanBatch> kept;  // as Python may: their memory is theirs
+  std::vector<ScanBatch> kept;  // as Python may: batches own their memory
   std::size_t next = 0;
   scene_->scan_caster().report_batches(*rules, motions, 7, nullptr, executor_, BatchMemory::host,
                                        [&](ScanBatch&& batch) {

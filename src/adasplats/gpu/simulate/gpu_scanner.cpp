@@ -15,7 +15,7 @@ namespace adasplats {
 namespace gpu {
 namespace {
 
-constexpr int kSlots = 2;  // under way on each device
+constexpr int kSlots = 2;  // launches in progress on each device
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -24,7 +24,7 @@ double seconds_since(Clock::time_point start) {
 
 }  // namespace
 
-/// One launch that is under way.
+/// One launch in progress.
 struct HitLaunch {
   Stream stream;
   Event begin, end;
@@ -41,7 +41,7 @@ struct DeviceScanner {
   ~DeviceScanner() {
     const DeviceGuard guard(part->device);
     for (auto& batch : batches) {
-      // An exception may have left a launch under way that still writes to what is freed here.
+      // After an exception, a launch in progress may still write to the memory freed here.
       if (batch != nullptr) cudaStreamSynchronize(batch->stream.get());
       batch.reset();
     }
@@ -53,8 +53,8 @@ struct DeviceScanner {
   DeviceScanner& operator=(const DeviceScanner&) = delete;
 
   const DevicePart* part;
-  Stream stream;  ///< of the firings, of single scans and of those that stay on the device
-  DeviceBuffer<FiringRay> firings;  ///< as they are numbered
+  Stream stream;  ///< of the firings, of single scans and of scans that stay on the device
+  DeviceBuffer<FiringRay> firings;  ///< in the order of their numbers
   OrderedFirings coherent;          ///< for launches that fill the GPU
   OrderedFirings spread;            ///< for smaller ones
   std::array<std::unique_ptr<HitLaunch>, kSlots> batches;
@@ -74,7 +74,7 @@ using gpu::SceneParts;
 SceneScanner::SceneScanner(const SceneParts& scene, const LidarModel& sensor,
                            std::span<const Firing> firings)
     : scene_(scene), firings_(firings.size()) {
-  if (firings.empty()) throw Error(ErrorKind::usage, "a sensor without a single firing");
+  if (firings.empty()) throw Error(ErrorKind::usage, "the sensor has no firings");
   source_.kind = RaySource::Kind::scans;
   source_.firing_count = static_cast<std::uint32_t>(firings.size());
   source_.t_min = static_cast<float>(sensor.min_range_m);
@@ -123,7 +123,7 @@ std::span<const Hit> SceneScanner::scan(const ScanMotion& motion) {
     single_poses_->upload({&motion, 1}, scene_.origin, stream);
     single_poses_->set(source);
   }
-  // The kernel writes across the bus itself: the copy happens while other rays are traced.
+  // The kernel writes across the bus, so results are copied while other rays are traced.
   device.part->scene->cast(source, firings_, 1, single_.data(), stream);
   device.stream.wait("cast a scan on the GPU");
   return single_.span();
@@ -189,14 +189,14 @@ CastTimes SceneScanner::cast(std::span<const ScanMotion> motions, Results result
   const std::size_t most = std::clamp<std::size_t>(gpu::kScanRaysAtOnce / hits_a_scan, 1, 256);
   const std::size_t scans =
       std::max<std::size_t>(1, std::min(most, (motions.size() + lanes - 1) / lanes));
-  // Batch k runs in lane k % lanes, so batches come back in their order.
+  // Batch k runs in lane k % lanes, so batches are returned in order.
   for (std::size_t lane = 0; lane < std::min(lanes, (motions.size() + scans - 1) / scans); ++lane) {
     DeviceScanner& device = *devices_[lane % devices_.size()];
     const DeviceGuard guard(device.part->device);
     auto& batch = device.batches[lane / devices_.size()];
     if (batch == nullptr) batch = std::make_unique<HitLaunch>();
     reserve(*batch, scans, depth, results);
-    batch->stream.wait("prepare scans on the GPU");  // what an exception left there
+    batch->stream.wait("prepare scans on the GPU");  // after an exception
     batch->count = 0;
   }
 

@@ -19,7 +19,7 @@ struct DeviceScanner;
 struct HitLaunch;
 }  // namespace gpu
 
-/// Private to gpu/: two launches are under way on every device; the hits of one are copied while
+/// Private to gpu/: two launches are in progress on every device; the hits of one are copied while
 /// the other is traced.
 class SceneScanner final : public GpuScanner {
  public:
@@ -37,10 +37,10 @@ class SceneScanner final : public GpuScanner {
 
  private:
   enum class Results : std::uint8_t { hits, points };
-  /// `sink` takes the results of one scan: Hits, `depth` of each firing, or one PointHit.
+  /// `sink` receives the results of one scan: `depth` Hits, or one PointHit, per firing.
   CastTimes cast(std::span<const ScanMotion> scans, Results results, int depth,
                  FunctionRef<void(std::size_t scan, const std::uint8_t* results)> sink);
-  /// What a launch of so many scans casts, without poses.
+  /// Ray source of a launch of this number of scans, without poses.
   gpu::RaySource source_of(const gpu::DeviceScanner& device, std::size_t scans) const;
   void reserve(gpu::HitLaunch& batch, std::size_t scans, int depth, Results results) const;
   void launch(gpu::DeviceScanner& device, gpu::HitLaunch& batch, std::span<const ScanMotion> scans,

@@ -34,8 +34,8 @@ bool same_firing(const Firing& a, const Firing& b) {
          a.column == b.column && a.time_s == b.time_s;
 }
 
-/// Keeps the scanner of the sensor that was used last: a sensor that is driven casts scan by scan,
-/// and putting its rays in order and on the GPU takes longer than casting them.
+/// Caches the scanner of the sensor used last: a moving sensor casts scan by scan, and ordering its
+/// rays and copying them to the GPU takes longer than casting them.
 class GpuSceneCaster final : public SceneCaster {
  public:
   explicit GpuSceneCaster(const SceneParts& parts) : parts_(parts) {}
@@ -44,10 +44,10 @@ class GpuSceneCaster final : public SceneCaster {
                  std::span<const ScanMotion> scans, int depth, Sink sink) const override {
     if (scans.empty()) return {};
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    // Another thread, or a sink that casts, uses the kept one.
+    // The cached scanner is in use by another thread, or by a sink that casts.
     if (!lock) return SceneScanner(parts_, sensor, firings).cast(scans, depth, sink);
     if (!kept_ || !is_kept(sensor, firings)) {
-      kept_.reset();  // its memory is free before the next one needs some
+      kept_.reset();  // frees its memory before the next one is made
       kept_.emplace(parts_, sensor, firings);
     }
     return kept_->scanner.cast(scans, depth, sink);
@@ -82,7 +82,7 @@ class GpuSceneCaster final : public SceneCaster {
   bool has_large_batches() const override { return true; }
 
  private:
-  /// With the one that is kept, where these are its rules and nobody else has it.
+  /// Uses the cached reporter if it has these rules and is not in use.
   template <class F>
   ReportTimes with_reporter(const ScanRules& rules, F&& use) const {
     const std::unique_lock lock(reporter_mutex_, std::try_to_lock);
@@ -128,7 +128,7 @@ void check_devices(const std::vector<int>& devices) {
   const GpuSearch search = find_gpus();
   if (search.devices.empty())
     throw Error(ErrorKind::unavailable, "cannot trace on a GPU: " + search.reason);
-  if (devices.empty()) throw Error(ErrorKind::usage, "no GPU was named");
+  if (devices.empty()) throw Error(ErrorKind::usage, "the list of GPUs is empty");
   for (const int device : devices) {
     bool known = false;
     for (const GpuDevice& found : search.devices) known = known || found.index == device;
@@ -147,7 +147,7 @@ class SceneOnGpus final : public GpuScene {
     parts_.origin = origin;
     for (const int device : devices) {
       const DeviceGuard guard(device);
-      cuda_check(cudaFree(nullptr), "start CUDA");  // not part of the building time
+      cuda_check(cudaFree(nullptr), "start CUDA");  // excluded from the build time
       const Stopwatch watch;
       parts_.parts.push_back({device, backend == TracingBackend::optix
                                           ? gpu::make_optix_scene(scene)
@@ -206,7 +206,7 @@ class CityOnGpus final : public GpuCity {
   }
 
  private:
-  /// Calls use(tiles) for every device, which is the current one then.
+  /// Calls use(tiles) for every device, with that device current.
   template <class Use>
   void for_each_device(Use&& use) {
     for (std::size_t i = 0; i < tiles_.size(); ++i) {

@@ -15,14 +15,14 @@
 
 namespace adasplats {
 
-/// What traces rays on a GPU.
+/// Ray tracing backend on a GPU.
 enum class TracingBackend : std::uint8_t {
   cuda,   ///< our own wide tree, on any GPU
-  optix,  ///< OptiX of the driver: uses the ray tracing units of RTX cards
+  optix,  ///< OptiX of the driver, which uses the ray tracing units of RTX cards
 };
 
-/// Hits in GPU memory: hits[scan * rays_per_scan + firing], on `device`. Valid until the scanner's
-/// next call, or until it ends.
+/// Hits in GPU memory: hits[scan * rays_per_scan + firing], on `device`. Valid until the next call
+/// or the destruction of the scanner.
 struct DeviceHits {
   const Hit* hits = nullptr;
   std::size_t scans = 0;
@@ -31,9 +31,9 @@ struct DeviceHits {
   void* stream = nullptr;  ///< cudaStream_t on which they are complete
 };
 
-/// Waits until they are complete. Errors: unavailable (a kernel failed).
+/// Waits until the hits are complete. Errors: unavailable (a kernel failed).
 void wait_for(const DeviceHits& hits);
-/// Copies them to host memory when they are complete.
+/// Copies the hits to host memory once they are complete.
 std::vector<Hit> download(const DeviceHits& hits, int depth = 1);
 
 /// A hit as a point, 16 bytes.
@@ -44,68 +44,68 @@ struct PointHit {
 static_assert(sizeof(PointHit) == 16);
 
 /// Casts the firings of one sensor into a GpuScene, which must outlive it. The firings are stored
-/// on the GPUs, and rays are made there. One thread at a time.
+/// on the GPUs, and rays are made there. Not thread-safe.
 class GpuScanner {
  public:
   virtual ~GpuScanner() = default;
 
-  /// One scan, now: hits[i] of firing i, valid until the next call.
+  /// Casts one scan: hits[i] of firing i, valid until the next call.
   virtual std::span<const Hit> scan(const ScanMotion& motion) = 0;
 
-  /// Many scans a launch; hits are copied while the next ones are traced. Several devices share the
-  /// scans. `sink` as in ScanCaster.
+  /// Casts many scans per launch; hits are copied while the next ones are traced. The devices share
+  /// the scans. `sink` as in ScanCaster.
   virtual CastTimes cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink) = 0;
 
-  /// The nearest hits as points instead of distances, each in the sensor's frame at its time.
+  /// Returns the nearest hits as points, each in the sensor's frame at its time.
   using PointSink = FunctionRef<void(std::size_t scan, std::span<const PointHit> hits)>;
   virtual CastTimes cast_points(std::span<const ScanMotion> scans, PointSink sink) = 0;
 
-  /// Leaves the `depth` nearest hits of every ray on the first device (depth times as many hits).
-  /// Asynchronous: readers work on `stream`, or wait for it.
+  /// Keeps the `depth` nearest hits of every ray on the first device (depth times as many hits).
+  /// Asynchronous: readers must use `stream` or wait for it.
   virtual DeviceHits cast_on_device(std::span<const ScanMotion> scans, int depth = 1) = 0;
 };
 
-/// A scene on one GPU, or the same scene on each of several GPUs of one machine. One thread at a
-/// time.
+/// A scene on one GPU, or copies of it on several GPUs of one machine. Not thread-safe.
 class GpuScene : public SceneEngine {
  public:
   virtual std::string_view name() const = 0;  ///< "cuda" or "optix"
-  /// Time that building the structures took on the first device, s (copying the scene included).
+  /// Build time of the structures on the first device, s, including the copy of the scene.
   virtual double build_seconds() const = 0;
   virtual std::unique_ptr<GpuScanner> scanner(const LidarModel& sensor,
                                               std::span<const Firing> firings) const = 0;
 };
 
-/// Builds the structures, and copies what it needs: `scene` may end before the result. `origin`:
-/// world coordinates of the scene's local origin, m. `devices`: CUDA's numbers, at least one.
+/// Builds the structures and copies the data it needs: the result may outlive `scene`. `origin`:
+/// world coordinates of the scene's local origin, m. `devices`: CUDA device numbers, at least one.
 /// Errors: unavailable (no such GPU, no OptiX, not enough memory), with a remedy.
 std::unique_ptr<GpuScene> make_gpu_scene(const SceneView& scene, Vec3d origin,
                                          TracingBackend backend, const std::vector<int>& devices);
 
-/// A city on GPUs, of which some tiles are loaded, in our own trees.
+/// A city on GPUs with some of its tiles loaded, in our own trees.
 class GpuCity {
  public:
   virtual ~GpuCity() = default;
 
-  /// ScanRules of its reports need flags and response only: values of primitives come with tiles.
+  /// ScanRules of its reports need only flags and response: attributes of primitives come with
+  /// tiles.
   virtual const SceneCaster& scan_caster() const = 0;
 
-  /// Copies a tile to all devices; may run during casts, on one thread. Errors: unavailable (not
-  /// enough memory; the tile is not loaded).
+  /// Copies a tile to all devices; may run during casts, on one thread at a time. Errors:
+  /// unavailable (not enough memory; the tile is not loaded).
   virtual void load_tile(std::size_t tile, std::span<const Disk> disks,
                          std::span<const PrimitiveValues> values) = 0;
   /// Frees a tile that is not shown.
   virtual void drop_tile(std::size_t tile) = 0;
-  /// Selects the loaded tiles that rays meet from now on. Not during casts.
+  /// Selects the loaded tiles that rays can hit from now on. Not during casts.
   virtual void show_tiles(std::span<const std::size_t> tiles) = 0;
 
-  /// About how much memory a tile needs for each splat, bytes.
+  /// Approximate memory of a tile per splat, bytes.
   static constexpr std::size_t kTileBytesASplat = 84;
 };
 
-/// A city without any tile yet. `splats`: of each tile; primitives are numbered through all of
-/// them. `objects`: values of the primitives that follow. Errors: those of make_gpu_scene(); data
-/// (more splats than there are numbers).
+/// A city without loaded tiles. `splats`: number of splats of each tile; primitives are numbered
+/// across all tiles. `objects`: attributes of the primitives that follow. Errors: those of
+/// make_gpu_scene(); data (too many splats to number).
 std::unique_ptr<GpuCity> make_gpu_city(std::span<const std::size_t> splats,
                                        std::span<const PrimitiveValues> objects, Vec3d origin,
                                        const std::vector<int>& devices);

@@ -51,7 +51,7 @@ LidarModel small_lidar() {
   return sensor;
 }
 
-/// Scans in turn standing still, moving evenly and moving in three parts.
+/// Scans alternately at rest, in uniform motion and in motion of three parts.
 std::vector<ScanMotion> motions(std::size_t count) {
   const auto pose = [](double t) {
     return RigidTransform{rotation_from_yaw_pitch_roll(t, 0.1, -0.05),
@@ -67,7 +67,7 @@ std::vector<ScanMotion> motions(std::size_t count) {
   return result;
 }
 
-/// Both backends; skips where there is no GPU, or no OptiX where that is asked for.
+/// Both backends; skips without a GPU, or without OptiX if it is requested.
 class OnGpu : public testing::TestWithParam<TracingBackend> {
  protected:
   void SetUp() override {
@@ -94,7 +94,7 @@ class OnGpu : public testing::TestWithParam<TracingBackend> {
   std::unique_ptr<Tracer> tracer_;
 };
 
-// Oracle of all: brute force on the CPU, bit by bit.
+// Oracle of all tests: brute force on the CPU, bit by bit.
 
 TEST_P(OnGpu, OneScan) {
   const auto scanner = scene_->scanner(sensor_, firings_);
@@ -104,7 +104,7 @@ TEST_P(OnGpu, OneScan) {
   }
 }
 
-TEST_P(OnGpu, ScansComeInTheOrderOfTheirPoses) {
+TEST_P(OnGpu, ScansArriveInTheOrderOfTheirPoses) {
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
     const auto scans = motions(count);
     const int depth = count == 2 ? 4 : 1;
@@ -120,9 +120,9 @@ TEST_P(OnGpu, ScansComeInTheOrderOfTheirPoses) {
   }
 }
 
-// The caster keeps what it made for a sensor; another one, other ranges, and a sink that casts
-// itself must not get that.
-TEST_P(OnGpu, EverySensorGetsItsOwnRays) {
+// The caster caches the rays of a sensor. Another sensor, other ranges, and a sink that casts must
+// not get them.
+TEST_P(OnGpu, EverySensorHasItsOwnRays) {
   const auto scans = motions(1);
   const auto cast = [&](auto&& also) {
     scene_->scan_caster().cast(sensor_, firings_, scans, 1,
@@ -159,7 +159,7 @@ TEST_P(OnGpu, PointsAreRangesAlongTheFirings) {
   });
 }
 
-TEST_P(OnGpu, HitsCanStayThere) {
+TEST_P(OnGpu, HitsCanStayOnTheDevice) {
   const auto scanner = scene_->scanner(sensor_, firings_);
   const auto trajectory = motions(4);
   const DeviceHits kept = scanner->cast_on_device(trajectory, 3);
@@ -173,7 +173,7 @@ TEST_P(OnGpu, HitsCanStayThere) {
   }
 }
 
-TEST_P(OnGpu, AnExceptionOfTheSinkEndsTheCastingAndNothingElse) {
+TEST_P(OnGpu, AnExceptionOfTheSinkOnlyEndsTheCast) {
   const auto scanner = scene_->scanner(sensor_, firings_);
   const auto trajectory = motions(9);
   const auto stop = [](std::size_t i, std::span<const Hit>) {
@@ -207,7 +207,7 @@ TEST_P(OnGpu, RaysOfTheCaller) {
 }
 
 // Oracle: render_image on the CPU.
-TEST_P(OnGpu, PicturesAreThoseOfTheCpu) {
+TEST_P(OnGpu, PicturesMatchTheCpu) {
   std::vector<std::uint16_t> classes;
   std::vector<SemanticGroup> groups;
   std::vector<float> intensities;
@@ -240,7 +240,7 @@ TEST_P(OnGpu, PicturesAreThoseOfTheCpu) {
   }
 }
 
-TEST_P(OnGpu, PicturesOfSeveralCamerasComeInTheirOrder) {
+TEST_P(OnGpu, PicturesOfSeveralCamerasArriveInOrder) {
   ImageScene scene;
   scene.view = view();
   scene.origin = kOrigin;
@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, OnGpu,
                            return backend.param == TracingBackend::cuda ? "cuda" : "optix";
                          });
 
-TEST(GpuScene, SaysWhatItCannotDo) {
+TEST(GpuScene, ReportsUnsupportedRequests) {
   const std::vector<Disk> disks = {{{0, 0, 0}, 1, {0, 0, 1}}};
   const auto attempt = [&](const std::vector<int>& devices) {
     make_gpu_scene({disks, nullptr}, {}, TracingBackend::cuda, devices);
@@ -284,7 +284,7 @@ TEST(GpuScene, SaysWhatItCannotDo) {
   EXPECT_THROW(attempt({}), Error);
 }
 
-TEST(GpuSearch, SaysWhyThereIsNone) {
+TEST(GpuSearch, ReportsWhyThereIsNone) {
   const GpuSearch search = find_gpus();
   EXPECT_EQ(search.devices.empty(), !search.reason.empty());
 }

@@ -12,7 +12,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: a frame in device memory, of as many pixels as a picture has.
+/// Private to gpu/: a frame in device memory, with the pixels of a picture.
 struct DeviceFrame {
   Vec3f* colors = nullptr;
   float* nearness = nullptr;
@@ -20,9 +20,9 @@ struct DeviceFrame {
   std::uint16_t* hits = nullptr;
 };
 
-/// Private to gpu/: queues the making of a picture of width x height pixels. `source` is what the
-/// hits were cast from (kind image); `frame` is written and read; `out` gets 8-bit RGB, rows from
-/// the top. Tables point to device memory.
+/// Private to gpu/: queues the shading of a picture of width x height pixels. `source`: ray source
+/// of the hits (kind image); `frame`: working memory; `out` receives 8-bit RGB, rows from the top.
+/// Tables point to device memory.
 void queue_shading(const ShadingTables& tables, const Developer& developer, const RaySource& source,
                    const Hit* hits, int width, int height, DeviceFrame frame, std::uint8_t* out,
                    cudaStream_t stream);

@@ -11,7 +11,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: queues the turning of hits into points in the frame of their sensor.
+/// Private to gpu/: queues the conversion of hits to points in the frame of their sensor.
 void queue_point_hits(const Hit* hits, const FiringRay* firings, std::uint32_t firing_count,
                       std::uint64_t count, PointHit* points, cudaStream_t stream);
 

@@ -12,26 +12,26 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what scans of many poses are cast from.
+// Private to gpu/: ray sources for scans of many poses.
 
-/// Scans in one launch hold about so many rays: enough to fill a GPU several times over, and few
-/// enough that copying the last launch's results, which nothing overlaps, does not count.
+/// Approximate number of rays per launch: enough to fill a GPU several times, and few enough that
+/// the copy of the last launch's results, which overlaps nothing, is negligible.
 inline constexpr std::size_t kScanRaysAtOnce = std::size_t{1} << 21;
 
-/// Which firing is cast when: a warp's 32 rays stand one after another.
+/// Order in which firings are cast: the 32 rays of a warp are consecutive.
 using CastingOrder = std::vector<std::uint32_t>;
 
-/// For many scans a launch: by tiles of two rings and 16 columns, which meet more of the same
-/// things than one ring's. A free pattern has rings or columns that say little; then this is as
-/// good as its own order.
+/// For many scans per launch: by tiles of two rings and 16 columns, whose rays are more coherent
+/// than those of one ring. For a free pattern, whose rings or columns mean little, it is no worse
+/// than the original order.
 CastingOrder coherent_order(std::span<const Firing> firings);
 
-/// For a single scan, which takes as long as its slowest warp: the rays along a street take long,
-/// and a warp full of them, each with other boxes to visit, takes far longer. So a warp's rays are
-/// four columns each of eight directions all around.
+/// For a single scan, which takes as long as its slowest warp: rays along a street are slow, and a
+/// warp full of them, each visiting different boxes, is far slower. So a warp has four columns in
+/// each of eight directions all around.
 CastingOrder spread_order(std::span<const Firing> firings);
 
-/// A sensor's firings in the order in which they are cast.
+/// The firings of a sensor in casting order.
 struct OrderedFirings {
   OrderedFirings() = default;
   OrderedFirings(std::span<const FiringRay> firings, const CastingOrder& casting_order,
@@ -40,14 +40,14 @@ struct OrderedFirings {
   DeviceBuffer<std::uint32_t> order;
 };
 
-/// The poses of some scans on a device: the knots of all of them, and where each one's begin.
+/// The poses of some scans on a device: the knots of all scans, and the begin of each scan's knots.
 struct BatchPoses {
   PinnedBuffer<ScanPose> poses;
   PinnedBuffer<std::uint32_t> first_poses;
   DeviceBuffer<ScanPose> device_poses;
   DeviceBuffer<std::uint32_t> device_first_poses;
 
-  /// Queues the copy, once an earlier one is over.
+  /// Queues the copy after the previous one.
   void upload(std::span<const ScanMotion> scans, Vec3d scene_origin, cudaStream_t stream);
   void set(RaySource& source) const {
     source.poses = device_poses.data();

@@ -11,7 +11,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/trace: boxes, and the binary tree from which a wide one is made.
+// Private to gpu/trace: boxes, and the binary tree from which the wide tree is made.
 
 struct Box {
   Vec3f low, high;
@@ -42,7 +42,7 @@ __device__ inline Box box_of(const Triangle& t) {
   return {tight.low - Vec3f{margin, margin, margin}, tight.high + Vec3f{margin, margin, margin}};
 }
 
-/// What has no finite box is never hit: values that are not finite, a normal of zero. One NaN would
+/// A primitive without a finite box (non-finite values, zero normal) is never hit. A NaN would
 /// spread to all boxes above it.
 __device__ inline bool is_finite(const Box& box) {
   return adasplats::is_finite(box.low) && adasplats::is_finite(box.high);
@@ -62,12 +62,12 @@ __device__ inline LeafTriangle leaf_of(const Triangle& triangle, std::uint32_t p
   return {triangle, primitive, {}};
 }
 
-/// The ways in which a binary node may be represented, and what they cost (step 2): the area of the
-/// boxes of all wide nodes below. Primitives cost the same whatever the tree.
+/// The possible representations of a binary node and their costs (step 2): the area of the boxes of
+/// all wide nodes below. The cost of primitives does not depend on the tree.
 struct alignas(32) Choices {
   static constexpr int kMost = kWidth - 1;
-  float cost[kMost];  ///< of standing for the subtree by at most i + 1 nodes and primitives
-  /// Three bits each: how many of i = 2 to 8 go to the left child (0: as with one fewer).
+  float cost[kMost];  ///< of representing the subtree by at most i + 1 nodes and primitives
+  /// Three bits each, for i = 2 to 8: number for the left child (0: as for i - 1).
   std::uint32_t decisions;
 
   __device__ int left_share(int nodes) const {
@@ -76,8 +76,8 @@ struct alignas(32) Choices {
 };
 static_assert(sizeof(Choices) == 32);
 
-/// The binary tree: primitives are nodes [0, primitives), inner nodes follow in the order in which
-/// they were made, children before parents.
+/// The binary tree: primitives are nodes [0, primitives), inner nodes follow in order of creation,
+/// children before parents.
 struct BinaryTree {
   Box* boxes;
   Choices* choices;  ///< of inner nodes, by node - primitives
@@ -87,7 +87,7 @@ struct BinaryTree {
   __device__ bool is_primitive(std::uint32_t node) const { return node < primitives; }
 };
 
-/// Fills in the costs of a pair whose children are known.
+/// Computes the costs of a pair from those of its children.
 __device__ inline void choose(const BinaryTree& tree, std::uint32_t index, float area) {
   const uint2 pair = tree.children[index];
   const auto cost_of = [&](std::uint32_t node, int nodes) {
@@ -95,7 +95,7 @@ __device__ inline void choose(const BinaryTree& tree, std::uint32_t index, float
   };
   Choices choices;
   choices.decisions = 0;
-  float best[kWidth + 1];  // by number of nodes that the two children share
+  float best[kWidth + 1];  // by the number of nodes that the two children share
   for (int nodes = 2; nodes <= kWidth; ++nodes) {
     best[nodes] = HUGE_VALF;
     std::uint32_t share = 0;

@@ -12,21 +12,21 @@
 namespace adasplats::gpu {
 namespace {
 
-/// Small blocks: a long ray holds back few others.
+/// Small blocks: a slow ray delays few others.
 constexpr unsigned kCastBlock = 64;
 /// Blocks on an SM, which bounds the registers of a ray.
 constexpr unsigned kMinBlocks = 18;
-/// Of a warp's rays, so many percent must have primitives to test, or they wait. Measured on an
-/// H100: 10 traces 1.3 times as many scans as 0.
+/// Percentage of a warp's rays that must have primitives to test; below it, these wait. On an H100,
+/// 10 traces 1.3 times as many scans as 0.
 constexpr int kPostpone = 10;
 constexpr int kMaxHits = 64;
 
-/// The same for launches of fewer rays than kSmallLaunch: more registers make each ray faster, and
-/// so does waiting a little more often.
+/// The same for launches of fewer rays than kSmallLaunch: more registers and a slightly higher
+/// percentage make each ray faster.
 constexpr unsigned kMinBlocksOfSmall = 12;
 constexpr int kPostponeInSmall = 20;
 
-/// As many blocks as fit: an SM of Turing holds 1024 threads.
+/// As many blocks as fit: an SM of Turing runs 1024 threads.
 constexpr unsigned fitting(unsigned blocks) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
   return blocks < 1024 / kCastBlock ? blocks : 1024 / kCastBlock;
@@ -103,7 +103,7 @@ class CudaScene final : public DeviceScene {
   }
 
  private:
-  std::optional<Stream> stream_;  ///< of the trees' memory, where it is the scene's own
+  std::optional<Stream> stream_;  ///< of the memory of the trees, if the scene owns it
   SceneTrees trees_;
 };
 
@@ -113,7 +113,7 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
                 Hit* hits, cudaStream_t stream) {
   // One grid holds 2^31 - 1 blocks.
   constexpr std::uint64_t kMaxBlocks = 0x7fffffffU;
-  if (count > kMaxBlocks * kCastBlock) throw Error(ErrorKind::data, "too many rays for one launch");
+  if (count > kMaxBlocks * kCastBlock) throw Error(ErrorKind::data, "the launch has too many rays");
   if (count == 0) return;
   const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
   const bool still = source.first_poses == nullptr;
@@ -127,8 +127,9 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
     cast_hits_kernel<NearestHits<kMaxHits>>
         <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
   } else {
-    throw Error(ErrorKind::usage, std::to_string(depth) + " hits a ray; a GPU keeps " +
-                                      std::to_string(kMaxHits) + " at most");
+    throw Error(ErrorKind::usage, std::to_string(depth) +
+                                      " hits per ray exceed the limit of a GPU (" +
+                                      std::to_string(kMaxHits) + ")");
   }
   cuda_check(cudaGetLastError(), "cast rays on the GPU");
 }
@@ -136,8 +137,8 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
 SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                              cudaStream_t stream) {
   if (scene.primitive_count() >= Hit::kNone)
-    throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
-                                     " primitives; at most 2^32 - 2 can be told apart");
+    throw Error(ErrorKind::data, "the scene has " + std::to_string(scene.primitive_count()) +
+                                     " primitives; a GPU supports at most 2^32 - 2");
   SceneTrees trees;
   if (!scene.disks.empty()) {
     const DeviceBuffer<Disk> disks(scene.disks, stream);

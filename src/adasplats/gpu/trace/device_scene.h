@@ -14,13 +14,13 @@
 
 namespace adasplats::gpu {
 
-/// Where a launch has fewer rays than this, all of them are under way at once: how long it takes is
-/// up to the slowest ones, not to how many a GPU can trace.
+/// A launch with fewer rays than this traces all of them at the same time, so its duration is that
+/// of the slowest rays, independent of the throughput of the GPU.
 inline constexpr std::uint64_t kSmallLaunch = std::uint64_t{1} << 19;
 
-/// Private to gpu/: a scene in the memory of one GPU that casts what a RaySource describes. The one
-/// thing that the two backends (own tree, OptiX) do differently; tracer, scans and pictures are
-/// written on top of it once.
+/// Private to gpu/: a scene in the memory of one GPU that casts the rays of a RaySource. Only this
+/// class differs between the two backends (own tree, OptiX); tracer, scans and pictures share the
+/// code on top of it.
 class DeviceScene {
  public:
   virtual ~DeviceScene() = default;
@@ -28,9 +28,9 @@ class DeviceScene {
   virtual std::string_view name() const = 0;
 
   /// Queues the casting of rays [0, count) of `source`: the `depth` nearest hits of ray i go to
-  /// hits[i * depth + k], ascending by (t, primitive); entries behind the last hit are Hit{}.
-  /// Rays that cannot hit anything (castable() of trace/castable.h is false) have none. The scene's
-  /// device must be the current one. `hits` may be device memory or page-locked host memory.
+  /// hits[i * depth + k], ascending by (t, primitive); entries after the last hit are Hit{}.
+  /// Invalid rays (castable() of trace/castable.h is false) have no hits. The device of the scene
+  /// must be current. `hits` may be device memory or page-locked host memory.
   virtual void cast(const RaySource& source, std::uint64_t count, int depth, Hit* hits,
                     cudaStream_t stream) const = 0;
 };
@@ -38,8 +38,7 @@ class DeviceScene {
 /// Our own compressed 8-wide tree, built on the current device.
 std::unique_ptr<DeviceScene> make_cuda_scene(const SceneView& scene);
 
-/// OptiX, on the current device. Errors: unavailable (no library, too old a driver) with what
-/// helps.
+/// OptiX, on the current device. Errors: unavailable (no library, driver too old), with a remedy.
 std::unique_ptr<DeviceScene> make_optix_scene(const SceneView& scene);
 
 }  // namespace adasplats::gpu

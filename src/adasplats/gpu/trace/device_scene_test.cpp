@@ -39,7 +39,7 @@ std::string name_of(Backend backend) {
   return "";
 }
 
-/// Why a backend cannot run here; empty where it can.
+/// Why a backend cannot run here; empty if it can.
 std::string why_not(Backend backend) {
   if (!on_gpu(backend)) return "";
   const GpuSearch gpus = find_gpus();
@@ -47,7 +47,7 @@ std::string why_not(Backend backend) {
   return backend == Backend::optix ? find_optix().reason : "";
 }
 
-/// A scene of one backend, ready to be cast into.
+/// A scene of one backend, ready for casts.
 class Caster {
  public:
   virtual ~Caster() = default;
@@ -128,7 +128,7 @@ Vec3d random_unit(Random& random) {
   return normalized(v);
 }
 
-/// Where a random scene lies and how large its primitives are.
+/// Position of a random scene and size of its primitives.
 struct Layout {
   std::uint64_t seed;
   Vec3d center;
@@ -144,7 +144,7 @@ struct Layout {
   }
 };
 
-/// A fifth of the disks faces an axis exactly; a tenth is the same as the one before.
+/// A fifth of the disks is exactly perpendicular to an axis; a tenth equals the previous one.
 std::vector<Disk> random_disks(const Layout& layout, std::size_t count) {
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < count; ++i) {
@@ -179,7 +179,7 @@ TriangleMesh random_mesh(const Layout& layout, std::size_t count) {
   return mesh;
 }
 
-/// Something to aim at for every primitive.
+/// A target point for every primitive.
 std::vector<Disk> targets_of(const SceneView& scene) {
   std::vector<Disk> targets(scene.disks.begin(), scene.disks.end());
   for (std::size_t i = 0; i < scene.triangle_count(); ++i) {
@@ -191,7 +191,7 @@ std::vector<Disk> targets_of(const SceneView& scene) {
   return targets;
 }
 
-/// A ray of the i-th kind that traversals get wrong, at a target.
+/// A ray towards a target, of the i-th kind of difficult rays.
 Ray awkward_ray(std::size_t kind, const Disk& target, const Layout& layout, Random& random) {
   const Vec3d c = vec_cast<double>(target.center), n = vec_cast<double>(target.normal);
   const Vec3d in_plane = normalized(cross(n, random_unit(random)));
@@ -260,10 +260,10 @@ std::size_t count_different(std::span<const Hit> found, std::span<const Hit> exp
 
 void expect_equal_hits(std::span<const Hit> found, std::span<const Hit> expected) {
   ASSERT_EQ(found.size(), expected.size());
-  int told = 0;
-  for (std::size_t i = 0; i < found.size() && told < 5; ++i) {
+  int reported = 0;
+  for (std::size_t i = 0; i < found.size() && reported < 5; ++i) {
     if (found[i] == expected[i]) continue;
-    ++told;
+    ++reported;
     ADD_FAILURE() << "hit " << i << ": t " << found[i].t << " of " << found[i].primitive
                   << ", expected t " << expected[i].t << " of " << expected[i].primitive;
   }
@@ -285,7 +285,7 @@ class DeviceScene : public testing::TestWithParam<Backend> {
   }
 };
 
-/// What is compared with brute force itself.
+/// Scenes compared with brute force.
 class ComparedScene : public DeviceScene {
  protected:
   /// Oracle: brute force, bit for bit.
@@ -309,7 +309,7 @@ constexpr std::array kLayouts = {
     Layout{4, {0, 0, 0}, 0.05, 1e-3, 0.02},    // tiny
 };
 
-TEST_P(ComparedScene, DisksAreHitAsByBruteForce) {
+TEST_P(ComparedScene, DisksMatchBruteForce) {
   for (const Layout& layout : kLayouts) {
     SCOPED_TRACE("layout " + std::to_string(layout.seed));
     const auto disks = random_disks(layout, 400);
@@ -318,7 +318,7 @@ TEST_P(ComparedScene, DisksAreHitAsByBruteForce) {
   }
 }
 
-TEST_P(ComparedScene, TrianglesAreHitAsByBruteForce) {
+TEST_P(ComparedScene, TrianglesMatchBruteForce) {
   for (const Layout& layout : kLayouts) {
     SCOPED_TRACE("layout " + std::to_string(layout.seed));
     const auto mesh = random_mesh(layout, 400);
@@ -327,7 +327,7 @@ TEST_P(ComparedScene, TrianglesAreHitAsByBruteForce) {
   }
 }
 
-TEST_P(ComparedScene, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
+TEST_P(ComparedScene, DisksAndTrianglesMatchBruteForce) {
   for (const Layout& layout : kLayouts) {
     SCOPED_TRACE("layout " + std::to_string(layout.seed));
     const auto disks = random_disks(layout, 201);
@@ -337,16 +337,16 @@ TEST_P(ComparedScene, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
   }
 }
 
-TEST_P(ComparedScene, AHundredThousandDisksAreHitAsByBruteForce) {
+TEST_P(ComparedScene, AHundredThousandDisksMatchBruteForce) {
   const Layout layout = {5, {10, 20, 30}, 50, 0.1, 1};
   const auto disks = random_disks(layout, 100'000);
   const SceneView scene = {disks, nullptr};
   expect_oracle(scene, awkward_rays(layout, scene, 4'000));
 }
 
-// Oracle: Embree, which is brute force bit for bit up to 1024 m. The margin of the boxes covers
-// rounding of any box test in single precision, OptiX's own, too.
-TEST_P(ComparedScene, AMillionRaysAreHitAsByEmbree) {
+// Oracle: Embree, which equals brute force bit for bit up to 1024 m. The margin of the boxes covers
+// the rounding of any box test in single precision, also that of OptiX.
+TEST_P(ComparedScene, AMillionRaysMatchEmbree) {
   const Layout layout = {6, {0, 0, 0}, 60, 0.05, 1};
   const auto disks = random_disks(layout, 300'000);
   const SceneView scene = {disks, nullptr};
@@ -416,7 +416,7 @@ TEST_P(DeviceScene, RangesAreOpenBelowAndClosedAbove) {
             (std::vector<Hit>{{6, 1}, {5, 0}, {}, {5, 0}, {}, {}, {1, 1}, {}, {10, 0}, {}}));
 }
 
-TEST_P(DeviceScene, RaysThatAreNotFiniteHitNothing) {
+TEST_P(DeviceScene, NonFiniteRaysHitNothing) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}};
   const Ray good = {{0, 0, 0}, 0, {1, 0, 0}};
   std::vector<Ray> rays;
@@ -435,11 +435,11 @@ TEST_P(DeviceScene, RaysThatAreNotFiniteHitNothing) {
   rays.push_back({{0, 0, 0}, 0, {0, 0, 0}});
   EXPECT_EQ(count_valid(cast({disks, nullptr}, rays)), 0U);
   EXPECT_EQ(count_valid(cast({disks, nullptr}, rays, 2)), 0U);
-  rays.push_back(good);  // a bad ray leaves its neighbours alone
+  rays.push_back(good);  // a bad ray does not affect its neighbours
   EXPECT_EQ(cast({disks, nullptr}, rays).back(), (Hit{5.0F, 0}));
 }
 
-TEST_P(DeviceScene, PrimitivesThatAreNotFiniteAreNeverHit) {
+TEST_P(DeviceScene, NonFinitePrimitivesAreNeverHit) {
   std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}};
   disks.push_back({{kNaN, 0, 0}, 1, {1, 0, 0}});
   disks.push_back({{3, 0, 0}, kNaN, {1, 0, 0}});
@@ -469,7 +469,7 @@ class GpuDeviceScene : public DeviceScene {
   std::vector<Disk> disks_;
 };
 
-// Oracle: the same rays, made by ray_of() on the CPU and handed over.
+// Oracle: the same rays, made by ray_of() on the CPU and passed to the scene.
 void expect_source(const GpuCaster& caster, const gpu::RaySource& on_gpu,
                    const gpu::RaySource& on_cpu, std::size_t count) {
   std::vector<Ray> rays(count);
@@ -545,8 +545,8 @@ TEST_P(GpuDeviceScene, PicturesAreMadeOnTheGpu) {
   expect_source(scene, source, source, 160 * 120);
 }
 
-// The last are more hits than a backend may want to hold on the way, in an order of their own.
-TEST_P(GpuDeviceScene, HitsMayGoToPageLockedMemory) {
+// The last case has more hits than a backend may buffer, in a different order.
+TEST_P(GpuDeviceScene, HitsCanBeWrittenToPageLockedMemory) {
   const GpuCaster scene = caster(500);
   const auto some = rays(300'000);
   std::vector<FiringRay> firings;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kRaysAtOnce = std::size_t{1} << 19;
 constexpr std::size_t kHitsAtOnce = std::size_t{1} << 22;
 
-/// One of two batches that are under way.
+/// One of two batches in progress.
 struct Slot {
   Stream stream;
   PinnedBuffer<Ray> rays;
@@ -96,7 +96,7 @@ class GpuTracer final : public Tracer {
                "copy the hits from the GPU");
   }
 
-  /// Waits for a slot's batch and hands its hits over.
+  /// Waits for the batch of a slot and returns its hits.
   static void take(Slot& slot, std::size_t slots, std::span<Hit> hits, const Executor& executor) {
     if (slot.count == 0) return;
     slot.stream.wait("cast rays on the GPU");

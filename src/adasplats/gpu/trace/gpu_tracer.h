@@ -9,8 +9,8 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: a Tracer over a scene of one GPU, for rays that the caller has. Calls from
-/// several threads wait for each other. At most 64 hits a ray.
+/// Private to gpu/: a Tracer over a scene on one GPU, for rays of the caller. Concurrent calls wait
+/// for each other. At most 64 hits per ray.
 std::unique_ptr<Tracer> make_gpu_tracer(const DeviceScene& scene, int device);
 
 }  // namespace adasplats::gpu

@@ -11,8 +11,8 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: where the rays of a launch come from, by value into a kernel. Pointers are
-/// device memory. Rays are made where they are cast: nothing is copied but poses.
+/// Private to gpu/: source of the rays of a launch, passed to kernels by value. Pointers are device
+/// memory. Rays are made by the kernel that casts them: only poses are copied.
 struct RaySource {
   enum class Kind : std::uint32_t {
     given,  ///< rays[i]
@@ -24,10 +24,9 @@ struct RaySource {
   const Ray* rays = nullptr;
 
   const FiringRay* firings = nullptr;    ///< in casting order
-  const std::uint32_t* order = nullptr;  ///< which firing the i-th of a scan is; null: the i-th
+  const std::uint32_t* order = nullptr;  ///< firing numbers in casting order; null: ascending
   const ScanPose* poses = nullptr;       ///< of all scans; null: `pose` for all
-  /// Where the poses of each scan begin, one more than scans: knots of its motion. Null: one a
-  /// scan.
+  /// Begin of the poses (motion knots) of each scan; number of scans + 1. Null: one pose per scan.
   const std::uint32_t* first_poses = nullptr;
   ScanPose pose;
   std::uint32_t firing_count = 1;
@@ -45,13 +44,13 @@ struct Quotient {
 };
 
 ADASPLATS_HD inline Quotient divide(std::uint64_t i, std::uint32_t n) {
-  // A GPU divides 64 bits in some hundred instructions; few launches are that large.
+  // A 64-bit division takes about a hundred instructions on a GPU; few launches need it.
   const auto low = static_cast<std::uint32_t>(i);
   if (low == i) return {low / n, low % n};
   return {i / n, static_cast<std::uint32_t>(i % n)};
 }
 
-/// A picture's samples in the order of rays: tiles of 8 x 4, which is what a warp casts.
+/// Samples of a picture in the order of rays: tiles of 8 x 4, one per warp.
 struct SamplePlace {
   static constexpr std::int32_t kTileColumns = 8, kTileRows = 4;
   std::int32_t x, y;
@@ -68,7 +67,7 @@ ADASPLATS_HD inline SamplePlace sample_of(std::uint64_t ray, std::int32_t column
               within / SamplePlace::kTileColumns};
 }
 
-/// The index of the ray that sample_of() turns into (x, y).
+/// The inverse of sample_of(): the index of the ray of sample (x, y).
 ADASPLATS_HD inline std::uint64_t ray_of_sample(SamplePlace at, std::int32_t columns) {
   const auto tiles_a_row = static_cast<std::uint64_t>(columns / SamplePlace::kTileColumns);
   const std::uint64_t tile =
@@ -79,14 +78,14 @@ ADASPLATS_HD inline std::uint64_t ray_of_sample(SamplePlace at, std::int32_t col
                                     at.x % SamplePlace::kTileColumns);
 }
 
-/// Where the hits of ray i go, in rays: the order of casting is the backend's, that of hits not.
+/// Position of the hits of ray i, in rays: the casting order may differ from the order of hits.
 ADASPLATS_HD inline std::uint64_t place_of_ray(const RaySource& source, std::uint64_t i) {
   if (source.order == nullptr) return i;
   const std::uint32_t within = divide(i, source.firing_count).rest;
   return i - within + source.order[within];
 }
 
-/// Whether sensors stand still is known when a kernel is chosen: it then needs fewer registers.
+/// Sensors at rest have their own kernel, which needs fewer registers.
 enum class Sensors : std::uint8_t { still, may_move };
 
 template <Sensors kSensors = Sensors::may_move>

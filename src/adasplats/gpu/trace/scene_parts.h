@@ -11,15 +11,15 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: the same scene on one device.
+/// Private to gpu/: the copy of a scene on one device.
 struct DevicePart {
   int device = 0;
   std::shared_ptr<DeviceScene> scene;
-  /// Values of primitives in device memory, of a city; null: the rules have them.
+  /// Attributes of the primitives of a city in device memory; null: the rules have them.
   const PrimitiveValues* values = nullptr;
 };
 
-/// What a GpuScene or GpuCity, its scanners and its renderers share.
+/// Data shared by a GpuScene or GpuCity, its scanners and its renderers.
 struct SceneParts {
   ~SceneParts() {
     for (DevicePart& part : parts) {
@@ -28,7 +28,7 @@ struct SceneParts {
     }
   }
 
-  std::vector<DevicePart> parts;  ///< one a device, at least one
+  std::vector<DevicePart> parts;  ///< one per device, at least one
   Vec3d origin;                   ///< world coordinates of the scene's local origin, m
 
   const DevicePart& first() const { return parts.front(); }

@@ -13,7 +13,7 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what a kernel needs of the trees of a scene.
+/// Private to gpu/: kernel view of the trees of a scene.
 struct TreesView {
   TreeView<LeafDisk> disks;
   TreeView<LeafTriangle> triangles;
@@ -27,12 +27,12 @@ struct SceneTrees {
   TreesView view() const { return {disks.view(), triangles.view()}; }
 };
 
-/// On the current device; complete when this returns. Primitives are numbered as hits are. Errors:
-/// data (more of them than can be told apart).
+/// Builds the trees on the current device; complete when this returns. Primitives have the numbers
+/// of hits. Errors: data (too many primitives).
 SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                              cudaStream_t stream);
 
-/// DeviceScene::cast() into trees.
+/// DeviceScene::cast() for trees.
 void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t count, int depth,
                 Hit* hits, cudaStream_t stream);
 

@@ -19,18 +19,18 @@
 namespace adasplats::gpu {
 namespace {
 
-/// Levels of the tree over trees, at most: 8^8 tiles.
+/// Maximum depth of the tree over trees: 8^8 tiles.
 constexpr int kTopLevels = 8;
 
-/// A node of the tree over trees: its children are boxes by their numbers, first those of the tiles
-/// that are shown and then those of its own nodes.
+/// A node of the tree over trees. Its children are numbers of boxes: first those of the shown
+/// tiles, then those of the nodes of this tree.
 struct TopNode {
   Family family;
-  std::uint32_t place;  ///< given by the node above
+  std::uint32_t place;  ///< assigned by the parent
 };
 
-/// Writes the tree over trees, node after node from the root. Children stand one after another in
-/// the order of their slots, so roots of tiles are copied there.
+/// Writes the tree over trees, node by node from the root. Children are consecutive in the order of
+/// their slots, so the roots of tiles are copied there.
 __global__ void write_top_kernel(TopNode* top, std::uint32_t top_count, const Box* boxes,
                                  const std::uint32_t* roots, std::uint32_t tile_count,
                                  WideNode* nodes) {
@@ -64,7 +64,7 @@ __global__ void write_top_kernel(TopNode* top, std::uint32_t top_count, const Bo
   }
 }
 
-/// A tree to its place in arrays that trees share, its numbers those of the whole.
+/// Copies a tree into the arrays shared by all trees and adjusts its numbers.
 void move_tree(const WideTree<LeafDisk>& tree, std::uint32_t first_node, std::uint32_t first_splat,
                WideNode* nodes, LeafDisk* leaves, cudaStream_t stream) {
   constexpr const char* kDoing = "copy the ray tree of a tile on the GPU";
@@ -83,16 +83,16 @@ void move_tree(const WideTree<LeafDisk>& tree, std::uint32_t first_node, std::ui
   });
 }
 
-/// A tile's tree in the arrays that all share.
+/// The tree of a tile in the shared arrays.
 struct TileTree {
-  std::size_t first = 0;  ///< splat of the tile, of all tiles
+  std::size_t first = 0;  ///< first splat of the tile, numbered across all tiles
   std::size_t splats = 0;
   std::size_t nodes = 0, leaves = 0;
   Box box{};
   bool is_built = false;
 };
 
-/// Around the disks that can be hit.
+/// Bounding box of the disks that can be hit.
 Box box_around(std::span<const Disk> disks) {
   Box box = {{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
   for (const Disk& disk : disks) {
@@ -113,11 +113,11 @@ class CudaTiledScene final : public TiledScene {
       tiles_[k].splats = splats[k];
       all += splats[k];
     }
-    // Nodes over trees, and copies of the trees' roots.
+    // Nodes over trees, and copies of the roots of the trees.
     top_room_ = 2 * splats.size() + 2;
     if (all + top_room_ >= (std::size_t{1} << 31U))
-      throw Error(ErrorKind::data, "a city of " + std::to_string(all) +
-                                       " splats; a GPU casts 2^31 tile by tile at most");
+      throw Error(ErrorKind::data, "the city has " + std::to_string(all) +
+                                       " splats; a GPU supports at most 2^31 in tiles");
     nodes_.emplace(top_room_ + all);
     leaves_.emplace(all);
     nodes_->hold(0, top_room_);
@@ -128,7 +128,7 @@ class CudaTiledScene final : public TiledScene {
   void build(std::size_t tile, std::span<const Disk> disks) override {
     TileTree& tree = tiles_.at(tile);
     if (tree.is_built || disks.size() != tree.splats)
-      throw std::logic_error("TiledScene: not a tile that is to be built");
+      throw std::logic_error("TiledScene: this tile cannot be built");
     const DeviceBuffer<Disk> on_device(disks, building_.get());
     TreeOptions options;
     options.levels_above = kTopLevels;
@@ -204,8 +204,8 @@ class CudaTiledScene final : public TiledScene {
     }
   }
 
-  /// The node above some boxes, by halves along their longer side; its box goes behind the tiles'.
-  /// Nodes stand before those below them.
+  /// Makes the node above some boxes by bisection along their longer side; its box follows those of
+  /// the tiles. Parents precede their children.
   static std::uint32_t add_top(std::span<std::uint32_t> tiles, std::vector<Box>& boxes,
                                std::uint32_t tile_count, std::vector<TopNode>& top) {
     const auto own = static_cast<std::uint32_t>(top.size());
@@ -231,7 +231,7 @@ class CudaTiledScene final : public TiledScene {
   std::size_t top_room_ = 0;
   std::optional<SparseDeviceArray<WideNode>> nodes_;  ///< over trees, then tile after tile
   std::optional<SparseDeviceArray<LeafDisk>> leaves_;
-  std::mutex mutex_;  ///< of their pages
+  std::mutex mutex_;  ///< guards the pages
   TreesView shown_;
 };
 

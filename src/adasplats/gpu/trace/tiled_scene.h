@@ -10,23 +10,23 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: TiledTracer (trace/tiled_tracer.h) on the device that was the current one when
-/// it was made: a tree a tile, and a small one over those that are shown. All calls with that
-/// device as the current one.
+/// Private to gpu/: TiledTracer (trace/tiled_tracer.h) on one GPU: a tree per tile, and a small
+/// tree over the shown tiles. The device that was current at construction must be current in all
+/// calls.
 class TiledScene : public DeviceScene {
  public:
-  /// Builds the tree of a tile that has none. May run beside casts, on one thread at a time.
+  /// Builds the tree of a tile without one. May run during casts, on one thread at a time.
   virtual void build(std::size_t tile, std::span<const Disk> disks) = 0;
-  /// Gives back the memory of a tile that is not shown.
+  /// Frees the memory of a tile that is not shown.
   virtual void drop(std::size_t tile) = 0;
-  /// Which of the tiles that are built rays meet from now on. Not beside casts, nor beside build().
+  /// Selects the built tiles that rays can hit from now on. Not during casts or build().
   virtual void show(std::span<const std::size_t> tiles) = 0;
 };
 
-/// About how much memory a tile takes for each splat, bytes.
+/// Approximate memory of a tile per splat, bytes.
 inline constexpr std::size_t kTiledSceneBytesASplat = 64;
 
-/// `splats`: of each tile. Errors: data (more than can be told apart), unavailable.
+/// `splats`: number of splats of each tile. Errors: data (too many splats), unavailable.
 std::unique_ptr<TiledScene> make_tiled_scene(std::span<const std::size_t> splats);
 
 }  // namespace adasplats::gpu

@@ -9,15 +9,15 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/trace: how a wide node is written (the last step of wide_tree_build.cu).
+// Private to gpu/trace: writes wide nodes (the last step of wide_tree_build.cu).
 
-/// The children of one wide node before they have slots.
+/// The children of one wide node before the assignment of slots.
 struct Family {
   std::uint32_t nodes[kWidth];
   int size = 0;
 };
 
-/// Follows the decisions of step 2 from a node that becomes a wide one.
+/// Follows the decisions of step 2 from a node that becomes a wide node.
 __device__ inline Family family_of(const BinaryTree& tree, std::uint32_t root) {
   Family family;
   if (tree.is_primitive(root)) {  // the whole scene is one primitive
@@ -26,7 +26,7 @@ __device__ inline Family family_of(const BinaryTree& tree, std::uint32_t root) {
   }
   struct Part {
     std::uint32_t node;
-    int nodes;  // that may stand for it
+    int nodes;  // maximum number that may represent it
   };
   Part parts[kWidth];
   int size = 0;
@@ -52,8 +52,8 @@ __device__ inline Family family_of(const BinaryTree& tree, std::uint32_t root) {
   return family;
 }
 
-/// Slot s holds what a ray meets first that goes along (s & 4 ? -x : +x, ...) as seen from the
-/// middle: greedy assignment by how far each child lies in each of the eight directions.
+/// Slot s holds the child that a ray along (s & 4 ? -x : +x, ...) meets first: greedy assignment by
+/// the distance of each child from the centre in each of the eight directions.
 __device__ inline void assign_slots(const Family& family, const Box* boxes, const Box& own,
                                     int (&slot_of)[kWidth]) {
   const Vec3f middle = own.low + own.high;
@@ -94,12 +94,12 @@ __device__ inline int grid_exponent(float low, float high) {
   return ldexp(255.0, exponent - 1) >= extent ? exponent - 1 : exponent;
 }
 
-/// What is to be written: a binary node and the place of its wide node.
+/// A node to write: a binary node and the position of its wide node.
 struct Task {
   std::uint32_t node, place;
 };
 
-/// Numbers given out while a level is written.
+/// Counters for the numbers assigned while a level is written.
 struct Cursors {
   std::uint32_t nodes, primitives, tasks;
 };
@@ -114,11 +114,11 @@ __device__ inline void set_grid(WideNode& node, const Box& own, double (&cells)[
   }
 }
 
-/// The box of a child in cells of the node's grid, outward.
+/// The box of a child in cells of the node's grid, rounded outward.
 __device__ inline void set_bounds(WideNode& node, int slot, const Box& own, const Box& box,
                                   const double (&cells)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
-    // In double, where the differences of floats are all but exact.
+    // In double, in which differences of floats are nearly exact.
     const auto origin = static_cast<double>(own.low[axis]);
     const double low = floor((static_cast<double>(box.low[axis]) - origin) / cells[axis]);
     const double high = ceil((static_cast<double>(box.high[axis]) - origin) / cells[axis]);
@@ -132,7 +132,7 @@ template <class Primitive, class Leaf>
 struct WriteNode {
   BinaryTree binary;
   const Primitive* primitives;
-  const std::uint32_t* ids;  ///< of the primitives that are there
+  const std::uint32_t* ids;  ///< of the valid primitives
   std::uint32_t first_primitive;
   const Task* tasks;
   Task* next_tasks;

@@ -12,9 +12,9 @@
 #include "adasplats/scene/intersect.h"
 #include "adasplats/trace/castable.h"
 
-// Private to gpu/: how one ray walks a WideTree. Box tests use fused multiply-adds and reciprocals:
-// their error is a few ulps of the distance, which the margin of the boxes (box_margin) covers.
-// What decides hits are the functions of scene/intersect.h.
+// Private to gpu/: traversal of a WideTree by one ray. Box tests use fused multiply-adds and
+// reciprocals; their error is a few ulps of the distance, which the margin of the boxes
+// (box_margin) covers. The functions of scene/intersect.h decide hits.
 
 namespace adasplats::gpu {
 
@@ -28,7 +28,7 @@ class NearestHit {
     if (Hit{t, primitive} < hit_) hit_ = {t, primitive};
   }
   __device__ void store(Hit* hits, int) const { hits[0] = hit_; }
-  /// Calls use(hit) for all that are kept, the nearest first.
+  /// Calls use(hit) for all kept hits, nearest first.
   template <class Use>
   __device__ void for_each(Use&& use) const {
     if (hit_.valid()) use(hit_);
@@ -38,7 +38,7 @@ class NearestHit {
   Hit hit_;
 };
 
-/// Keeps the nearest hits, ascending; at most kMost, in registers where that is few.
+/// Keeps the nearest hits, ascending; at most kMost, in registers if that is small.
 template <int kMost>
 class NearestHits {
  public:
@@ -69,7 +69,7 @@ class NearestHits {
   int count_ = 0;
 };
 
-/// The same for a depth known when compiled: the list stays in registers, sorted by exchanges.
+/// The same for a compile-time depth: the list stays in registers, sorted by exchanges.
 template <int kDepth>
 class FewNearestHits {
  public:
@@ -121,15 +121,15 @@ __device__ inline float intersect(const Ray& ray, const LeafTriangle* leaf,
   return intersect_triangle(ray, {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {b.z, b.w, c.x}});
 }
 
-/// What box tests need of a ray.
+/// Ray data for box tests.
 struct BoxRay {
   Vec3f origin;
   Vec3f inverse;         ///< of the direction; finite
-  std::uint32_t octant;  ///< which slot comes first: 7 for a ray along +x +y +z
+  std::uint32_t octant;  ///< slot that comes first: 7 for a ray along +x +y +z
 };
 
 __device__ inline BoxRay box_ray(const Ray& ray) {
-  constexpr float kLeast = 1e-12F;  // a direction as good as zero: off by 1e-9 m after a kilometre
+  constexpr float kLeast = 1e-12F;  // practically zero: an error of 1e-9 m after a kilometre
   const auto inverse = [](float d) {
     return 1.0F / (fabsf(d) > kLeast ? d : copysignf(kLeast, d));
   };
@@ -139,16 +139,16 @@ __device__ inline BoxRay box_ray(const Ray& ray) {
           (inverses.x < 0 ? 0U : 4U) | (inverses.y < 0 ? 0U : 2U) | (inverses.z < 0 ? 0U : 1U)};
 }
 
-/// Some children of one node that are still to be looked at: nodes, or primitives.
+/// Children of one node that are still to be visited: nodes or primitives.
 struct Group {
   std::uint32_t first = 0;  ///< index of the first of all nodes (primitives) of that node
-  /// Bits 0 to 7: which, by the order in which the ray meets them, the nearest in bit 7. Bits 8 to
-  /// 15: which slots of the node hold nodes (primitives) at all. Bit 16: these are primitives.
+  /// Bits 0 to 7: these children, in the order in which the ray meets them, the nearest in bit 7.
+  /// Bits 8 to 15: all slots of the node with nodes (primitives). Bit 16: these are primitives.
   std::uint32_t bits = 0;
 
   __device__ bool empty() const { return (bits & 0xffU) == 0; }
   __device__ bool are_primitives() const { return (bits & 0x10000U) != 0; }
-  /// Takes the nearest out and gives its index.
+  /// Removes the nearest and returns its index.
   __device__ std::uint32_t pop(std::uint32_t octant) {
     const std::uint32_t nearest =
         31U - static_cast<std::uint32_t>(__clz(static_cast<int>(bits & 0xffU)));
@@ -166,10 +166,9 @@ __device__ inline std::uint32_t by_octant(std::uint32_t bits, std::uint32_t octa
   return bits;
 }
 
-/// Distances along a ray to planes of a node's grid. One instruction makes halves of two bytes,
-/// 1024
-/// + b, which turn into floats where sums are made: the unit that permutes bytes is the busiest.
-/// What rounding may do to a distance, 2^-14 of a cell, is added outward four times over.
+/// Distances along a ray to planes of a node's grid. One instruction turns two bytes b into half
+/// floats 1024 + b, which become floats in the sums, because the byte permutation unit is the
+/// bottleneck. The margin is four times the possible rounding error of 2^-14 of a cell.
 struct GridAxis {
   float scale, near_offset, far_offset;
 
@@ -179,7 +178,7 @@ struct GridAxis {
     near_offset = fmaf(fabsf(scale), -0x1.0p-12F, offset);
     far_offset = fmaf(fabsf(scale), 0x1.0p-12F, offset);
   }
-  /// As the bits of a float, which sort as integers do where they are not negative.
+  /// As the bits of a float; those of non-negative floats have the order of integers.
   template <int kByte>
   __device__ static int at(std::uint32_t bytes, float scale, float offset) {
     constexpr std::uint32_t kHalves = 0x64646464U;  // the upper byte of the half 1024
@@ -197,17 +196,17 @@ struct GridAxis {
   }
 };
 
-/// The larger and the smaller of three numbers in one instruction, where the GPU has it.
+/// The maximum and minimum of three numbers, in one instruction if the GPU has it.
 __device__ inline int max3(int a, int b, int c) { return __vimax3_s32(a, b, c); }
 __device__ inline int min3(int a, int b, int c) { return __vimin3_s32(a, b, c); }
 
-/// Four boxes of a node.
+/// Tests four boxes of a node.
 struct FourBoxes {
   std::uint32_t near_x, near_y, near_z, far_x, far_y, far_z;
 
-  /// Whether the ray meets box kBox between t_min and t_max (bits of floats that are not negative).
-  /// Distances behind the origin are negative integers too: they lose every maximum and fail as a
-  /// minimum, whichever they are.
+  /// Whether the ray meets box kBox between t_min and t_max (bits of non-negative floats).
+  /// Distances behind the origin are negative integers, too: they lose every maximum and fail as a
+  /// minimum, regardless of their value.
   template <int kBox>
   __device__ bool met(const GridAxis& x, const GridAxis& y, const GridAxis& z, int t_min,
                       int t_max) const {
@@ -219,7 +218,7 @@ struct FourBoxes {
   }
 };
 
-/// Tests the eight boxes of a node: with which of its nodes and primitives to go on.
+/// Tests the eight boxes of a node and returns the nodes and primitives to visit.
 __device__ inline void visit(const WideNode* node, const BoxRay& ray, float t_min, float t_max,
                              Group& nodes, Group& primitives) {
   const uint4* words = reinterpret_cast<const uint4*>(node);
@@ -247,17 +246,16 @@ __device__ inline void visit(const WideNode* node, const BoxRay& ray, float t_mi
   if (high.met<1>(x, y, z, first, last)) found |= 32U;
   if (high.met<2>(x, y, z, first, last)) found |= 64U;
   if (high.met<3>(x, y, z, first, last)) found |= 128U;
-  // Which slots hold nodes is in the third byte of this word, which primitives in the fourth; empty
-  // slots are in neither.
+  // The third byte of this word flags slots with nodes, the fourth those with primitives.
   const std::uint32_t kinds = n1.z >> 16;
   const std::uint32_t sorted = by_octant(found * 0x101U & kinds, ray.octant);
   nodes = {n0.w, (sorted & 0xffU) | (kinds & 0xffU) << 8};
   primitives = {n1.x, sorted >> 8 | (kinds & 0xff00U) | 0x10000U};
 }
 
-/// Offers every hit of a ray with the tree's primitives to `best`, but such as cannot be among
-/// those it keeps. `kPostpone`: primitives wait while fewer than this many percent of the warp's
-/// rays have some to test.
+/// Passes every hit of a ray with the primitives of the tree to `best`, except hits that it cannot
+/// keep. `kPostpone`: primitives wait while less than this percentage of the warp's rays have some
+/// to test.
 template <int kPostpone, class Leaf, class Best>
 __device__ void walk(const TreeView<Leaf>& tree, Ray ray, const BoxRay& boxes, Best& best) {
   if (tree.nodes == nullptr) return;
@@ -300,7 +298,7 @@ __device__ void walk(const TreeView<Leaf>& tree, Ray ray, const BoxRay& boxes, B
   }
 }
 
-/// Offers every hit of a ray in a scene.
+/// Passes every hit of a ray in a scene to `best`.
 template <int kPostpone, class Best>
 __device__ void cast_one(const TreesView& trees, Ray ray, Best& best) {
   if (!castable(ray)) return;

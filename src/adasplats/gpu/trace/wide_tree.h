@@ -12,12 +12,12 @@ namespace adasplats::gpu {
 
 /// Private to gpu/: an 8-wide tree of boxes with 80 bytes a node. After Ylitie, Karras and Laine
 /// 2017, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs": boxes of
-/// children are bytes in a grid of the node's own; children stand in the order in which a ray of a
-/// given octant meets them. Other than there, a child is a node or one primitive: disks are small
-/// and far from filling their boxes together, and a box test costs a quarter of a disk test.
+/// children are bytes in a grid of the node; children are in the order in which a ray of a given
+/// octant meets them. Unlike in the paper, a child is a node or a single primitive: disks are small
+/// and do not fill a common box, and a box test costs a quarter of a disk test.
 struct alignas(16) WideNode {
   float origin[3];                ///< low corner of the grid, m
-  std::uint32_t first_child;      ///< nodes among the children stand one after another from here...
+  std::uint32_t first_child;      ///< nodes among the children are consecutive from here...
   std::uint32_t first_primitive;  ///< ...and primitives from here, both in the order of slots
   /// Upper halves of floats: cell sizes of the grid along the axes, m.
   std::uint16_t scale[3];
@@ -47,14 +47,14 @@ struct alignas(16) LeafTriangle {
 };
 static_assert(sizeof(LeafTriangle) == 48);
 
-/// What a kernel needs of a tree; no nodes: an empty one.
+/// Kernel view of a tree; empty without nodes.
 template <class Leaf>
 struct TreeView {
   const WideNode* nodes = nullptr;
   const Leaf* leaves = nullptr;
 };
 
-/// How a tree is built.
+/// Options of the tree construction.
 struct TreeOptions {
   int search_radius = 12;  ///< neighbours along the curve that a cluster may join with, up to 64
   int levels_above = 0;    ///< of another tree that its root is to stand in

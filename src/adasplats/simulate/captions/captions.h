@@ -12,10 +12,10 @@
 
 namespace adasplats {
 
-/// What a picture shows, in its upper left corner.
+/// Draws the title of a picture in its upper left corner.
 void draw_title(Image& image, std::string_view title);
 
-/// Colours and what they stand for, in the lower left corner; nothing where there are none.
+/// Draws colours and their meanings in the lower left corner; nothing if there are none.
 void draw_classes(Image& image, const std::vector<std::pair<Rgb, std::string>>& classes);
 
 /// A length of 1, 2 or 5 times a power of ten.
@@ -25,18 +25,19 @@ struct ScaleBar {
   std::string text;  ///< with its unit: cm, m or km
 };
 
-/// The longest that fits into so many pixels.
+/// The longest scale bar that fits into this number of pixels.
 ScaleBar scale_bar(double px_per_m, int max_px);
 
-/// Draws it into the lower right corner; `note` behind its text says where it holds.
+/// Draws a scale bar in the lower right corner; `note` follows its text and states where it is
+/// valid.
 void draw_scale_bar(Image& image, const ScaleBar& bar, std::string_view note);
 
-/// Where north (+y) is in a camera's picture: x right, y down, as of a level compass that is seen
-/// from at least 20 degrees above; its length is 1 or, foreshortened, less.
+/// Direction of north (+y) in a camera's picture (x right, y down), like a level compass seen from
+/// at least 20 degrees above; its length is at most 1 due to foreshortening.
 Vec3d north_in_picture(const Camera& camera);
 
-/// Draws an arrow into the upper right corner. `letter`: what its tip is named, "N" where the
-/// coordinates are of a map, else "y".
+/// Draws an arrow in the upper right corner. `letter`: label of its tip, "N" for map coordinates,
+/// otherwise "y".
 void draw_north(Image& image, const Camera& camera, std::string_view letter);
 
 }  // namespace adasplats

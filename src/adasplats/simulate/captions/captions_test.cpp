@@ -50,7 +50,7 @@ Box drawn(const Image& image) {
   return box;
 }
 
-TEST(Text, LiesInItsBox) {
+TEST(Text, StaysInItsBox) {
   Image image = paper(400, 60);
   draw_text(image, 20, 10, "Height g 12 m", 30, kRed);
   const Box box = drawn(image);
@@ -62,7 +62,7 @@ TEST(Text, LiesInItsBox) {
   EXPECT_GT(count(image, kRed), 100U);
 }
 
-TEST(Text, IsCutOffAtTheBorderAndSurvivesWrongBytes) {
+TEST(Text, IsClippedAtTheBorderAndSurvivesInvalidBytes) {
   Image image = paper(30, 12);
   draw_text(image, -7, -5, "wide text \xff\xc3 \xf0\x9f\x98\x80", 20, kRed);
   draw_text(image, 25, 8, "x", 20, kRed);
@@ -72,7 +72,7 @@ TEST(Text, IsCutOffAtTheBorderAndSurvivesWrongBytes) {
 }
 
 // Both fonts know the letters that captions are written in.
-TEST(Text, KnowsItsLetters) {
+TEST(Text, HasAllCaptionLetters) {
   for (const char letter : std::string_view("0123456789abcdefghijklmnopqrstuvwxyzNXY.-+<>")) {
     const auto inked = [](const Glyph& glyph) {
       return std::any_of(glyph.ink.begin(), glyph.ink.end(), [](int ink) { return ink > 127; });

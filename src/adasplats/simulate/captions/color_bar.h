@@ -11,7 +11,7 @@
 
 namespace adasplats {
 
-/// Colours along a scale: evenly spaced places, straight between them.
+/// Colours along a scale: evenly spaced nodes with linear interpolation.
 struct ColorScale {
   std::vector<Rgb> places;  ///< two or more
   /// `share` is clamped to 0..1; NaN gives the first colour.
@@ -25,14 +25,14 @@ const ColorScale& viridis_scale();
 /// Blue over white to red: errors with a sign.
 const ColorScale& signed_scale();
 
-/// What is written on a colour bar: texts under places (0..1), and further colours beside it.
+/// Labels of a colour bar: texts at positions (0..1), and additional colours next to it.
 struct ColorBarText {
   std::string title;  ///< above the bar; may be empty
   std::vector<std::pair<double, std::string>> marks;
   std::vector<std::pair<Rgb, std::string>> keys;
 };
 
-/// Draws a colour bar into the lower left corner of a picture, on a light plate.
+/// Draws a colour bar in the lower left corner of a picture, on a light plate.
 void draw_color_bar(Image& image, const ColorScale& scale, const ColorBarText& text);
 
 }  // namespace adasplats

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// A letter in pixels: how much of each is ink (0..255), rows from the top.
+/// A letter in pixels: ink coverage of each (0..255), rows from the top.
 struct Glyph {
   int left = 0, top = 0;  ///< of the pixels, from where the letter's box begins
   int width = 0, height = 0;
@@ -16,7 +16,7 @@ struct Glyph {
   std::vector<std::uint8_t> ink;
 };
 
-/// Glyph of a letter in a font of such a height; a blank one where the font does not have it.
+/// Glyph of a letter in a font of this height; blank if the font does not have it.
 Glyph smooth_glyph(char32_t letter, int height_px);  ///< only where has_smooth_font()
 bool has_smooth_font();
 Glyph dot_glyph(char32_t letter, int height_px);

@@ -8,7 +8,7 @@ namespace adasplats {
 
 inline constexpr Rgb kInk = {28, 30, 34};
 
-/// The measures of captions in a picture, pixels.
+/// Dimensions of captions in a picture, pixels.
 struct CaptionSize {
   explicit CaptionSize(const Image& image);
 
@@ -17,13 +17,13 @@ struct CaptionSize {
   int margin_px;  ///< around what is on a plate, and of plates from the border
 };
 
-/// Fills a rectangle; `share` (0..1) of what is there is covered.
+/// Fills a rectangle with opacity `share` (0..1).
 void fill(Image& image, int left, int top, int width, int height, Rgb rgb, double share = 1);
 
-/// A light plate for captions, through which the picture shimmers.
+/// A light, translucent plate for captions.
 void draw_plate(Image& image, int left, int top, int width, int height);
 
-/// A straight line, a disc at each of its points, smooth at its rim.
+/// A straight line of discs with smooth rims.
 void draw_line(Image& image, Vec3d from, Vec3d to, double width_px, Rgb rgb);
 
 }  // namespace adasplats

@@ -12,7 +12,7 @@ namespace {
 
 constexpr char32_t kUnknown = 0xFFFD;
 
-/// The letter of UTF-8 at `at`, which moves behind it; kUnknown for bytes that are none.
+/// Reads the UTF-8 letter at `at` and advances `at`; kUnknown for invalid bytes.
 char32_t next_letter(std::string_view text, std::size_t& at) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -33,7 +33,7 @@ Glyph glyph_of(char32_t letter, int height_px) {
   return has_smooth_font() ? smooth_glyph(letter, height_px) : dot_glyph(letter, height_px);
 }
 
-/// Lays a letter's ink over the picture.
+/// Draws a letter over the picture.
 void stamp(Image& image, int left, int top, const Glyph& glyph, Rgb ink) {
   for (int y = 0; y < glyph.height; ++y) {
     for (int x = 0; x < glyph.width; ++x) {

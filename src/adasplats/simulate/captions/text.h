@@ -8,14 +8,13 @@
 
 namespace adasplats {
 
-/// Text in pictures: DejaVu Sans where the library was built with it, else letters of dots. UTF-8;
-/// a letter that the font lacks is left blank.
+/// Text in pictures: DejaVu Sans if the library was built with it, otherwise a dot font. UTF-8; a
+/// letter that the font does not have is blank.
 
 /// Width of a line, pixels. `height_px`: from the top of capitals to the bottom of a "g".
 int text_width(std::string_view text, int height_px);
 
-/// Writes a line whose box has its top left corner at (left, top); what is outside of the picture
-/// is cut off.
+/// Writes a line with the top left corner of its box at (left, top), clipped to the picture.
 void draw_text(Image& image, int left, int top, std::string_view text, int height_px, Rgb ink);
 
 }  // namespace adasplats

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRowsPerChunk = 16;
 
-/// Pairs at one scale; every other scale is turned by half the angle between two pairs.
+/// Pairs at one scale; every other scale is rotated by half the angle between two pairs.
 void fill_pairs(int scale, double radius_px, std::span<PixelPair> pairs) {
   constexpr double kQuarterTurn = 0.7853981633974483;
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -20,7 +20,7 @@ struct PixelPair {
   float distance_px = 1;
 };
 
-/// What turns a frame into a picture, by value into a kernel.
+/// Parameters for developing a frame into a picture, passed to kernels by value.
 struct Developer {
   static constexpr int kScales = 3, kDirections = 4;
 
@@ -28,8 +28,8 @@ struct Developer {
 
   CameraRays camera;
   bool parallel = false;
-  float px_per_m = 1;  ///< pinhole: of something 1 m away
-  int samples = 1;     ///< of a pixel
+  float px_per_m = 1;  ///< pinhole: at a depth of 1 m
+  int samples = 1;     ///< per pixel
   Vec3f background;
   bool sky = true;
   bool relief = true;
@@ -39,7 +39,7 @@ struct Developer {
 
 namespace developing {
 
-/// Openings between surfaces: dark, as windows and gaps are by day.
+/// Colour of openings between surfaces: dark, like windows and gaps by day.
 inline constexpr Vec3f kHole = {0.13F, 0.14F, 0.18F};
 
 ADASPLATS_HD inline Vec3f background_color(const Developer& with, Vec3f direction) {
@@ -59,25 +59,25 @@ ADASPLATS_HD inline std::int64_t place(const FrameView& frame, std::int32_t x, s
   return static_cast<std::int64_t>(y) * frame.width + x;
 }
 
-/// What the pixels around one say of it.
+/// Result of the pixels around one pixel.
 struct Surroundings {
   float shadow = 0;  ///< 0: open, 1: deep in a corner
-  Vec3f color;       ///< of the surface, the mean of the pixel and those that lie on it
+  Vec3f color;       ///< mean of the pixel and those on the same surface
 };
 
-/// How far the pixels of a pair rise above the one between them, m: 0 on any plane, where nearness
-/// is linear. -infinity where one of them shows nothing.
+/// Height of the pixels of a pair above the one between them, m: 0 on any plane, on which nearness
+/// is linear. -infinity if one of them is empty.
 ADASPLATS_HD inline float rise_m(const Developer& with, float nearness, float before,
                                  float behind) {
   const float bend = 0.5F * (before + behind) - nearness;
   return with.parallel ? bend : bend / (nearness * nearness);
 }
 
-/// Light that a pair's rise keeps from the pixel between: 0..1, more the steeper.
+/// Share of the light that a pair occludes from the pixel between, 0..1; it grows with the slope.
 ADASPLATS_HD inline float shadow_of(float rise_m, float distance_m, bool finest) {
   constexpr float kNoise_m = 0.02F;  // steps from splat to splat of one surface
   constexpr float kNoise = 0.06F;    // and slopes
-  constexpr float kFarAbove = 2.0F;  // what rises more steeply stands before the pixel, not beside
+  constexpr float kFarAbove = 2.0F;  // a steeper surface is in front of the pixel, not next to it
   const float slope = (rise_m - kNoise_m) / distance_m - kNoise;
   if (!(slope > 0.0F)) return 0.0F;
   const float shadow = slope / (1.0F + slope);
@@ -85,11 +85,11 @@ ADASPLATS_HD inline float shadow_of(float rise_m, float distance_m, bool finest)
   return finest || share > 1.0F ? shadow : shadow * share * share;
 }
 
-/// Light that the surroundings keep from a surface (after Boucheny 2009, "Eye-dome lighting"; Luft
-/// et al. 2006, "Image enhancement by unsharp masking the depth buffer"), at three scales: edges of
-/// things, joints between them, and corners of the room. And its colour: where the pixels of a pair
-/// lie on the surface of the one between, all three count, so that splats run into each other over
-/// about half of their radius.
+/// Light that the surroundings occlude from a surface (after Boucheny 2009, "Eye-dome lighting";
+/// Luft et al. 2006, "Image enhancement by unsharp masking the depth buffer"), at three scales:
+/// edges of objects, joints between them, and corners of rooms. Also its colour: if the pixels of a
+/// pair are on the surface of the one between, all three are averaged, so splats blend over about
+/// half of their radius.
 ADASPLATS_HD inline Surroundings look_around(const Developer& with, const FrameView& frame,
                                              std::int32_t x, std::int32_t y) {
   constexpr float kWeights[Developer::kScales] = {0.45F, 0.30F, 0.25F};
@@ -127,7 +127,7 @@ ADASPLATS_HD inline Surroundings look_around(const Developer& with, const FrameV
   return found;
 }
 
-/// Pixels from (x, y) to the next that shows something, in one direction; `most` + 1: none.
+/// Distance in pixels from (x, y) to the next non-empty pixel in one direction; `most` + 1: none.
 ADASPLATS_HD inline std::int32_t gap(const FrameView& frame, std::int32_t x, std::int32_t y,
                                      std::int32_t dx, std::int32_t dy, std::int32_t most) {
   for (std::int32_t step = 1; step <= most; ++step) {
@@ -139,7 +139,7 @@ ADASPLATS_HD inline std::int32_t gap(const FrameView& frame, std::int32_t x, std
   return most + 1;
 }
 
-/// How much of a hole (0..1) a pixel is: surfaces nearby on all sides.
+/// Degree (0..1) to which a pixel is a hole: surfaces nearby on all sides.
 ADASPLATS_HD inline float hole_at(const Developer& with, const FrameView& frame, std::int32_t x,
                                   std::int32_t y) {
   constexpr int kSides = 8, kLeast = 7;
@@ -158,7 +158,7 @@ ADASPLATS_HD inline float hole_at(const Developer& with, const FrameView& frame,
 
 }  // namespace developing
 
-/// THE colour of a pixel, for every backend: 0..1, or above.
+/// The colour of a pixel, the same on every backend: 0..1, or above.
 ADASPLATS_HD inline Vec3f develop_pixel(const Developer& with, const FrameView& frame,
                                         std::int32_t x, std::int32_t y) {
   constexpr float kShadow = 2.6F;

@@ -12,19 +12,19 @@
 
 namespace adasplats {
 
-/// What the samples of a pixel met, before it is developed (developing.h).
+/// Result of the samples of a pixel, before it is developed (developing.h).
 struct FramePixel {
   Vec3f color;  ///< sum over the samples that hit something, 0..1 each
-  /// Of the nearest hit; kNothingNear where no sample hit. Pinhole: 1 / depth along the view, 1/m;
+  /// Of the nearest hit; kNothingNear if no sample hit. Pinhole: 1 / depth along the view, 1/m;
   /// parallel rays: -depth, m. Either is linear in the picture over a plane.
   float nearness = -std::numeric_limits<float>::infinity();
-  float splat_px = 0;  ///< its radius in the picture where it is a splat, else 0
+  float splat_px = 0;  ///< radius of a splat in the picture, otherwise 0
 };
 inline constexpr float kNothingNear = -std::numeric_limits<float>::infinity();
 
-/// A picture's pixels before they are developed, rows from the top: the members of FramePixel one
-/// by one, since most of developing reads nearness alone. Pointers are memory of the device that
-/// reads them.
+/// The pixels of a picture before they are developed, rows from the top: the members of FramePixel
+/// as separate arrays, since most of the development reads only nearness. Pointers are memory of
+/// the device that reads them.
 struct FrameView {
   const Vec3f* colors = nullptr;
   const float* nearness = nullptr;
@@ -33,7 +33,7 @@ struct FrameView {
   std::int32_t width = 0, height = 0;
 };
 
-/// Owns what a FrameView shows.
+/// Owns the data of a FrameView.
 struct Frame {
   Frame(int columns, int rows)
       : width(columns),
@@ -65,8 +65,8 @@ struct Frame {
 
 struct Developer;
 
-/// The picture that a frame becomes: develop_pixel() for every pixel. The same bytes for any number
-/// of threads.
+/// Develops a frame into a picture: develop_pixel() for every pixel. The bytes do not depend on the
+/// number of threads.
 Image develop(const Frame& frame, const Developer& developer, const Executor& executor);
 
 }  // namespace adasplats

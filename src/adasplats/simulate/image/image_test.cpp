@@ -108,7 +108,7 @@ TEST(RenderImage, ClassesHaveTheirColours) {
   EXPECT_EQ(unknown[0], unknown[2]);
 }
 
-TEST(RenderImage, WhatHasNoClassShowsItsGroupNotBlack) {
+TEST(RenderImage, UnclassifiedSurfacesShowTheirGroup) {
   const LabelScheme labels(
       "mine", {{0, "unlabeled", SemanticGroup::non_surface, Mobility::fixed, {0, 0, 0}}});
   Shot shot;
@@ -123,7 +123,7 @@ TEST(RenderImage, WhatHasNoClassShowsItsGroupNotBlack) {
   EXPECT_GT(reddish[0], reddish[1] + 50);
 }
 
-TEST(RenderImage, GroupsStandInForClassesAndGreyForBoth) {
+TEST(RenderImage, GroupsReplaceMissingClassesAndGreyReplacesBoth) {
   Shot shot;
   shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}};
   shot.groups = {SemanticGroup::linear, SemanticGroup::non_surface};
@@ -136,7 +136,7 @@ TEST(RenderImage, GroupsStandInForClassesAndGreyForBoth) {
   EXPECT_EQ(grey[0], grey[2]);
 }
 
-TEST(RenderImage, BothSidesAreLitAlike) {
+TEST(RenderImage, BothSidesAreLitEqually) {
   Shot shot;
   shot.options.color = ImageColor::shading;
   shot.disks = {{{0, 0, 1}, 8, {0, 0.6F, 0.8F}}};
@@ -157,7 +157,7 @@ TEST(RenderImage, GroundAndFacadeSeenAtTheSameAngleDiffer) {
   EXPECT_GT(ground, facade + 10);
 }
 
-TEST(RenderImage, NormalsAreTurnedToTheCamera) {
+TEST(RenderImage, NormalsFaceTheCamera) {
   Shot shot;
   shot.options.color = ImageColor::normal;
   shot.disks = {{{0, 0, 1}, 8, {0, 0, -1}}};
@@ -172,7 +172,7 @@ TEST(RenderImage, TrianglesHaveNormalsToo) {
   EXPECT_EQ(pixel(shot.render(), 50, 50), (Rgb{128, 128, 255}));
 }
 
-TEST(RenderImage, IntensitiesRunFromDarkToBright) {
+TEST(RenderImage, IntensitiesMapFromDarkToBright) {
   Shot shot;
   shot.options.color = ImageColor::intensity;
   shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}, {{0, 7, 1}, 2, {0, 0, 1}}};
@@ -185,7 +185,7 @@ TEST(RenderImage, IntensitiesRunFromDarkToBright) {
   EXPECT_EQ(pixel(shot.render(), 25, 50)[0], pixel(shot.render(), 25, 50)[1]);
 }
 
-TEST(RenderImage, RangesRunFromBrightToDark) {
+TEST(RenderImage, RangesMapFromBrightToDark) {
   Shot shot;
   shot.options.color = ImageColor::range;
   shot.camera = birds_eye({-10, -10, 0}, {10, 10, 99}, 100, 100);
@@ -232,7 +232,7 @@ std::vector<Disk> random_disks() {
 }
 
 // Oracle: the ray through each pixel's centre, one by one. Sizes that no block or tile divides.
-TEST(RenderImage, EveryPixelIsItsOwnRay) {
+TEST(RenderImage, EveryPixelHasItsOwnRay) {
   Shot shot;
   shot.disks = random_disks();
   shot.options.color = ImageColor::normal;
@@ -257,7 +257,7 @@ TEST(RenderImage, EveryPixelIsItsOwnRay) {
 }
 
 // Oracle: one thread.
-TEST(RenderImage, ThreadsDoNotChangeAByte) {
+TEST(RenderImage, BytesDoNotDependOnThreads) {
   Shot shot;
   shot.disks = random_disks();
   shot.options.samples_per_axis = 3;
@@ -298,7 +298,7 @@ TEST(RenderImage, APixelIsTheMeanOfItsSamples) {
   }
 }
 
-TEST(RenderImage, HeightsRunFromDarkToBright) {
+TEST(RenderImage, HeightsMapFromDarkToBright) {
   Shot shot;
   shot.options.color = ImageColor::height;
   shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 4}, 3, {0, 0, 1}}};
@@ -336,7 +336,7 @@ TEST(Relief, APlaneHasNoShadow) {
   }
 }
 
-TEST(Relief, CornersAreDarkerThanWhatIsOpen) {
+TEST(Relief, CornersAreDarkerThanOpenSurfaces) {
   for (const bool parallel : {false, true}) {
     Shot shot = room(true);
     if (parallel) shot.camera.orthographic_width_m = 12;
@@ -370,7 +370,7 @@ Shot board_with_a_gap() {
   return shot;
 }
 
-TEST(Relief, AGapInASurfaceIsDarkAndWhatIsOutsideIsNot) {
+TEST(Relief, OnlyGapsWithinASurfaceAreDark) {
   const Image image = board_with_a_gap().render();
   EXPECT_LT(pixel(image, 200, 200)[0], 60);
   EXPECT_EQ(pixel(image, 5, 200), kWhite);
@@ -378,7 +378,7 @@ TEST(Relief, AGapInASurfaceIsDarkAndWhatIsOutsideIsNot) {
 }
 
 // Two splats of one plane with different colours: from one to the other the red never falls.
-TEST(Relief, SplatsOfOneSurfaceRunIntoEachOther) {
+TEST(Relief, SplatsOfOneSurfaceBlend) {
   Shot shot;
   shot.options.color = ImageColor::intensity;
   shot.options.range = ValueRange{0, 1};
@@ -405,7 +405,7 @@ TEST(Relief, SplatsOfOneSurfaceRunIntoEachOther) {
 }
 
 // Oracle: one thread.
-TEST(Relief, ThreadsDoNotChangeAByte) {
+TEST(Relief, BytesDoNotDependOnThreads) {
   Shot shot;
   shot.disks = random_disks();
   shot.options = {};
@@ -415,7 +415,7 @@ TEST(Relief, ThreadsDoNotChangeAByte) {
   EXPECT_EQ(shot.render(3).pixels, expected.pixels);
 }
 
-TEST(RenderImage, NonsenseIsAUsageError) {
+TEST(RenderImage, InvalidOptionsAreUsageErrors) {
   const auto expect_usage = [](const Shot& shot) {
     try {
       shot.render();
@@ -439,7 +439,7 @@ TEST(RenderImage, NonsenseIsAUsageError) {
   expect_usage(shot);
 }
 
-TEST(RenderImage, AttributesOfAnotherSizeAreABug) {
+TEST(RenderImage, AttributesOfAnotherSizeAreLogicErrors) {
   Shot shot;
   shot.disks = random_disks();
   shot.classes = {1, 2};
@@ -455,7 +455,7 @@ TEST(Viridis, HasItsEndsAndClampsTheRest) {
   EXPECT_EQ(viridis(0.5F), color_of({33, 144, 141}));
 }
 
-TEST(QuantileRange, IgnoresWhatIsNotFinite) {
+TEST(QuantileRange, IgnoresNonFiniteValues) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> values = {3, kNaN, 1, 2, HUGE_VALF, 5, 4};
   const ValueRange all = quantile_range(values, 0, 1);

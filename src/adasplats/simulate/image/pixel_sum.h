@@ -10,8 +10,8 @@
 
 namespace adasplats {
 
-/// The samples of one pixel, added row by row as every backend does it: the order of floats decides
-/// the last bit of their sum.
+/// Sum of the samples of one pixel, row by row on every backend, because the order determines the
+/// last bit of a sum of floats.
 struct PixelSum {
   FramePixel pixel;
   std::uint16_t hits = 0;

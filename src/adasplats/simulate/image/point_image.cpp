@@ -21,7 +21,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 1 << 14;
-constexpr double kNearest_m = 0.05;  // nearer to a pinhole, a point would fill the picture
+constexpr double kNearest_m = 0.05;  // closer to a pinhole, a point would fill the picture
 
 /// What a pixel shows: the depth's bits above the point's index, so the smallest is the nearest
 /// point, and of equally near ones the first. Bits of positive floats sort as they do.
@@ -83,7 +83,7 @@ class Canvas {
         std::clamp(static_cast<int>(std::lround(wanted_px)), options_.min_px, options_.max_px);
     const double left = point.u - 0.5 * size;
     const double top = point.v - 0.5 * size;
-    // Compared as doubles: a point far outside has no place as an integer.
+    // Compared as doubles: the position of a point far outside does not fit an integer.
     if (!(left > -size - 1 && top > -size - 1 && left < width_ && top < height_)) return;
     const int first_x = static_cast<int>(std::lround(left));
     const int first_y = static_cast<int>(std::lround(top));
@@ -137,7 +137,7 @@ Image draw_points(std::span<const Vec3f> positions, Vec3d origin, std::span<cons
                   const Executor& executor) {
   check(camera);
   if (colors.size() != positions.size())
-    throw std::logic_error("a picture of points needs one colour a point");
+    throw std::logic_error("a picture of points needs one colour per point");
   if (positions.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::logic_error("a picture of 2^32 points or more");
   const Projection project(camera, origin);

@@ -74,7 +74,7 @@ TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
   }
 }
 
-TEST(DrawPoints, TheNearestWinsAndThenTheFirst) {
+TEST(DrawPoints, TheNearestThenTheFirstPointWins) {
   const Camera camera = camera_of(20, 20);
   const Ray ray = camera.ray(10.5, 10.5, kOrigin);
   const Vec3f near = ray.origin + 5.0F * ray.direction;
@@ -104,7 +104,7 @@ TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
   EXPECT_EQ(pixels_at(4), 9U);
 }
 
-TEST(DrawPoints, WhatIsBehindOrNotFiniteOrFarOutsideIsNotDrawn) {
+TEST(DrawPoints, PointsBehindNonFiniteOrFarOutsideAreNotDrawn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
@@ -134,7 +134,7 @@ TEST(DrawPoints, SameBytesForAnyThreads) {
 }
 
 // Analytic: far pixels beside near ones are darker, near ones and flat parts are not.
-TEST(DrawPoints, ReliefDarkensWhatLiesBehind) {
+TEST(DrawPoints, ReliefDarkensPointsBehind) {
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 60;
   PointImageOptions options = on_white();

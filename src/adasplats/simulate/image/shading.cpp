@@ -15,7 +15,8 @@ constexpr Vec3f kNoColor = {-1, -1, -1};
 
 void check_size(std::size_t values, std::size_t primitives, const char* name) {
   if (values != 0 && values != primitives)
-    throw std::logic_error(std::string("an image's ") + name + " are not one a primitive");
+    throw std::logic_error(std::string("an image's ") + name +
+                           " must have one value per primitive");
 }
 
 template <class T>

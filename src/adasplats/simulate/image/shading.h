@@ -9,11 +9,11 @@
 
 namespace adasplats {
 
-/// What shade() reads, for a scene and options, in host memory.
+/// Input of shade() for a scene and options, in host memory.
 class Shading {
  public:
   /// Views of the scene, which must outlive it.
-  /// Throws std::logic_error where an attribute has another size than the scene.
+  /// Throws std::logic_error if an attribute does not have the size of the scene.
   Shading(const ImageScene& scene, const ImageOptions& options);
 
   const ShadingTables& tables() const { return tables_; }

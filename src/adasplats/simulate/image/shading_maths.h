@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// What colouring a hit reads, in the memory of the device that does it. Pointers may be null where
+/// Input of the shading of a hit, in the memory of the device that shades it. Pointers are null if
 /// the scene has no such values.
 struct ShadingTables {
   const Disk* disks = nullptr;
@@ -46,9 +46,9 @@ ADASPLATS_HD inline Vec3f color_of(SemanticGroup group) {
   return {0.72F, 0.72F, 0.72F};
 }
 
-/// Share of the light that a surface sends back. A lamp at the camera shows the shape; the sky from
-/// above and a low sun distinguish ground, facades and the two sides of a street. Normals of clouds
-/// have no reliable sign, so every term takes both sides.
+/// Share of the light that a surface reflects. A lamp at the camera shows the shape; light from the
+/// sky and a low sun distinguish ground, facades and the two sides of a street. Normals of clouds
+/// have no reliable sign, so every term uses both sides.
 ADASPLATS_HD inline float light(Vec3f normal, Vec3f view) {
   constexpr Vec3f kSun = {0.36F, 0.80F, 0.48F};
   constexpr float kAmbient = 0.22F, kHeadlight = 0.38F, kSkylight = 0.26F, kSunlight = 0.14F;
@@ -69,7 +69,7 @@ ADASPLATS_HD inline Vec3f normal_towards(const ShadingTables& tables, const Ray&
     const Vec3f a = tables.vertices[corner[0]];
     normal = cross(tables.vertices[corner[1]] - a, tables.vertices[corner[2]] - a);
     const float doubled_area = length(normal);
-    // A sliver may have no area left in float and be hit all the same.
+    // A sliver may have zero area in float and still be hit.
     normal = doubled_area > 0.0F ? normal / doubled_area : -ray.direction;
   }
   return dot(normal, ray.direction) > 0.0F ? -normal : normal;
@@ -119,7 +119,7 @@ ADASPLATS_HD inline float log10_anywhere(float x) {
 
 }  // namespace shading
 
-/// THE colour of a surface that a ray hit, for every backend: 0..1, or above.
+/// The colour of a surface hit by a ray, the same on every backend: 0..1, or above.
 ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, const Hit& hit) {
   const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
   switch (tables.color) {

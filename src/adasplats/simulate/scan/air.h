@@ -11,19 +11,19 @@
 
 namespace adasplats {
 
-// What the air does to one beam, for CPU and GPU. weather.h makes AirRules of a Weather; formulas,
-// constants and their sources: docs/noise.md.
+// The effect of the air on one beam, for CPU and GPU. weather.h makes AirRules from a Weather;
+// formulas, constants and their sources: docs/noise.md.
 
-/// A surface that a sensor just reports at its greatest range (Velodyne HDL-64E manual: 120 m for
-/// 0.80, 50 m for 0.10, where the square of the range gives 0.14).
+/// Minimum reflectance for a report at the sensor's maximum range (Velodyne HDL-64E manual: 120 m
+/// for 0.80, 50 m for 0.10; the square of the range gives 0.14).
 inline constexpr double kNeededReflectance = 0.8;
-/// What no sensor reports, however near: half a step of the reflectivity of Velodynes.
+/// Minimum reflectance for a report at any range: half a step of the reflectivity of Velodynes.
 inline constexpr double kNeededNear = 0.005;
 inline constexpr double kMinReflectance = 0.01;   // a step of the reflectivity of Velodynes
-inline constexpr double kUsualReflectance = 0.3;  // where the intensity is not known
-/// Width of a beam as it leaves: Velodyne VLP-16, geometric mean of 9.5 x 12.7 mm.
+inline constexpr double kUsualReflectance = 0.3;  // if the intensity is unknown
+/// Width of a beam at the sensor: Velodyne VLP-16, geometric mean of 9.5 x 12.7 mm.
 inline constexpr double kBeamExit_m = 0.011;
-/// Half the length of a pulse of 5 ns: what of the fog answers at a time.
+/// Half the length of a pulse of 5 ns: depth of the fog that contributes at a time.
 inline constexpr double kHalfPulse_m = 0.75;
 inline constexpr double kClutterStep_m = 0.05;
 
@@ -34,7 +34,7 @@ struct Particles {
   double reflectance = 0;  ///< of the disk that one is to the beam
 };
 
-/// Weather as one beam meets it.
+/// Weather for one beam.
 struct AirRules {
   double extinction_per_m = 0;  ///< 0: clear
   double white_intensity = 1;   ///< of a reflectance of 1
@@ -42,21 +42,21 @@ struct AirRules {
   Particles kinds[2];          ///< drops, flakes
   double fog_backscatter = 0;  ///< 1 / (m sr)
   double divergence_rad[2] = {0, 0};
-  double begin_m = 0;  ///< nothing in the air is seen nearer
-  /// expected[i]: answers of the air to expect up to begin_m + i * kClutterStep_m.
+  double begin_m = 0;  ///< minimum range of returns from the air
+  /// expected[i]: expected number of returns from the air up to begin_m + i * kClutterStep_m.
   const double* expected = nullptr;
   std::uint32_t expected_count = 0;
 
   ADASPLATS_HD bool is_clear() const { return extinction_per_m == 0; }
 };
 
-/// Something in the air that the sensor could report.
+/// A return from the air that the sensor could report.
 struct Speck {
   double range_m = 0;
-  double power = 0;  ///< that comes back, in units of what the sensor needs: 1 or more
+  double power = 0;  ///< received power relative to the power that the sensor needs: at least 1
 };
 
-/// What a sensor needs to report a surface in clear air.
+/// The reflectance that a sensor needs to report a surface in clear air.
 ADASPLATS_HD inline double needed_reflectance(double range_m, double max_range_m) {
   const double share = range_m / max_range_m;
   const double needed = kNeededReflectance * share * share;
@@ -68,7 +68,8 @@ ADASPLATS_HD inline double usable_reflectance(double reflectance) {
   return reflectance > kMinReflectance ? reflectance : kMinReflectance;
 }
 
-/// How likely a return is reported whose `power` in clear air is in units of what the sensor needs.
+/// Probability that a return is reported; `power`: its power in clear air relative to the required
+/// one.
 ADASPLATS_HD inline double reported_share(double extinction_per_m, double range_m, double power) {
   return exp_of(-expm1_of(2.0 * extinction_per_m * range_m) / power);
 }
@@ -89,8 +90,8 @@ ADASPLATS_HD inline double fog_power(const AirRules& air, double range_m) {
   return attenuated_power(air, kPi * air.fog_backscatter * kHalfPulse_m, range_m);
 }
 
-/// What a particle must measure to be reported: one that fills the share s of the beam's width
-/// sends back s^2 of a wall's power. Infinite where filling the beam is not enough.
+/// Minimum size of a reported particle: one that fills the share s of the beam's width returns s^2
+/// of the power of a wall. Infinite if filling the beam is not enough.
 ADASPLATS_HD inline double min_diameter_mm(const AirRules& air, const Particles& kind,
                                            double range_m) {
   const double share = 1.0 / std::sqrt(attenuated_power(air, kind.reflectance, range_m));
@@ -98,7 +99,7 @@ ADASPLATS_HD inline double min_diameter_mm(const AirRules& air, const Particles&
                       : std::numeric_limits<double>::infinity();
 }
 
-/// How many answers of a metre to expect, of drops, flakes and fog.
+/// Expected number of returns per metre from drops, flakes and fog.
 struct ClutterRates {
   double of[3] = {0, 0, 0};
   ADASPLATS_HD double sum() const { return of[0] + of[1] + of[2]; }
@@ -118,7 +119,7 @@ ADASPLATS_HD inline ClutterRates clutter_rates(const AirRules& air, double range
   return rates;
 }
 
-/// How many answers to expect nearer than a range.
+/// Expected number of returns closer than a range.
 ADASPLATS_HD inline double expected_within(const AirRules& air, double range_m) {
   if (air.expected_count == 0) return 0.0;
   const double last = static_cast<double>(air.expected_count - 1);
@@ -130,8 +131,8 @@ ADASPLATS_HD inline double expected_within(const AirRules& air, double range_m) 
   return air.expected[step] + late * (air.expected[step + 1] - air.expected[step]);
 }
 
-/// Power of what answers at a range. Sizes of particles and powers of fog are exponential, so what
-/// they have beyond the least that is reported is exponential too.
+/// Draws the power of a return from the air at a range. Particle sizes and fog powers are
+/// exponentially distributed, so their excess over the minimum for a report is, too.
 ADASPLATS_HD inline double speck_power(const AirRules& air, double range_m, Random& random) {
   const ClutterRates rates = clutter_rates(air, range_m);
   const double place = random.uniform() * rates.sum();
@@ -144,7 +145,7 @@ ADASPLATS_HD inline double speck_power(const AirRules& air, double range_m, Rand
   return attenuated_power(air, kind.reflectance, range_m) * share * share;
 }
 
-/// The nearest answer of the air to one ray; false: there is none nearer than `end_m`.
+/// Draws the nearest return from the air of one ray; false: none is closer than `end_m`.
 ADASPLATS_HD inline bool nearest_speck(const AirRules& air, double end_m, Random& random,
                                        Speck& speck) {
   const double target = -log_of(1.0 - random.uniform());

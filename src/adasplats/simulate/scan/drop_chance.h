@@ -20,11 +20,11 @@ struct DropFeatures {
   double of[kDropFeatures];
 };
 
-/// What the features are made of: bounded, so that logarithms are finite.
+/// Inputs of the features, bounded so that logarithms are finite.
 struct DropConditions {
   double range = 0;        ///< in units of 10 m
   double slant = 0;        ///< 1 - cos of the incidence
-  double reflectance = 0;  ///< the usual one where it is not finite
+  double reflectance = 0;  ///< the usual one if not finite
 };
 
 ADASPLATS_HD inline DropConditions drop_conditions(float range_m, float cos_incidence,
@@ -59,7 +59,7 @@ ADASPLATS_HD inline double drop_logit(const DropRules& rules, const DropFeatures
   return sum;
 }
 
-/// How likely an echo is lost, 0..1.
+/// Probability that an echo is lost, 0..1.
 ADASPLATS_HD inline double drop_chance(const DropRules& rules, float range_m, float cos_incidence,
                                        float reflectance) {
   const DropConditions echo =
@@ -67,8 +67,8 @@ ADASPLATS_HD inline double drop_chance(const DropRules& rules, float range_m, fl
   return 1 / (1 + exp_of(-drop_logit(rules, drop_features(echo))));
 }
 
-/// Whether `drawn` is below drop_chance(): where a bound of it says so, as for most beams, without
-/// logarithms and exponentials.
+/// Whether `drawn` is below drop_chance(). A bound decides most beams without logarithms and
+/// exponentials.
 ADASPLATS_HD inline bool is_lost(const DropRules& rules, float range_m, float cos_incidence,
                                  float reflectance, double drawn) {
   const DropConditions echo =

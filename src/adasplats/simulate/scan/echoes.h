@@ -10,10 +10,11 @@
 
 namespace adasplats {
 
-// What the hits of one firing are to the receiver, for CPU and GPU: THE body of returns_of().
-// Functions take `class_of(primitive)`, and arrays that are as large as a firing has rays.
+// From the hits of one firing to the pulses at the receiver, for CPU and GPU: the only
+// implementation of returns_of(). Functions take `class_of(primitive)`; arrays have an entry per
+// ray of a firing.
 
-/// What came back along one sub-ray.
+/// The echo along one sub-ray.
 struct Echo {
   float range_m;
   float weight;
@@ -21,7 +22,7 @@ struct Echo {
   std::uint16_t class_id;
 };
 
-/// A pulse that the receiver sees as one: echoes of one class, one after the other.
+/// A pulse at the receiver: consecutive echoes of one class.
 struct Pulse {
   float first_m;  ///< its rising edge
   float last_m;   ///< of its last echo so far
@@ -33,7 +34,7 @@ ADASPLATS_HD inline bool lie_apart(float near_m, float far_m, double max_m) {
   return static_cast<double>(far_m) - static_cast<double>(near_m) > max_m;
 }
 
-/// How many of the `depth` hits of one ray are averaged: D' of kernel_mean().
+/// Number of the `depth` hits of one ray that are averaged: D' of kernel_mean().
 template <class ClassOf>
 ADASPLATS_HD inline int overlapping_hits(const Hit* hits, int depth, double depth_gap_m,
                                          const ClassOf& class_of) {
@@ -48,13 +49,13 @@ ADASPLATS_HD inline int overlapping_hits(const Hit* hits, int depth, double dept
 }
 
 /// The weighted mean of the paper (section "SimKITTI32"): P = sum(beta_i P_i) / sum(beta_i), beta_i
-/// = exp(-|d_i - D/2| / (D/2)). Read so: d_i counts the hits of the ray from 1, and D is the number
-/// of hits that are averaged ("we reset D to the maximum number of intersections"), not the depth
-/// that was asked for. Averaged are the first hit and those after it for as long as they are of its
-/// class and within the gap of the one before. All are on one ray, so the mean of the points is
-/// that of the ranges. `primitive` is that of the greatest weight, of two the nearer.
+/// = exp(-|d_i - D/2| / (D/2)). Our interpretation: d_i counts the hits of the ray from 1, and D is
+/// the number of averaged hits ("we reset D to the maximum number of intersections"), not the
+/// requested depth. The mean includes the first hit and the following ones while they have its
+/// class and are within the gap of the previous one. All are on one ray, so the mean of the points
+/// is that of the ranges. `primitive` is that of the greatest weight; of two, the nearer.
 ADASPLATS_HD inline Hit kernel_mean(const Hit* hits, int count) {
-  if (count == 1) return hits[0];  // beta_1 / beta_1: the hit itself to the last bit
+  if (count == 1) return hits[0];  // beta_1 / beta_1: exactly the hit
   const double half = static_cast<double>(count) / 2.0;
   double sum = 0;
   double weight_sum = 0;
@@ -74,7 +75,7 @@ ADASPLATS_HD inline Hit kernel_mean(const Hit* hits, int count) {
   return mean;
 }
 
-/// The echoes of a firing by range, those at the same range by ray; gives how many.
+/// Fills the echoes of a firing, sorted by range and then by ray; returns their number.
 template <class ClassOf>
 ADASPLATS_HD inline int echoes_of(const Hit* hits, const float* weights, const BeamOptions& options,
                                   const ClassOf& class_of, Echo* echoes) {
@@ -93,7 +94,7 @@ ADASPLATS_HD inline int echoes_of(const Hit* hits, const float* weights, const B
   return count;
 }
 
-/// The echoes that make the rising edge of one pulse.
+/// The echoes of the rising edge of one pulse.
 struct PulseEdge {
   const Echo* echoes;
   const std::uint8_t* pulse_of;
@@ -105,7 +106,7 @@ struct PulseEdge {
   ADASPLATS_HD bool holds(int i) const {
     return pulse_of[i] == number && !lie_apart(first_m, echoes[i].range_m, depth_gap_m);
   }
-  /// The primitive with the most energy, of two the nearer.
+  /// The primitive with the highest energy; of two, the nearer.
   ADASPLATS_HD std::uint32_t strongest_primitive() const {
     std::uint32_t strongest = Hit::kNone;
     float greatest = -1;
@@ -123,8 +124,8 @@ struct PulseEdge {
   }
 };
 
-/// A receiver triggers on the rising edge: what comes later than the gap after the first echo of a
-/// pulse adds to its energy, not to its range.
+/// A receiver triggers on the rising edge: echoes later than the gap after the first echo of a
+/// pulse add to its energy, not to its range.
 ADASPLATS_HD inline Return return_of_pulse(const Pulse& pulse, const PulseEdge& edge) {
   double sum = 0;
   double weight_sum = 0;
@@ -134,20 +135,20 @@ ADASPLATS_HD inline Return return_of_pulse(const Pulse& pulse, const PulseEdge& 
     sum += weight * static_cast<double>(edge.echoes[i].range_m);
     weight_sum += weight;
   }
-  // Weights may be zero where the beam has no energy: the edge itself is then all that is known.
+  // If all weights are zero, the range is that of the edge.
   const float range_m = weight_sum > 0 ? static_cast<float>(sum / weight_sum) : pulse.first_m;
   return {range_m, edge.strongest_primitive(), pulse.energy};
 }
 
-/// Puts `value` among `count` ascending returns, behind those of the same range.
+/// Inserts `value` into `count` ascending returns, after those of the same range.
 ADASPLATS_HD inline void insert_by_range(Return* returns, int count, Return value) {
   for (; count > 0 && returns[count - 1].range_m > value.range_m; --count)
     returns[count] = returns[count - 1];
   returns[count] = value;
 }
 
-/// The pulses of the echoes as returns, by range. An echo belongs to the pulse of its class that
-/// the one before it did: where two classes share a range, each keeps one pulse.
+/// The pulses of the echoes as returns, by range. An echo belongs to the pulse of the previous echo
+/// of its class: if two classes share a range, each keeps one pulse.
 template <int kMost>
 ADASPLATS_HD inline int pulses_of(const Echo* echoes, int echo_count, const BeamOptions& options,
                                   Return* returns) {
@@ -165,7 +166,7 @@ ADASPLATS_HD inline int pulses_of(const Echo* echoes, int echo_count, const Beam
     pulses[pulse].energy += echo.weight;
     pulse_of[i] = static_cast<std::uint8_t>(pulse);
   }
-  // Pulses began by range, but the means of two that overlap may be the other way round.
+  // Pulses are sorted by their first echo, but the means of overlapping ones may be out of order.
   for (int i = 0; i < count; ++i) {
     const PulseEdge edge{echoes, pulse_of, echo_count, i, pulses[i].first_m, options.depth_gap_m};
     insert_by_range(returns, i, return_of_pulse(pulses[i], edge));
@@ -173,8 +174,8 @@ ADASPLATS_HD inline int pulses_of(const Echo* echoes, int echo_count, const Beam
   return count;
 }
 
-/// The place among `left` (ascending) of what is reported after `reported` ones, the first of
-/// which stands at `first`.
+/// Index in `left` (ascending) of the next return to report after `reported` ones, the first of
+/// which was at `first`.
 ADASPLATS_HD inline int next_reported(const Return* first, int reported, const Return* left,
                                       int left_count, ReturnMode mode) {
   if (mode == ReturnMode::first) return 0;
@@ -197,7 +198,7 @@ ADASPLATS_HD inline int select_returns(Return* pulses, int count, const BeamOpti
     for (int i = next; i > 0; --i) left[i] = left[i - 1];
     left[0] = chosen;
     ++reported;
-    // What the receiver cannot separate from the chosen one is no return of its own.
+    // A pulse that the receiver cannot separate from the chosen one is not a separate return.
     int kept = reported;
     for (int i = reported; i < end; ++i) {
       const float other_m = pulses[i].range_m;
@@ -211,13 +212,13 @@ ADASPLATS_HD inline int select_returns(Return* pulses, int count, const BeamOpti
   return reported;
 }
 
-/// returns_of() with at most kMost rays a firing; `out` has room for kMost returns, of which those
-/// that it gives count.
+/// returns_of() with at most kMost rays per firing; `out` holds up to kMost returns. Returns their
+/// number.
 template <int kMost, class ClassOf>
 ADASPLATS_HD inline int firing_returns(const Hit* hits, const float* weights,
                                        const BeamOptions& options, const ClassOf& class_of,
                                        Return* out) {
-  if (kMost == 1 || options.sub_rays == 1) {  // what nearly all scans are
+  if (kMost == 1 || options.sub_rays == 1) {  // the case of nearly all scans
     if (!hits[0].valid()) return 0;
     const Hit mean =
         kernel_mean(hits, overlapping_hits(hits, options.depth, options.depth_gap_m, class_of));

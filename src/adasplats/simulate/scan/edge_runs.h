@@ -13,20 +13,20 @@
 
 namespace adasplats {
 
-/// Where neighbouring beams of a ring meet surfaces farther apart than this, there is an edge.
+/// Minimum range difference of neighbouring beams of a ring at an edge.
 inline constexpr float kRangeEdge_m = 0.5F;
 
-/// Beams that are lost at range edges, for CPU and GPU: a footprint that is cut in two gives two
-/// weak echoes. shares[k]: of the edges, those at which k + 1 beams one after the other are lost.
+/// Beams lost at range edges, for CPU and GPU: a footprint split by an edge gives two weak echoes.
+/// shares[k]: share of the edges at which k + 1 consecutive beams are lost.
 struct EdgeRunRules {
   bool on = false;
   double shares[kMaxEdgeRun] = {};
 };
 
-/// What edges look at: the hits of a scan's firings, of which [first, end) are there.
+/// Input of the edge detection: the hits of firings [first, end) of a scan.
 struct ScanHits {
   const Hit* hits = nullptr;  ///< of firing `first`
-  std::size_t a_firing = 1;   ///< how many each has; the first one counts
+  std::size_t a_firing = 1;   ///< hits per firing, of which the first is used
   std::uint32_t first = 0, end = 0;
 
   ADASPLATS_HD const Hit& of(std::uint32_t firing) const {
@@ -34,7 +34,7 @@ struct ScanHits {
   }
 };
 
-/// Whether firings i and i + 1 are neighbours of one ring and meet surfaces far apart.
+/// Whether firings i and i + 1 are neighbours of one ring with an edge between them.
 ADASPLATS_HD inline bool is_edge(const Firing* firings, const ScanHits& hits, std::uint32_t i) {
   const Hit& a = hits.of(i);
   const Hit& b = hits.of(i + 1);
@@ -42,8 +42,8 @@ ADASPLATS_HD inline bool is_edge(const Firing* firings, const ScanHits& hits, st
   return firings[i].ring == firings[i + 1].ring && firings[i].column + 1 == firings[i + 1].column;
 }
 
-/// Whether ranges jump anywhere between firings first and last, whoever they are of: most beams are
-/// far from all edges, which this tells without a branch a firing.
+/// Whether ranges jump anywhere between firings first and last, regardless of rings: a quick test
+/// without a branch per firing, since most beams are far from all edges.
 ADASPLATS_HD inline bool ranges_jump(const ScanHits& hits, std::uint32_t first,
                                      std::uint32_t last) {
   int jumps = 0;
@@ -52,8 +52,8 @@ ADASPLATS_HD inline bool ranges_jump(const ScanHits& hits, std::uint32_t first,
   return jumps != 0;
 }
 
-/// Whether a firing is one of those that are lost at an edge beside it. Edges one above the other
-/// in four rings lose the same beams.
+/// Whether a firing is lost at an edge next to it. Edges in the same column of four rings lose the
+/// same beams.
 ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* firings,
                                       const ScanHits& hits, std::uint64_t seed,
                                       std::uint64_t scan_index, std::uint32_t firing) {
@@ -70,7 +70,7 @@ ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* f
     for (std::uint32_t k = 0; k < kMaxEdgeRun; ++k) {
       drawn -= rules.shares[k];
       if (drawn >= 0) continue;
-      // k + 1 beams, of which `before` are on this side of the edge.
+      // k + 1 beams are lost, `before` of them on this side of the edge.
       const auto before = static_cast<std::uint32_t>(random.uniform() * (k + 2));
       if (firing <= i ? i - firing < before : firing - i <= k + 1 - before) return true;
       break;

@@ -18,19 +18,20 @@
 
 namespace adasplats {
 
-// THE body of a scan: what a sensor reports of one firing, from the hits of its rays to points, on
-// CPU and GPU with the same bytes. ScanRules (scan_rules.h) makes the rules.
+// The core of the scan simulation: the report of one firing, from the hits of its rays to points,
+// with the same bytes on CPU and GPU. ScanRules (scan_rules.h) makes the rules.
 
-/// What one primitive carries.
+/// Attributes of one primitive.
 struct PrimitiveValues {
-  Vec3f normal;           ///< {0, 0, 0}: not known, beams meet it head on
-  float reflectance = 0;  ///< or intensity, where there is no response; NaN: none
+  Vec3f normal;           ///< {0, 0, 0}: unknown; incidence is assumed perpendicular
+  float reflectance = 0;  ///< or intensity if there is no response; NaN: none
   std::uint16_t class_id = 0;
   std::uint16_t instance = 0;
 };
 static_assert(sizeof(PrimitiveValues) == 20);
 
-/// How a sensor reports in a place: plain values and pointers, of the host or of a device.
+/// Rules for the reports of a sensor in a scene: plain values and pointers, of the host or a
+/// device.
 struct FiringRules {
   // the sensor
   const Firing* firings = nullptr;
@@ -40,13 +41,13 @@ struct FiringRules {
   double range_noise_m = 0;                 ///< 0: without noise
   double angular_noise_rad = 0;             ///< likewise
   double range_resolution_m = 0;            ///< likewise
-  const double* range_offsets_m = nullptr;  ///< of rings; null: not applied
+  const double* range_offsets_m = nullptr;  ///< per ring; null: not applied
   std::uint32_t range_offset_count = 0;
-  const double* ring_noise_m = nullptr;  ///< of rings, instead of range_noise_m; null: not known
+  const double* ring_noise_m = nullptr;  ///< per ring, instead of range_noise_m; null: unknown
   std::uint32_t ring_noise_count = 0;
   IntensityRules intensity;
   UnitFieldRules fields;
-  bool field_noise = false;  ///< noise of ranges is that of the fields
+  bool field_noise = false;  ///< range noise comes from the fields
   // the beam
   BeamOptions beam;
   const float* weights = nullptr;  ///< of sub-rays
@@ -56,7 +57,7 @@ struct FiringRules {
       nullptr;  ///< of firings, numbers in `body`, kNoBody; null: none
   const BodyCell* body = nullptr;
   AirRules air;
-  // the place
+  // the scene
   const PrimitiveValues* primitives = nullptr;
   std::uint32_t primitive_count = 0;
   bool has_intensities = false;
@@ -66,15 +67,14 @@ struct FiringRules {
   std::uint64_t seed = 0;
 };
 
-/// Where a firing meets no cell of the vehicle's body.
+/// For firings that hit no cell of the vehicle's body.
 inline constexpr std::uint16_t kNoBody = 0xffff;
 
-/// What is of one scan alone.
+/// Data of one scan.
 struct ScanState {
   const ScanPose* knots = nullptr;  ///< scene from sensor, as rays are cast
   std::uint32_t knot_count = 0;
-  /// Reference from sensor, as many; null: points stay in the sensor's frame when they are
-  /// measured.
+  /// Reference from sensor, one per knot; null: points stay in the sensor's frame at their time.
   const ScanPose* frame_knots = nullptr;
   std::uint64_t scan_index = 0;
 };
@@ -89,11 +89,11 @@ struct ReportedReturn {
 };
 static_assert(sizeof(ReportedReturn) == 16);
 
-/// What a ray's random numbers are for; each has a stream of its own.
+/// Purposes of random numbers; each has its own stream.
 enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2, intensity = 3, body = 4 };
 
-/// By (seed, scan, firing) and what for. Range noise of a firing's first return has the stream of
-/// the scan alone, as it always had.
+/// Keyed by (seed, scan, firing) and purpose. The range noise of a firing's first return uses the
+/// stream of the scan, for compatibility with earlier versions.
 ADASPLATS_HD inline Random scan_draw(std::uint64_t seed, Draw what, std::uint64_t scan_index,
                                      std::uint32_t firing, std::uint32_t return_index) {
   const std::uint64_t stream = scan_index ^ (static_cast<std::uint64_t>(what) << 56 |
@@ -101,7 +101,7 @@ ADASPLATS_HD inline Random scan_draw(std::uint64_t seed, Draw what, std::uint64_
   return {seed, stream, firing};
 }
 
-/// Not the numbers that the scan's own noise is drawn from.
+/// A different stream than that of the scan's own noise.
 ADASPLATS_HD inline std::uint64_t weather_seed(std::uint64_t seed) {
   return Random::mix(seed ^ 0x7765617468657221ULL);
 }
@@ -115,7 +115,7 @@ ADASPLATS_HD inline FiringRay firing_ray(const Firing& firing, double rotation_h
   return {firing.direction, share_of_revolution(firing, rotation_hz), firing.origin, 0};
 }
 
-/// Of the beam and the primitive, 0..1.
+/// Cosine of the incidence angle of the beam on the primitive, 0..1; 1 without a normal.
 ADASPLATS_HD inline float cos_incidence_of(const FiringRules& rules, const ScanState& scan,
                                            const Firing& firing, Vec3f normal) {
   if (normal == Vec3f{}) return 1.0F;
@@ -129,7 +129,7 @@ ADASPLATS_HD inline bool in_range(const FiringRules& rules, float range_m) {
   return range_m > rules.min_range_m && range_m <= rules.max_range_m;
 }
 
-/// A multiple of the sensor's resolution.
+/// Rounds to a multiple of the sensor's resolution.
 ADASPLATS_HD inline double quantised(const FiringRules& rules, double range_m) {
   const double step_m = rules.range_resolution_m;
   return step_m > 0 ? step_m * std::round(range_m / step_m) : range_m;
@@ -141,8 +141,8 @@ ADASPLATS_HD inline double range_noise_of(const FiringRules& rules, const Firing
                                               : rules.range_noise_m;
 }
 
-/// What the sensor reports of return `k` of a firing in clear air; false: nothing. The intensity is
-/// NaN where the place has none.
+/// The report of return `k` of a firing in clear air; false: none. The intensity is NaN if the
+/// scene has none.
 ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanState& scan,
                                         std::uint32_t firing, const Return& echo, std::uint32_t k,
                                         ReportedReturn& reported) {
@@ -176,7 +176,7 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   reported.primitive = echo.primitive;
   reported.class_id = values.class_id;
   reported.intensity = values.reflectance;
-  // Things without a reflectance, as inserted meshes, send back nothing that could be reported.
+  // Objects without a reflectance, such as inserted meshes, are reported with intensity 0.
   if (rules.has_intensities && !(values.reflectance == values.reflectance)) {
     reported.intensity = 0;
   } else if (rules.has_response) {
@@ -195,8 +195,8 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   return true;
 }
 
-/// Whether a firing ends on what carries the sensor, and what is reported of it then; nothing where
-/// that is out of range.
+/// Whether a firing ends on the vehicle that carries the sensor, and its report; none if out of
+/// range.
 ADASPLATS_HD inline bool meets_body(const FiringRules& rules, const ScanState& scan,
                                     std::uint32_t firing, ReportedReturn* out, int& count) {
   if (rules.body_cells == nullptr || rules.body_cells[firing] == kNoBody) return false;
@@ -215,10 +215,10 @@ ADASPLATS_HD inline bool meets_body(const FiringRules& rules, const ScanState& s
   return true;
 }
 
-/// What weather makes of the `count` returns of one firing, in place, by three steps: a particle in
-/// the air may answer nearer than the farthest of them; each gets lost or fainter; of all that is
-/// left the sensor reports some, where the particle is among them in an order of its own. Gives how
-/// many. `noise_m`: of ranges in clear air. kRoom: of `returns` and more than `count`.
+/// Applies weather to the `count` returns of one firing, in place, in three steps: a particle in
+/// the air may return closer than the farthest of them; each is lost or attenuated; the sensor
+/// reports some of the remaining ones, reordered if the particle is among them. Returns their
+/// number. `noise_m`: range noise in clear air. kRoom: size of `returns`, greater than `count`.
 template <int kRoom>
 ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns, int count,
                                double noise_m, Random random) {
@@ -249,7 +249,8 @@ ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns
     const double normal = random.normal();
     if (lost) continue;
     const double through = exp_of(-2.0 * air.extinction_per_m * range_m);
-    // Noise is as the inverse root of the power: sigma exp(alpha r), of which sigma is in already.
+    // Noise grows with the inverse root of the power: sigma exp(alpha r); sigma is already
+    // included.
     const double sigma_m = noise_m * std::sqrt(expm1_of(2.0 * air.extinction_per_m * range_m));
     if (sigma_m > 0) {
       one.range_m = static_cast<float>(quantised(rules, range_m + sigma_m * normal));
@@ -274,13 +275,13 @@ ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns
   return kept;
 }
 
-/// What most beams with sub-rays have at most: report_firing() needs less room for them.
+/// Maximum number of sub-rays of most beams: report_firing() needs less memory for them.
 inline constexpr int kFewSubRays = 8;
 
-/// All that a sensor reports of a firing from the hits of its rays, (&hits.of(firing))[ray * depth
-/// + k]: at most rules.beam.returns, in the order in which it reports them. `hits` has those of the
-/// firing and, where it asks for edges, of kMaxEdgeRun before and behind it. kMost: at least as
-/// many as there are sub-rays. `out` has room for kMost + 1.
+/// The report of a firing from the hits of its rays, (&hits.of(firing))[ray * depth + k]: at most
+/// rules.beam.returns returns, in the order of the sensor. `hits` contains the firing and, if edges
+/// are needed, kMaxEdgeRun firings before and after it. kMost: at least the number of sub-rays.
+/// `out` holds kMost + 1 returns.
 template <int kMost>
 ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState& scan,
                                       std::uint32_t firing, const ScanHits& hits,
@@ -308,7 +309,7 @@ ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState&
                            Random(weather_seed(rules.seed), scan.scan_index, firing));
 }
 
-/// The firing's direction with the error of the angles that the sensor reports.
+/// The firing's direction with the sensor's angular noise.
 ADASPLATS_HD inline Vec3f reported_direction(const FiringRules& rules, const ScanState& scan,
                                              std::uint32_t firing) {
   const Vec3f direction = rules.firings[firing].direction;
@@ -318,12 +319,12 @@ ADASPLATS_HD inline Vec3f reported_direction(const FiringRules& rules, const Sca
   const double left = rules.angular_noise_rad * random.normal();
   const double up = rules.angular_noise_rad * random.normal();
   const double flat = std::sqrt(d.x * d.x + d.y * d.y);
-  // Straight up there is no left: any direction will do.
+  // Left is undefined for a vertical direction: any direction will do.
   const Vec3d to_left = flat > 0 ? Vec3d{-d.y / flat, d.x / flat, 0} : Vec3d{0, 1, 0};
   return vec_cast<float>(normalized(d + left * to_left + up * cross(d, to_left)));
 }
 
-/// Where the sensor reports a return to be, m.
+/// The reported position of a return, m.
 ADASPLATS_HD inline Vec3f reported_position(const FiringRules& rules, const ScanState& scan,
                                             std::uint32_t firing, float range_m) {
   const Firing& fired = rules.firings[firing];

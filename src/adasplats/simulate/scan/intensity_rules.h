@@ -22,7 +22,7 @@ struct IntensityRules {
   const float* reported = nullptr;
 };
 
-/// The tables of a unit, which must outlive it.
+/// Views the tables of a calibrated sensor, which must outlive the rules.
 inline IntensityRules intensity_rules(const SensorIntensity& unit) {
   IntensityRules rules;
   rules.on = true;
@@ -40,7 +40,7 @@ inline IntensityRules intensity_rules(const SensorIntensity& unit) {
   return rules;
 }
 
-/// A multiple of the step, not above the highest.
+/// Rounds to a multiple of the step, at most the maximum.
 ADASPLATS_HD inline float converted(const IntensityRules& rules, float intensity) {
   if (!rules.on) return intensity;
   float value = intensity < rules.highest ? intensity : rules.highest;
@@ -48,7 +48,7 @@ ADASPLATS_HD inline float converted(const IntensityRules& rules, float intensity
   return value > 0 ? value : 0.0F;
 }
 
-/// Where a value stands among ascending nodes.
+/// Position of a value among ascending nodes.
 struct NodePlace {
   std::uint32_t below = 0;
   float share = 0;  ///< of the way to the next

@@ -32,7 +32,7 @@ struct Likelihood {
   Row gradient = {};
   std::array<Row, kN> hessian = {};
 
-  /// A weak pull to zero: where a feature does not vary (one reflectance), its weight is not free.
+  /// A weak prior at zero: fixes the weight of a feature that does not vary (one reflectance).
   void add_penalty(const Row& weights) {
     constexpr double kPenalty = 1e-3;
     for (std::size_t k = 0; k < kN; ++k) {
@@ -88,10 +88,10 @@ double usual_reflectance_of(std::span<const EchoConditions> echoes, double other
 }
 
 void check_sizes(std::size_t echoes, std::size_t others) {
-  if (echoes != others) throw std::logic_error("ray drop: not one value an echo");
+  if (echoes != others) throw std::logic_error("ray drop: expected one value per echo");
 }
 
-/// -log of the likelihood of what was found, and its derivatives.
+/// Negative log-likelihood of the observations, and its derivatives.
 Likelihood likelihood_of(std::span<const Row> rows, std::span<const std::uint8_t> dropped,
                          const Row& weights) {
   Likelihood sum;
@@ -118,13 +118,13 @@ bool is_known(Vec3f direction) { return !(direction == Vec3f{}); }
 
 constexpr int kSectors = 360;
 
-/// What one place says of one sector.
+/// Observations of one sector from one sensor position.
 struct SectorCount {
   std::uint32_t echoes = 0;
   std::uint32_t dropped = 0;
 };
 
-/// The sectors of one ring, place by place.
+/// The sectors of one ring, by sensor position.
 struct RingSectors {
   std::array<std::map<std::uint32_t, SectorCount>, kSectors> sectors;
   double elevations_deg = 0, echoes = 0;  // sum, count
@@ -194,7 +194,8 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
   std::vector<Row> rows;
   rows.reserve(echoes.size());
   for (const EchoConditions& echo : echoes) rows.push_back(row_of(echo, model.usual_reflectance));
-  // From the share alone, which is near enough for Newton's method; halved where it overshoots.
+  // Starts from the share of drops, close enough for Newton's method; steps that overshoot are
+  // halved.
   model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(reported));
   Likelihood at = likelihood_of(rows, dropped, model.weights);
   constexpr int kMaxSteps = 50, kMaxHalvings = 20;
@@ -220,7 +221,7 @@ std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> 
   check_sizes(echoes.size(), dropped.size());
   check_sizes(echoes.size(), places.size());
   if (!rings.empty()) check_sizes(echoes.size(), rings.size());
-  std::map<std::int64_t, RingSectors> by_ring;  // or by hundredths of a degree
+  std::map<std::int64_t, RingSectors> by_ring;  // by ring or by hundredths of a degree
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const Vec3f direction = echoes[i].direction;
     if (!is_known(direction) || !is_finite(direction)) continue;

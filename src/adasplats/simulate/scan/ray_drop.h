@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// What decides whether an echo is strong enough to be reported.
+/// Conditions that determine whether an echo is strong enough to be reported.
 struct EchoConditions {
   float range_m = 0;
   float cos_incidence = 1;  ///< 1: the beam meets the surface head on
@@ -20,9 +20,9 @@ struct EchoConditions {
   Vec3f direction = {};     ///< of the beam in the sensor's frame; zero: unknown
 };
 
-/// For CPU and GPU, without the blocked directions.
+/// Rules for CPU and GPU, without the blocked directions.
 DropRules drop_rules(const RayDropModel& model);
-/// 0..1; 1 in a blocked direction.
+/// Probability that an echo is dropped, 0..1; 1 in a blocked direction.
 double drop_probability(const RayDropModel& model, const EchoConditions& echo);
 
 /// Fits weights by penalised maximum likelihood (Newton's method): dropped[i] of echoes[i].
@@ -30,15 +30,15 @@ double drop_probability(const RayDropModel& model, const EchoConditions& echo);
 RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
                           std::span<const std::uint8_t> dropped);
 
-/// Fewer places tell no blocked sectors.
+/// Minimum number of sensor positions for the detection of blocked sectors.
 inline constexpr std::size_t kMinBlockedPlaces = 3;
 
-/// Sectors of one degree of azimuth of each ring (without `rings` of each elevation: beams within
-/// 0.01 degrees are one) in which
-/// most echoes that a model foretells were dropped, from at least three quarters of the places and
-/// from kMinBlockedPlaces of them: what stands still in the sensor's frame while the world goes
-/// by. places[i]: the number of the place that echo i was fired from. Neighbours are joined. Error:
-/// std::logic_error (sizes differ).
+/// Finds sectors, one degree of azimuth wide, of each ring (without `rings`: of each elevation,
+/// where beams within 0.01 degrees count as one) in which most echoes that a model predicts were
+/// dropped, from at least three quarters of the sensor positions and at least kMinBlockedPlaces of
+/// them. Such sectors are blocked by objects fixed in the sensor's frame. places[i]: number of the
+/// sensor position of echo i. Neighbouring sectors are joined. Error: std::logic_error (sizes
+/// differ).
 std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,
                                                 std::span<const std::uint8_t> dropped,
                                                 std::span<const std::uint32_t> places,

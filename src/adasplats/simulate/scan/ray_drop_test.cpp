@@ -166,7 +166,7 @@ TEST(BlockedSectors, AreWhereScansAgree) {
   EXPECT_FALSE(model.blocks({kNan, 0, 0}));
 }
 
-TEST(BlockedSectors, WhatChangesFromScanToScanIsNone) {
+TEST(BlockedSectors, ChangingSectorsAreNotBlocked) {
   EXPECT_TRUE(sectors_where([](std::uint32_t scan, double, double azimuth) {
                 return scan < 2 && azimuth < 0;
               }).empty());
@@ -184,7 +184,7 @@ TEST(BlockedSectors, WhatChangesFromScanToScanIsNone) {
 
 // Oracle: a ring whose elevation wanders, as in scans whose motion was taken out, is one ring.
 // Oracle: the chance itself; bounds may decide nothing otherwise.
-TEST(RayDrop, BeamsAreLostBelowTheirChance) {
+TEST(RayDrop, BeamsAreLostBelowTheirProbability) {
   Random random(21, 0, 0);
   std::size_t lost = 0, kept = 0;
   for (int model = 0; model < 30; ++model) {
@@ -207,7 +207,7 @@ TEST(RayDrop, BeamsAreLostBelowTheirChance) {
   EXPECT_GT(kept, 1000U);
 }
 
-TEST(BlockedSectors, AreThoseOfARingWhereverItsBeamsGo) {
+TEST(BlockedSectors, BelongToARingWhateverItsElevation) {
   std::vector<EchoConditions> echoes;
   std::vector<std::uint8_t> lost;
   std::vector<std::uint32_t> places;
@@ -230,7 +230,7 @@ TEST(BlockedSectors, AreThoseOfARingWhereverItsBeamsGo) {
   EXPECT_THROW(find_blocked_sectors(echoes, lost, places, rings), std::logic_error);
 }
 
-TEST(BlockedSectors, ElevationsAreToldApartAtTheirMiddle) {
+TEST(BlockedSectors, ElevationsAreSeparatedAtTheirMiddle) {
   RayDropModel model;
   const auto sector = [](double elevation_deg, double begin_deg, double end_deg) {
     return BlockedSector{static_cast<float>(elevation_deg * kDegree),

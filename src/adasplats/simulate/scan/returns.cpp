@@ -16,8 +16,8 @@ namespace adasplats {
 
 namespace {
 
-/// How many sub-rays stand on each ring around the axis: about 6, 12, 18, ... as on a hexagonal
-/// grid, so that each stands for about the same area.
+/// Number of sub-rays on each ring around the axis: about 6, 12, 18, ... as on a hexagonal grid, so
+/// each represents about the same area.
 std::vector<int> ring_sizes(int around) {
   int rings = 1;
   while (3 * (rings + 1) * (rings + 2) <= around) ++rings;
@@ -32,7 +32,7 @@ std::vector<int> ring_sizes(int around) {
   return sizes;
 }
 
-/// Where a sub-ray leaves the axis, in units of the ellipse's semi-axes.
+/// Offset of a sub-ray from the axis, in units of the ellipse's semi-axes.
 struct CrossSectionPlace {
   double horizontal;
   double vertical;
@@ -42,7 +42,7 @@ std::vector<CrossSectionPlace> places_of(int sub_rays) {
   std::vector<CrossSectionPlace> places{{0, 0}};
   if (sub_rays == 1) return places;
   const std::vector<int> sizes = ring_sizes(sub_rays - 1);
-  // Ring k stands in the middle of the annulus from (2k - 1) to (2k + 1) of 2n + 1 equal steps.
+  // Ring k is in the middle of the annulus from (2k - 1) to (2k + 1) of 2n + 1 equal steps.
   const double step = 1.0 / static_cast<double>(2 * sizes.size() + 1);
   for (std::size_t ring = 1; ring <= sizes.size(); ++ring) {
     const double radius = 2.0 * static_cast<double>(ring) * step;
@@ -69,8 +69,9 @@ void check_beam(const BeamOptions& options, const LidarModel& sensor) {
   check_settings(options);
   if (options.sub_rays == 1) return;
   if (options.sub_rays == 2)
-    throw Error(ErrorKind::usage,
-                "2 sub-rays cannot stand evenly around the beam's axis, expected 1, or 3 or more");
+    throw Error(
+        ErrorKind::usage,
+        "2 sub-rays cannot be distributed evenly around the beam axis, expected 1, or 3 or more");
   if (!(sensor.divergence_rad[0] >= 0 && sensor.divergence_rad[1] >= 0 &&
         sensor.divergence_rad[0] + sensor.divergence_rad[1] > 0))
     throw Error(ErrorKind::usage,
@@ -127,7 +128,7 @@ std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights
                        std::span<Return> out) {
   if (weights.size() != static_cast<std::size_t>(options.sub_rays) ||
       hits.size() != options.hits_per_firing())
-    throw std::logic_error("returns need a weight a sub-ray and `depth` hits of each");
+    throw std::logic_error("returns need one weight and `depth` hits per sub-ray");
   for (const Hit& hit : hits)
     if (!classes.empty() && hit.valid() && hit.primitive >= classes.size())
       throw std::logic_error("an attribute has fewer values than the scene has primitives");

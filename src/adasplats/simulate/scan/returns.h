@@ -16,27 +16,26 @@
 
 namespace adasplats {
 
-/// Which echoes of a firing a sensor reports.
+/// The echoes of a firing that a sensor reports.
 enum class ReturnMode : std::uint8_t { first, last, strongest };
 inline constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
     {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
 inline Words<ReturnMode> words_of(ReturnMode) { return kReturnModes; }
 
-/// What a firing sends out and how its echoes become returns.
+/// The rays of a firing, and the rules by which its echoes become returns.
 struct BeamOptions {
-  /// Hits kept of each ray: 1, or the paper's D = 5, whose weighted mean is the echo (section
+  /// Number of hits per ray: 1, or the paper's D = 5; their weighted mean is the echo (section
   /// "SimKITTI32").
   int depth = 1;
-  /// Of two hits of one ray that are farther apart than this the first counts alone, m (paper: 10
-  /// cm).
+  /// Maximum distance between consecutive hits of a ray that are averaged, m (paper: 10 cm).
   double depth_gap_m = 0.1;
-  /// Rays over the cross-section of the beam (LidarModel::divergence_rad): 1, or the axis and more
-  /// around it.
+  /// Number of rays over the cross-section of the beam (LidarModel::divergence_rad): 1, or the axis
+  /// and others around it.
   int sub_rays = 1;
-  /// Echoes of sub-rays less than this apart, and of one class, are one return, m: half the length
-  /// of a 5 ns pulse, about 0.75 m, is what a receiver can separate.
+  /// Echoes of sub-rays of one class that are closer than this are one return, m. A receiver can
+  /// separate half the length of a 5 ns pulse, about 0.75 m.
   double separation_m = 0.75;
-  int returns = 1;  ///< most returns a firing
+  int returns = 1;  ///< maximum number of returns per firing
   ReturnMode mode = ReturnMode::strongest;
 
   std::size_t hits_per_firing() const {
@@ -44,7 +43,7 @@ struct BeamOptions {
   }
 };
 
-/// Most hits a ray and most rays a firing: returns_of() works without the heap.
+/// Maximum number of hits per ray and of rays per firing: returns_of() does not use the heap.
 inline constexpr int kMaxDepth = 64;
 inline constexpr std::size_t kMaxSubRays = 64;
 
@@ -97,43 +96,42 @@ void visit_settings(BeamOptions& beam, Visit&& visit) {
       beam.mode);
 }
 
-/// One echo that a sensor reports.
+/// One reported echo.
 struct Return {
   float range_m = 0;            ///< along the firing's axis
-  std::uint32_t primitive = 0;  ///< that most of it is from
-  float energy = 0;             ///< share of the beam that came back from there, 0..1
+  std::uint32_t primitive = 0;  ///< with the largest contribution
+  float energy = 0;             ///< returned share of the beam, 0..1
 };
 
-/// Errors: usage (a setting out of range; 2
-/// sub-rays, which cannot stand evenly around the axis; sub-rays of a sensor without a divergence).
+/// Errors: usage (a setting out of range; 2 sub-rays, which cannot be distributed evenly around the
+/// axis; sub-rays of a sensor without a divergence).
 void check_beam(const BeamOptions& options, const LidarModel& sensor);
 
 /// The firings of `sensor` with `options.sub_rays` rays each, ray k of firing i at i * sub_rays +
-/// k; ray 0 is the axis. The others stand on rings of the ellipse whose semi-axes are half the
-/// divergence (the 1/e^2 radii of a Gaussian beam), with the weights of sub_ray_weights(). Errors:
+/// k; ray 0 is the axis. The others are on rings of the ellipse with half the divergence as
+/// semi-axes (the 1/e^2 radii of a Gaussian beam), with the weights of sub_ray_weights(). Errors:
 /// those of check_beam().
 std::vector<Firing> sub_firings(const LidarModel& sensor, std::span<const Firing> firings,
                                 const BeamOptions& options);
 
-/// Energy in each sub-ray of a beam with a Gaussian profile, of the annulus that it stands in
-/// shared evenly; their sum is 1.
+/// Energy of each sub-ray of a beam with a Gaussian profile: an equal share of that of its annulus.
+/// Their sum is 1.
 std::vector<float> sub_ray_weights(const BeamOptions& options);
 
-/// Those of `pulses` (ascending in range) that a sensor reports, moved to the front in the order in
-/// which it reports them, at most options.returns; gives how many. first: from the nearest on;
-/// last: from the farthest on; strongest: the strongest, then the last or, where that is the
-/// strongest, the second strongest (dual return of the Velodyne VLP-16, user manual 63-9243 rev. D,
-/// section 9.3.2), further ones by energy. Of equal ones the nearer. What lies within the
-/// separation of a reported one is none of its own (of the VLS-128 it is 1 m: manual 63-9483 rev.
-/// A, section 6.2.3).
+/// Moves those of `pulses` (ascending in range) that a sensor reports to the front, in the order of
+/// the reports, at most options.returns; returns their number. first: from the nearest on; last:
+/// from the farthest on; strongest: the strongest, then the last or, if that is the strongest, the
+/// second strongest (dual return of the Velodyne VLP-16, user manual 63-9243 rev. D,
+/// section 9.3.2), then by energy. Of equal ones, the nearer. A pulse within the separation of a
+/// reported one is not reported (1 m for the VLS-128: manual 63-9483 rev. A, section 6.2.3).
 std::size_t reported_returns(std::span<Return> pulses, const BeamOptions& options);
 
-/// The returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the order in
-/// which the sensor reports them (reported_returns()). `classes`: of the primitives, or empty. At
-/// most options.returns; `out` has that size. Never mixes hits of two classes or of two objects
-/// that stand apart: the range of a return is the mean of the echoes within depth_gap_m of its
-/// first one, as a receiver triggers on the rising edge. Gives how many there are. Throws
-/// std::logic_error where there is no class of a primitive.
+/// Computes the returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the
+/// order of the sensor's reports (reported_returns()). `classes`: of the primitives, or empty. At
+/// most options.returns, which is the size of `out`; returns their number. Never mixes hits of
+/// different classes or of separate objects: the range of a return is the mean of the echoes within
+/// depth_gap_m of its first one, because a receiver triggers on the rising edge. Throws
+/// std::logic_error if the class of a primitive is missing.
 std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights,
                        std::span<const std::uint16_t> classes, const BeamOptions& options,
                        std::span<Return> out);

@@ -48,7 +48,7 @@ std::vector<Hit> hits_on(const LidarModel& sensor, const BeamOptions& options, S
 }
 
 // Oracle: identity.
-TEST(Returns, OneRayAndOneHitAreTheHitItself) {
+TEST(Returns, OneRayAndOneHitGiveTheHit) {
   const BeamOptions options;
   const Hit hit{12.3456789F, 5};
   const auto returns = returns_of_hits({hit}, options);
@@ -61,7 +61,7 @@ TEST(Returns, OneRayAndOneHitAreTheHitItself) {
 
 // Oracle: the formula by hand. D = 5: beta = e^-0.6, e^-0.2, e^-0.2, e^-0.6, e^-1; their sum is
 // 3.102964 and that of i beta_i 8.677109: 2.796394 equal steps.
-TEST(Returns, FiveOverlappingHitsAreThePapersMean) {
+TEST(Returns, FiveOverlappingHitsGiveThePapersMean) {
   BeamOptions options;
   options.depth = 5;
   std::vector<Hit> hits;
@@ -81,7 +81,7 @@ TEST(Returns, FiveOverlappingHitsAreThePapersMean) {
 }
 
 // Oracle: by hand. D' = 2: |1 - 1| / 1 = 0 and |2 - 1| / 1 = 1, so (r1 + r2 / e) / (1 + 1 / e).
-TEST(Returns, DepthIsWhatOverlaps) {
+TEST(Returns, DepthIsTheNumberOfOverlappingHits) {
   BeamOptions options;
   options.depth = 5;
   const double e = std::numbers::e;
@@ -182,7 +182,7 @@ TEST(Returns, ClassesAreNeverMixed) {
   ASSERT_EQ(returns_of_hits(hits, options).size(), 1U) << "without classes";
   options.separation_m = 0.025;
   const auto strongest_class = returns_of_hits(hits, options, {40, 48, 40, 48, 40});
-  // The class that is nearer has three echoes; the other cannot be told from it.
+  // The nearer class has three echoes; the other one cannot be separated from it.
   ASSERT_EQ(strongest_class.size(), 1U);
   EXPECT_NEAR(static_cast<double>(strongest_class[0].range_m),
               (10.00 * static_cast<double>(sub_ray_weights(options)[0]) +
@@ -223,7 +223,7 @@ std::vector<float> reported_ranges(std::vector<Return> pulses, ReturnMode mode, 
 }
 
 // Oracle: the manual's words for strongest, last and dual returns.
-TEST(Returns, ModesTellWhatTheManualSays) {
+TEST(Returns, ModesFollowTheManual) {
   const std::vector<Return> pulses{{5, 0, 0.2F}, {10, 1, 0.5F}, {15, 2, 0.1F}, {20, 3, 0.2F}};
   using Ranges = std::vector<float>;
   EXPECT_EQ(reported_ranges(pulses, ReturnMode::first, 1), Ranges({5}));
@@ -238,7 +238,7 @@ TEST(Returns, ModesTellWhatTheManualSays) {
   EXPECT_TRUE(reported_ranges({}, ReturnMode::strongest, 2).empty());
 }
 
-TEST(Returns, TiesGoToTheNearer) {
+TEST(Returns, TiesGoToTheNearerEcho) {
   const std::vector<Return> equal{{5, 0, 0.25F}, {10, 1, 0.25F}, {15, 2, 0.25F}, {20, 3, 0.25F}};
   EXPECT_EQ(reported_ranges(equal, ReturnMode::strongest, 2), std::vector<float>({5, 20}));
   EXPECT_EQ(reported_ranges({equal.begin(), equal.begin() + 1}, ReturnMode::strongest, 2),
@@ -251,21 +251,21 @@ TEST(Returns, TiesGoToTheNearer) {
   EXPECT_EQ(returns[0].primitive, 4U) << "the sub-ray that comes first";
 }
 
-TEST(Returns, WhatCannotBeSeparatedIsNotTold) {
+TEST(Returns, CloserReturnsAreSuppressed) {
   const std::vector<Return> pulses{{5, 0, 0.3F}, {5.5F, 1, 0.4F}, {9, 2, 0.2F}};
   EXPECT_EQ(reported_ranges(pulses, ReturnMode::strongest, 3), std::vector<float>({5.5F, 9}));
   EXPECT_EQ(reported_ranges(pulses, ReturnMode::first, 3), std::vector<float>({5, 9}));
   EXPECT_EQ(reported_ranges(pulses, ReturnMode::last, 3, 0.25), std::vector<float>({9, 5.5F, 5}));
 }
 
-TEST(Returns, AMissingClassIsABugThatIsSeen) {
+TEST(Returns, AMissingClassIsALogicError) {
   BeamOptions options;
   options.depth = 2;
   EXPECT_THROW(returns_of_hits({{1, 0}, {1.01F, 9}}, options, {1}), std::logic_error);
 }
 
 // Oracle: the ellipse of the divergence, and symmetry: the energies' centre is the axis.
-TEST(SubFirings, StandEvenlyInsideTheDivergence) {
+TEST(SubFirings, AreEvenlyDistributedInsideTheDivergence) {
   const LidarModel sensor = wide_beam();
   for (const Vec3f axis : {Vec3f{1, 0, 0}, normalized(Vec3f{1, -2, 0.5F}), Vec3f{0, 0, 1}}) {
     for (const int sub_rays : {1, 3, 4, 7, 18, 19, 20, 37, 61, 64}) {
@@ -341,7 +341,7 @@ TEST(SubFirings, HorizontalDivergenceIsHorizontal) {
     EXPECT_NEAR(static_cast<double>(ray.direction.z), 0.0, 1e-9);
 }
 
-TEST(SubFirings, OneRayIsTheFiringItselfAndNoneStayNone) {
+TEST(SubFirings, OneRayIsTheFiringAndNoFiringsGiveNone) {
   const auto rays = sub_firings(LidarModel{}, one_firing({0, 1, 0}), {});
   ASSERT_EQ(rays.size(), 1U);
   EXPECT_TRUE((rays[0].direction == Vec3f{0, 1, 0}));
@@ -357,7 +357,7 @@ ErrorKind kind_of_check(const BeamOptions& options, const LidarModel& sensor) {
   return ErrorKind::software;
 }
 
-TEST(CheckBeam, RefusesWhatCannotBeCast) {
+TEST(CheckBeam, RejectsInvalidBeams) {
   const LidarModel sensor = wide_beam();
   EXPECT_NO_THROW(check_beam({}, LidarModel{}));
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -52,7 +52,7 @@ ScanFields scan_fields(std::span<const std::string> names) {
 }
 
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep) {
-  if (keep.size() != scan.size()) throw std::logic_error("one flag a point is needed");
+  if (keep.size() != scan.size()) throw std::logic_error("expected one flag per point");
   Scan kept;
   kept.world_from_sensor = scan.world_from_sensor;
   kept.time_s = scan.time_s;

@@ -19,51 +19,51 @@
 
 namespace adasplats {
 
-/// What primitives carry besides their geometry; each is empty or has one value a primitive.
+/// Attributes of primitives; each is empty or has one value per primitive.
 struct PrimitiveAttributes {
   std::span<const std::uint16_t> classes;
   std::span<const std::uint16_t> instances;
-  std::span<const float> intensities;  ///< reflectances where there is a `response`
-  /// For incidence; primitives beyond it are met head on.
+  std::span<const float> intensities;  ///< reflectances if there is a `response`
+  /// For the incidence angle; primitives beyond the view are assumed perpendicular to the beam.
   SceneView view;
   const IntensityResponse* response = nullptr;
 };
 
-/// Which frame the points of a scan are in, where the sensor moves during it.
+/// Frame of the points of a scan during which the sensor moves.
 enum class PointFrame : std::uint8_t {
-  raw,       ///< the sensor's when each was measured, as sensors report them
-  deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
+  raw,       ///< sensor frame at the time of each point, as reported by sensors
+  deskewed,  ///< sensor frame at the scan's reference pose: motion-compensated
 };
 inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
     {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
 inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
-/// One revolution of one LiDAR: the returns, by firing in the order of `firings_of`, those of one
-/// firing in the order in which the sensor reports them.
+/// One revolution of one LiDAR: the returns, by firing in the order of `firings_of`, and within a
+/// firing in the order of the sensor's reports.
 struct Scan {
   RigidTransform world_from_sensor;
-  double time_s = 0;  ///< of that pose: the middle of the revolution, where the sensor moved
-  /// Where it moved during the revolution, as ScanMotion has them; else empty and 0.
+  double time_s = 0;  ///< of that pose: the middle of the revolution if the sensor moved
+  /// Motion during the revolution, as in ScanMotion; empty and 0 at rest.
   std::vector<RigidTransform> knots;
   double duration_s = 0;
   PointFrame frame = PointFrame::raw;
-  std::size_t rays = 0;          ///< firings; size() of them returned, where each returns once
+  std::size_t rays = 0;          ///< number of firings; size() is the number of returns
   std::vector<Vec3f> positions;  ///< sensor frame, m
   std::vector<float> ranges_m;
-  std::vector<float> intensities;        ///< empty where the scene has none
-  std::vector<std::uint16_t> classes;    ///< empty where the scene has none
-  std::vector<std::uint16_t> instances;  ///< empty where the scene has none
+  std::vector<float> intensities;        ///< empty if the scene has none
+  std::vector<std::uint16_t> classes;    ///< empty if the scene has none
+  std::vector<std::uint16_t> instances;  ///< empty if the scene has none
   std::vector<std::uint16_t> rings;
   std::vector<std::uint32_t> columns;
   std::vector<float> times_s;  ///< since the start of the revolution
-  /// 0 for the first that the sensor reports of a firing; empty where no firing can return twice.
+  /// 0 for the first reported return of a firing; empty if firings have at most one return.
   std::vector<std::uint8_t> return_indices;
 
   /// Returns.
   std::size_t size() const;
 };
 
-/// Which attributes are wanted. Of the others scans have empty arrays, and nobody computes them.
+/// The requested attributes. The others are not computed; their arrays are empty.
 struct ScanFields {
   bool positions = true;
   bool ranges = true;
@@ -87,13 +87,13 @@ struct ScanAttribute {
   const char* name;    ///< in Python and in pickles
   const char* column;  ///< of scan_columns(); arrays of NPZ files have its plural
   bool is_optional;    ///< not every scan has it
-  const char* about;   ///< what the numbers are
+  const char* about;   ///< meaning of the values
 };
 template <class Of>
 ScanAttribute(Of, WantedField, const char*, const char*, bool, const char*) -> ScanAttribute<Of>;
 
-/// Calls visit(ScanAttribute) for every attribute, in the order of files; positions are none. A new
-/// one is a member, a field and an entry here, and whoever computes it.
+/// Calls visit(ScanAttribute) for every attribute except positions, in the order of files. A new
+/// attribute needs a member, a field, an entry here, and the code that computes it.
 template <class Visit>
 void for_each_scan_attribute(Visit&& visit) {
   visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.intensities); },
@@ -117,17 +117,17 @@ void for_each_scan_attribute(Visit&& visit) {
                       "0 for the first that the sensor reports of a firing"});
 }
 
-/// Fields by the names of attributes, and "positions". Errors: usage (an unknown name, with those
-/// that there are).
+/// Fields by the names of attributes, and "positions". Errors: usage (an unknown name, with the
+/// known names).
 ScanFields scan_fields(std::span<const std::string> names);
 
-/// The points that keep[i] says, of every attribute.
+/// Keeps the points with a set flag keep[i], in every attribute.
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
 
-/// How a sensor measures.
+/// Options of the measurement of a sensor.
 struct SimulateOptions {
   std::uint64_t seed = 1;       ///< of noise, drop, weather; drawn by (seed, scan index, firing)
-  bool noise = true;            ///< apply the sensor's noise, and what its unit does to intensities
+  bool noise = true;            ///< apply the sensor's noise and its calibrated intensity response
   bool sensor_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
@@ -137,26 +137,26 @@ struct SimulateOptions {
   ScanFields fields;  ///< attributes that are wanted
 };
 
-/// Where rays of a sensor start and end as floats, one a firing, and when.
+/// Ray data of a sensor as floats, one per firing: begin, end and time.
 std::vector<FiringRay> firing_rays(const LidarModel& sensor, std::span<const Firing> firings);
 
-/// The rays of one revolution in the frame of a scene whose local origin is `scene_origin`, one a
-/// firing, between the sensor's least and greatest range.
+/// The rays of one revolution in the frame of a scene with local origin `scene_origin`, one per
+/// firing, between the sensor's minimum and maximum range.
 std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> firings,
                            const ScanMotion& motion, Vec3d scene_origin, const Executor& executor);
 
-/// What the sensor measures where its rays met the scene: hits[(i * sub_rays + s) * depth + k] of
-/// firings[i], in the sensor's range (BeamOptions; the rays are those of sub_firings()). Finds the
-/// returns, drops some, adds noise and weather, and gathers what the primitives carry. `scan_index`
-/// names the noise. Throws std::logic_error where there are not that many hits a firing, or an
-/// attribute has not one value a primitive. For many scans see scan_caster.h.
+/// The scan from the hits of its rays: hits[(i * sub_rays + s) * depth + k] of firings[i], within
+/// the sensor's range (BeamOptions; the rays are those of sub_firings()). Finds the returns, drops
+/// some, adds noise and weather, and gathers the attributes of the primitives. `scan_index` selects
+/// the random numbers. Throws std::logic_error if the number of hits per firing is wrong, or an
+/// attribute does not have one value per primitive. For many scans see scan_caster.h.
 Scan scan_of_hits(std::span<const Hit> hits, const PrimitiveAttributes& attributes,
                   const LidarModel& sensor, std::span<const Firing> firings,
                   const ScanMotion& motion, std::uint64_t scan_index,
                   const SimulateOptions& options, const Executor& executor);
 
-/// Casts one revolution in a scene whose local origin is `scene_origin`. Paper section "Firing
-/// Sequence Simulation". For many scans see scan_caster.h.
+/// Casts one revolution in a scene with local origin `scene_origin`. Paper section "Firing Sequence
+/// Simulation". For many scans see scan_caster.h.
 Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
                    const LidarModel& sensor, std::span<const Firing> firings,
                    const ScanMotion& motion, std::uint64_t scan_index,

@@ -11,8 +11,8 @@
 
 namespace adasplats {
 
-/// Where the attributes of returns are, in host or device memory; null: not there. The names are
-/// Scan's, so that for_each_scan_attribute() knows them.
+/// Arrays of the attributes of returns, in host or device memory; null: absent. The names are those
+/// of Scan, for for_each_scan_attribute().
 struct ReturnArrays {
   Vec3f* positions = nullptr;
   float* ranges_m = nullptr;
@@ -25,8 +25,8 @@ struct ReturnArrays {
   std::uint8_t* return_indices = nullptr;
 };
 
-/// Arrays of `returns` values in one block of memory at `base`, each on a border of 256 bytes.
-/// `bytes` is the size of the block; with a null `base` only that is of use.
+/// Arrays of `returns` values in one block of memory at `base`, each aligned to 256 bytes. `bytes`
+/// is the size of the block; with a null `base`, only the size is valid.
 struct ReturnLayout {
   ReturnArrays arrays;
   std::size_t bytes = 0;
@@ -34,20 +34,20 @@ struct ReturnLayout {
   ReturnLayout(const ScanFields& fields, std::size_t returns, std::uint8_t* base);
 };
 
-/// Scans of a run whose returns stand one behind the other.
+/// Consecutive scans of a run with contiguous returns.
 struct ScanBatch {
-  std::size_t first = 0;  ///< scan of the run
+  std::size_t first = 0;  ///< first scan, numbered within the run
   /// Returns of scan first + i are [offsets[i], offsets[i + 1]).
   std::vector<std::uint32_t> offsets;
   ReturnArrays arrays;
-  int device = -1;               ///< CUDA's number of it; -1: host memory
-  std::shared_ptr<void> memory;  ///< of the arrays, as long as anyone holds it
+  int device = -1;               ///< CUDA device number; -1: host memory
+  std::shared_ptr<void> memory;  ///< shared ownership of the arrays
 
   std::size_t scans() const { return offsets.size() - 1; }
   std::size_t returns() const { return offsets.back(); }
 };
 
-/// A batch of one scan, scan `first` of a run, whose arrays it takes.
+/// A batch of one scan, scan `first` of a run; takes its arrays.
 ScanBatch batch_of(std::size_t first, Scan&& scan);
 
 }  // namespace adasplats

@@ -18,19 +18,19 @@ namespace adasplats {
 struct Scan;
 class ScanRules;
 
-/// What casting the scans of a trajectory took. Where devices and copies overlap, the sums of parts
-/// are larger than the whole.
+/// Time spent on casting the scans of a trajectory. If devices and copies overlap, the parts add up
+/// to more than the total.
 struct CastTimes {
   double traced_s = 0;    ///< in the tracer, or in the kernels of a GPU
   double returned_s = 0;  ///< from the first launch until the last hit was in host memory, without
-                          ///< the time that the sink took
+                          ///< the time of the sink
 };
 
-/// What simulating scans took.
+/// Time spent on simulating scans.
 struct ReportTimes {
-  /// In the tracer, as if it had run alone: on the CPU the threads' share, on a GPU its kernels.
+  /// In the tracer: on the CPU the share of the threads' time, on a GPU the kernels.
   double traced_s = 0;
-  double reported_s = 0;  ///< until the last scan was there, without the time that the sink took
+  double reported_s = 0;  ///< until the last scan was complete, without the time of the sink
 
   ReportTimes& operator+=(const ReportTimes& other) {
     traced_s += other.traced_s;
@@ -42,25 +42,25 @@ struct ReportTimes {
 /// Casts the firings of a sensor from many poses into one scene, on the CPU or on GPUs.
 class ScanCaster {
  public:
-  /// Takes the hits of one scan, the nearest `depth` of firings[i] at hits[i * depth + k]; they are
-  /// valid during the call only.
+  /// Receives the hits of one scan, the nearest `depth` of firings[i] at hits[i * depth + k], valid
+  /// only during the call.
   using Sink = FunctionRef<void(std::size_t scan, std::span<const Hit> hits)>;
 
   virtual ~ScanCaster() = default;
 
-  /// Calls `sink` for every scan, in their order, on the caller's thread. Rays are those of
-  /// scan_rays(). An exception of the sink ends the casting and reaches the caller.
+  /// Calls `sink` for every scan, in order, on the caller's thread. Rays are those of scan_rays().
+  /// An exception of the sink ends the cast and is passed to the caller.
   virtual CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                          std::span<const ScanMotion> scans, int depth, Sink sink) const = 0;
 
-  /// Takes scan i of a call. What it moves out of `scan` is its own; memory that it leaves is used
-  /// for the next scans.
+  /// Receives scan i of a call. It may move data out of `scan`; remaining memory is reused for the
+  /// next scans.
   using ScanSink = FunctionRef<void(std::size_t i, Scan&& scan)>;
 
-  /// From rays to points: what a sensor reports by `rules`, scan by scan in their order, on the
-  /// caller's thread, with work on the executor's. Scan i has the number `first_number` + i. The
-  /// same bytes on the CPU and on GPUs, for any number of threads. An exception of the sink ends
-  /// the casting and reaches the caller.
+  /// Simulates scans by `rules`, from rays to points. Calls the sink scan by scan, in order, on the
+  /// caller's thread; the executor's threads do the work. Scan i has the number `first_number` + i.
+  /// The bytes are the same on the CPU and on GPUs, for any number of threads. An exception of the
+  /// sink ends the cast and is passed to the caller.
   virtual ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
                              std::uint64_t first_number, const Executor& executor,
                              ScanSink sink) const = 0;

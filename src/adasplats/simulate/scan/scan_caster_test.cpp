@@ -72,7 +72,7 @@ class ScanCasterTest : public testing::Test {
 };
 
 // Oracle: brute force over the rays of scan_rays().
-TEST_F(ScanCasterTest, HitsAreThoseOfBruteForce) {
+TEST_F(ScanCasterTest, HitsMatchBruteForce) {
   const auto brute_force = make_brute_force_tracer({disks_, nullptr});
   const std::vector<std::vector<Hit>> scans = cast(poses_);
   ASSERT_EQ(scans.size(), poses_.size());
@@ -86,7 +86,7 @@ TEST_F(ScanCasterTest, HitsAreThoseOfBruteForce) {
 }
 
 // Oracle: simulate_scan, bit by bit, with noise.
-TEST_F(ScanCasterTest, ScansOfItsHitsAreThoseOfSimulateScan) {
+TEST_F(ScanCasterTest, ScansMatchSimulateScan) {
   sensor_.range_noise_m = 0.02;
   std::vector<std::uint16_t> classes(disks_.size());
   for (std::size_t i = 0; i < classes.size(); ++i) classes[i] = static_cast<std::uint16_t>(i);
@@ -120,7 +120,7 @@ TEST_F(ScanCasterTest, NoPosesAndNoFirings) {
   for (const auto& hits : scans) EXPECT_TRUE(hits.empty());
 }
 
-TEST_F(ScanCasterTest, APoseThatIsNotFiniteHitsNothing) {
+TEST_F(ScanCasterTest, ANonFinitePoseHitsNothing) {
   poses_[1].reference.world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::vector<Hit>> scans = cast(poses_);
   ASSERT_EQ(scans.size(), poses_.size());
@@ -139,7 +139,7 @@ TEST_F(ScanCasterTest, AnExceptionOfTheSinkEndsTheCasting) {
   EXPECT_EQ(cast(poses_).size(), poses_.size()) << "casts again afterwards";
 }
 
-TEST_F(ScanCasterTest, TimesAreNotNegativeAndLeaveOutTheSink) {
+TEST_F(ScanCasterTest, TimesAreNotNegativeAndExcludeTheSink) {
   constexpr std::chrono::milliseconds kSleep{10};
   const auto slow = [&](std::size_t, std::span<const Hit>) { std::this_thread::sleep_for(kSleep); };
   const CastTimes none = caster()->cast(sensor_, firings_, {}, 1, slow);
@@ -155,7 +155,7 @@ TEST_F(ScanCasterTest, TimesAreNotNegativeAndLeaveOutTheSink) {
   EXPECT_LE(some.returned_s, (all - slept).count());
 }
 
-TEST_F(ScanCasterTest, HitsOfAnotherCountAreABug) {
+TEST_F(ScanCasterTest, AWrongNumberOfHitsIsALogicError) {
   const std::vector<Hit> hits(firings_.size() - 1);
   EXPECT_THROW(scan_of_hits(hits, {}, sensor_, firings_, poses_[0], 0, {}, executor_),
                std::logic_error);

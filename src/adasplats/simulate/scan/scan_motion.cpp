@@ -55,8 +55,8 @@ std::vector<ScanMotion> still_scans(std::span<const TimedPose> poses) {
 
 std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& motion,
                                      double duration_s) {
-  if (!(duration_s > 0)) throw Error(ErrorKind::usage, "a scan that takes no time cannot move");
-  if (motion.empty()) throw Error(ErrorKind::usage, "a motion without a single pose");
+  if (!(duration_s > 0)) throw Error(ErrorKind::usage, "a moving scan needs a positive duration");
+  if (motion.empty()) throw Error(ErrorKind::usage, "the motion has no poses");
   std::vector<ScanMotion> scans;
   scans.reserve(poses.size());
   for (const TimedPose& pose : poses) {

@@ -47,7 +47,7 @@ Scan scan_in_box(const TriangleMesh& mesh, const LidarModel& sensor, const ScanM
                        0, options, executor);
 }
 
-TEST(ScanMotion, AScanIsAroundTheTimeOfItsPose) {
+TEST(ScanMotion, AScanIsCentredOnTheTimeOfItsPose) {
   const Trajectory motion = drive(0.1, 2.0, 10, 0);
   const std::vector<TimedPose> poses = {{1.0, driven(1.0, 10, 0)}};
   const auto scans = moving_scans(poses, motion, 0.1);
@@ -82,7 +82,7 @@ TEST(ScanMotion, FastTurnsHaveMoreKnots) {
   EXPECT_LE(knots(100.0), 64U);
 }
 
-TEST(ScanMotion, WrongMotionsAreRefused) {
+TEST(ScanMotion, InvalidMotionsAreRejected) {
   const std::vector<TimedPose> poses = {{1.0, {}}};
   EXPECT_THROW(moving_scans(poses, drive(0.5, 2, 0, 0), 0.0), Error);
   EXPECT_THROW(moving_scans(poses, drive(0.5, 2, 0, 0), std::numeric_limits<double>::quiet_NaN()),

@@ -9,15 +9,15 @@
 
 namespace adasplats {
 
-/// Where a scan is cast from, in the frame of the scene.
+/// Pose from which a scan is cast, in the frame of the scene.
 struct ScanPose {
   Vec3f rows[3];  ///< of the rotation, scene from sensor; orthonormal to a float's precision
   Vec3f origin;   ///< relative to the scene's local origin, m
 };
 static_assert(sizeof(ScanPose) == 48);
 
-/// The pose of a sensor in a scene whose local origin is `scene_origin`. The rotation is made
-/// orthonormal in double: from a file it is so to 1e-3 only.
+/// The pose of a sensor in a scene with local origin `scene_origin`. The rotation is
+/// orthonormalised in double precision: rotations from files are orthonormal only to 1e-3.
 ADASPLATS_HD inline ScanPose scan_pose(const RigidTransform& world_from_sensor,
                                        Vec3d scene_origin) {
   const Vec3d* rows = world_from_sensor.rotation.rows;
@@ -28,10 +28,10 @@ ADASPLATS_HD inline ScanPose scan_pose(const RigidTransform& world_from_sensor,
           vec_cast<float>(world_from_sensor.translation - scene_origin)};
 }
 
-/// A firing as rays are made from it.
+/// A firing in the form from which rays are made.
 struct FiringRay {
   Vec3f direction;   ///< sensor frame, unit length
-  float share = 0;   ///< of the revolution that is over when it fires, 0..1
+  float share = 0;   ///< elapsed share of the revolution at the firing, 0..1
   Vec3f origin;      ///< sensor frame, m
   float unused = 0;  ///< 16-byte loads
 };
@@ -41,17 +41,17 @@ inline ADASPLATS_HD Vec3f turned(const ScanPose& pose, Vec3f v) {
   return {dot(pose.rows[0], v), dot(pose.rows[1], v), dot(pose.rows[2], v)};
 }
 
-/// THE ray of a firing of a sensor that stands still, for every backend. Its direction has unit
+/// The ray of a firing of a sensor at rest, the same on every backend. Its direction has unit
 /// length to 2e-7, 0.02 mm at 100 m.
 ADASPLATS_HD inline Ray still_scan_ray(const ScanPose& pose, const FiringRay& firing, float t_min,
                                        float t_max) {
   return {pose.origin + turned(pose, firing.origin), t_min, turned(pose, firing.direction), t_max};
 }
 
-/// The same for one that moves. `knots`: where it is at `knot_count` equal times from the beginning
-/// of the revolution to its end; one: it stands still. Between two of them origins and directions
-/// are mixed linearly, which for the half degree that they are apart at most (moving_scans) is off
-/// by less than 1e-7 rad.
+/// The same for a moving sensor. `knots`: its poses at `knot_count` equal time steps from the
+/// beginning of the revolution to its end; one: at rest. Between knots, origins and directions are
+/// interpolated linearly; for knots at most half a degree apart (moving_scans), the error is below
+/// 1e-7 rad.
 ADASPLATS_HD inline Ray scan_ray(const ScanPose* knots, std::uint32_t knot_count,
                                  const FiringRay& firing, float t_min, float t_max) {
   if (knot_count < 2) return still_scan_ray(knots[0], firing, t_min, t_max);

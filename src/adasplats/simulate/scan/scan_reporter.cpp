@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// Firings of a chunk: as many as have about kFineGrain hits, which stay in a core's cache.
+/// Firings per chunk: about kFineGrain hits, which fit the cache of a core.
 std::size_t chunk_of(const BeamOptions& beam) {
   return std::clamp<std::size_t>(kFineGrain / beam.hits_per_firing(), 64, kFineGrain);
 }
@@ -25,7 +25,7 @@ ScanReporter::ScanReporter(const ScanRules& rules, const Executor& executor)
 template <int kMost>
 void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::size_t end,
                                const ScanHits& hits, Chunk& chunk) const {
-  // What primitives carry is all over the memory: it is asked for before it is needed.
+  // Attributes of primitives are scattered in memory, so they are prefetched.
   constexpr std::size_t kAhead = 24;
   const auto prefetch = [&](const Hit& hit) {
     if (hit.primitive < view_.primitive_count) __builtin_prefetch(view_.primitives + hit.primitive);
@@ -88,7 +88,7 @@ void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
                           std::uint64_t scan_index, std::span<const Hit> hits, Scan& scan) {
   const std::size_t hits_a_firing = view_.beam.hits_per_firing();
   if (hits.size() != rules_.firings().size() * hits_a_firing)
-    throw std::logic_error("a scan needs the hits of every firing's rays");
+    throw std::logic_error("a scan needs hits for the rays of every firing");
   const ScanState state = poses.state(scan_index);
   const ScanHits all = {hits.data(), hits_a_firing, 0,
                         static_cast<std::uint32_t>(rules_.firings().size())};
@@ -100,7 +100,7 @@ void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
       scan);
 }
 
-/// Chunk by chunk, in their order, so that threads do not show.
+/// Joins chunks in order, so the result does not depend on the threads.
 void ScanReporter::report_chunks(const ScanMotion& motion, const ScanState& state,
                                  ReportChunk report_chunk, Scan& scan) {
   const std::size_t firings = rules_.firings().size();
@@ -132,7 +132,7 @@ void ScanReporter::resize(Scan& scan, std::size_t returns) const {
   });
 }
 
-/// The returns of one chunk, in every attribute that the scan has.
+/// Writes the returns of one chunk to all attributes of the scan.
 void ScanReporter::fill(Scan& scan, const ScanState& state, const Chunk& chunk) const {
   const auto each = [&](auto& values, const auto& value_of) {
     if (values.empty()) return;

@@ -12,26 +12,26 @@
 
 namespace adasplats {
 
-/// Makes scans of hits on the CPU, and keeps its memory from scan to scan. One thread at a time.
+/// Makes scans from hits on the CPU, and reuses its memory. Not thread-safe.
 class ScanReporter {
  public:
-  /// Puts the hits of the rays of firings [begin, end) into `hits`, hits_per_firing() each. Called
+  /// Writes the hits of the rays of firings [begin, end) to `hits`, hits_per_firing() each. Called
   /// for consecutive firings, some of them twice, from several threads.
   using HitsOf = FunctionRef<void(std::size_t begin, std::size_t end, std::span<Hit> hits)>;
 
   /// Both must outlive it.
   ScanReporter(const ScanRules& rules, const Executor& executor);
 
-  /// The scan whose rays meet these hits, in `scan`, whose memory is used again. The same bytes for
-  /// any number of threads.
+  /// Writes the scan with these hits to `scan`, reusing its memory. The bytes do not depend on the
+  /// number of threads.
   void report(const ScanMotion& motion, const ScanPoses& poses, std::uint64_t scan_index,
               HitsOf hits_of, Scan& scan);
-  /// Of hits that are there: hits[(i * sub_rays + s) * depth + k].
+  /// The same for given hits: hits[(i * sub_rays + s) * depth + k].
   void report(const ScanMotion& motion, const ScanPoses& poses, std::uint64_t scan_index,
               std::span<const Hit> hits, Scan& scan);
 
  private:
-  /// Returns of consecutive firings. The vectors have room for all that could be.
+  /// Returns of consecutive firings. The vectors have the maximum possible size.
   struct Chunk {
     std::vector<ReportedReturn> returns;
     std::vector<std::uint32_t> firings;  ///< of the returns

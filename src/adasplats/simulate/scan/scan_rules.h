@@ -13,20 +13,20 @@
 
 namespace adasplats {
 
-/// What the primitives of a place carry, one beside the other, so that a hit costs one look.
+/// Attributes of the primitives of a scene, interleaved, so that a hit needs one memory access.
 struct PrimitiveTable {
   std::span<const PrimitiveValues> values;
-  std::shared_ptr<const void> memory;  ///< that they are in
+  std::shared_ptr<const void> memory;  ///< that holds them
   bool has_classes = false;
   bool has_instances = false;
   bool has_intensities = false;
-  IntensityResponse response;  ///< empty: intensities are reported as they are
+  IntensityResponse response;  ///< empty: intensities are reported unchanged
 };
 
-/// Throws std::logic_error where attributes have not one value a primitive.
+/// Throws std::logic_error if attributes do not have one value per primitive.
 PrimitiveTable primitive_table(const PrimitiveAttributes& attributes, const Executor& executor);
 
-/// How a sensor reports in a place: the tables behind FiringRules, in host memory.
+/// Rules for the reports of a sensor in a scene: the tables of FiringRules, in host memory.
 class ScanRules {
  public:
   /// Errors: those of check_beam() and check_weather().
@@ -37,34 +37,33 @@ class ScanRules {
   const BeamOptions& beam() const { return options_.beam; }
   const PrimitiveTable& table() const { return *table_; }
   std::span<const Firing> firings() const { return firings_; }
-  /// Every firing's sub-rays, one after the other.
+  /// The sub-rays of all firings, consecutively.
   std::span<const Firing> cast_firings() const {
     return options_.beam.sub_rays == 1 ? firings_ : cast_firings_;
   }
   std::span<const float> weights() const { return weights_; }
-  /// Firings whose direction the ray drop blocks; empty where it blocks none.
+  /// Flags of firings in directions blocked by the ray drop; empty if none is blocked.
   std::span<const std::uint8_t> blocked() const { return blocked_; }
-  /// Of firings, numbers in body() or kNoBody; empty where none meets the vehicle.
+  /// Per firing, its number in body() or kNoBody; empty if none hits the vehicle.
   std::span<const std::uint16_t> body_cells() const { return body_cells_; }
   std::span<const BodyCell> body() const;
   /// Table of AirRules.
   std::span<const double> expected() const { return expected_; }
   std::span<const double> range_offsets_m() const;
   std::span<const double> ring_noise_m() const;
-  /// Null where intensities are reported as the scene has them.
+  /// Null if intensities are reported as in the scene.
   const SensorIntensity* intensity() const;
-  /// Null where beams are drawn one by one.
+  /// Null if beams are drawn independently.
   const SensorFields* unit_fields() const;
-  /// What scans have of what is wanted.
+  /// The requested attributes that scans can have.
   ScanFields fields() const;
   PointFrame frame() const { return options_.frame; }
   bool deskews() const { return options_.frame == PointFrame::deskewed; }
-  /// With pointers to what this holds, which must outlive it.
+  /// Rules with pointers to the tables of this object, which must outlive them.
   FiringRules view() const;
-  /// Of a pattern that does not repeat: the firings of another scan.
+  /// Sets the firings of another scan, for a non-repeating pattern.
   void set_firings(std::vector<Firing> firings);
-  /// Another one for every object, and after every set_firings(): who keeps what was made of these
-  /// rules knows by it whether they still hold.
+  /// Identity for caches: differs for every object and changes with every set_firings().
   std::shared_ptr<const int> identity() const { return identity_; }
 
  private:
@@ -83,13 +82,13 @@ class ScanRules {
   std::shared_ptr<const int> identity_;
 };
 
-/// Reference from sensor at the knots of a motion; empty where it has fewer than two.
+/// Reference from sensor at the knots of a motion; empty if it has fewer than two.
 std::vector<ScanPose> frame_poses(const ScanMotion& motion);
 
-/// The poses of one scan as the report of its firings needs them.
+/// The poses of one scan for the report of its firings.
 struct ScanPoses {
   std::vector<ScanPose> knots;        ///< of scan_poses()
-  std::vector<ScanPose> frame_knots;  ///< empty where points stay as they are measured
+  std::vector<ScanPose> frame_knots;  ///< empty if points stay in the frame of measurement
 
   ScanPoses(const ScanRules& rules, const ScanMotion& motion, Vec3d scene_origin);
   ScanState state(std::uint64_t scan_index) const;

@@ -131,7 +131,7 @@ TEST(SimulateScan, TheRangeOfTheSensorIsKept) {
 
 // Oracle: by hand. Two columns of the upper ring end on the vehicle, one always, one half of the
 // time.
-TEST(SimulateScan, BeamsEndOnWhatCarriesTheSensor) {
+TEST(SimulateScan, BeamsEndOnTheVehicleBody) {
   const auto disks = ground_disks(60, 0.5F);
   Drive drive;
   drive.view = {disks, nullptr};
@@ -160,7 +160,7 @@ TEST(SimulateScan, BeamsEndOnWhatCarriesTheSensor) {
   EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
 }
 
-TEST(SimulateScan, AttributesComeFromThePrimitiveThatWasHit) {
+TEST(SimulateScan, AttributesComeFromTheHitPrimitive) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}, {{0, 7, 0}, 1, {0, 1, 0}}};
   const std::vector<std::uint16_t> classes = {40, 50}, instances = {3, 4};
   const std::vector<float> intensities = {0.25F, 0.75F};
@@ -195,7 +195,7 @@ TEST(SimulateScan, EmptyScenesAndSensorsGiveEmptyScans) {
   EXPECT_EQ(drive.scan().rays, 0U);
 }
 
-TEST(SimulateScan, APoseThatIsNotFiniteGivesNoReturns) {
+TEST(SimulateScan, ANonFinitePoseGivesNoReturns) {
   const TriangleMesh mesh = box_mesh(10.0F);
   Drive drive;
   drive.view = {{}, &mesh};
@@ -237,7 +237,7 @@ TEST_F(ScanNoise, IsWhiteAlongTheRay) {
   EXPECT_NEAR(neighbours / squares, 0.0, 5 / std::sqrt(n));
 }
 
-TEST_F(ScanNoise, DependsOnSeedScanAndRayAlone) {
+TEST_F(ScanNoise, DependsOnlyOnSeedScanAndRay) {
   const Scan first = drive_.scan();
   EXPECT_EQ(drive_.scan().ranges_m, first.ranges_m);
   drive_.scan_index = 1;
@@ -259,7 +259,7 @@ TEST_F(ScanNoise, NeverLeavesTheSensorsRange) {
 }
 
 // Oracle: one thread.
-TEST_F(ScanNoise, ThreadsDoNotChangeAByte) {
+TEST_F(ScanNoise, BytesDoNotDependOnThreads) {
   const Scan expected = drive_.scan(1);
   for (const int threads : {2, 3}) {
     const Scan scan = drive_.scan(threads);
@@ -294,7 +294,7 @@ TEST_F(ScanNoise, RingsHaveTheirOwn) {
 
 // Oracle: the same scan without offsets. What is to be added to what a ring reports is what it
 // reports too little.
-TEST(SimulateScan, OffsetsOfAUnitAreAppliedOnDemand) {
+TEST(SimulateScan, SensorOffsetsAreAppliedOnDemand) {
   const TriangleMesh mesh = box_mesh(10.0F);
   Drive drive;
   drive.view = {{}, &mesh};

@@ -16,7 +16,7 @@ namespace adasplats {
 
 class ScanRules;
 
-/// A scan whose arrays belong to someone else: members as Scan's. What encoders read.
+/// A non-owning view of a scan, with the members of Scan; the input of encoders.
 struct ScanView {
   RigidTransform world_from_sensor;
   double time_s = 0;
@@ -35,34 +35,34 @@ struct ScanView {
   std::span<const std::uint8_t> return_indices;
 
   ScanView() = default;
-  ScanView(const Scan& scan);  // NOLINT: every scan is one, as every vector is a span
+  ScanView(const Scan& scan);  // NOLINT: implicit, like the conversion of a vector to a span
   /// Scan i of a batch in host memory, which was cast by `motion` with those rules. Views `motion`.
   ScanView(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, const ScanRules& rules);
 
-  /// When the revolution began, which times_s count from; time_s of a sensor that stood still.
+  /// Begin of the revolution, the origin of times_s; time_s for a sensor at rest.
   double begin_s() const { return time_s - 0.5 * duration_s; }
   bool moved() const { return !knots.empty(); }
 
   /// Returns.
   std::size_t size() const;
-  /// A copy, in `scan`, whose memory is used again.
+  /// Copies to `scan`, reusing its memory.
   void copy_to(Scan& scan) const;
 };
 
-/// A view that is valid as long as it holds `memory` (and, of a batch, its motion is there).
+/// A view that is valid while it holds `memory` (and, for a batch, while its motion exists).
 struct HeldScan {
   ScanView scan;
   std::shared_ptr<const void> memory;
 };
 
-/// Of a scan that nobody else has.
+/// Takes ownership of a scan.
 HeldScan held_scan(Scan&& scan);
 
-/// Scans that others hold for a while, and their memory when nobody does any more: getting it from
-/// the system takes as long as filling it.
+/// A pool of scans that others hold temporarily; their memory is reused, because allocating it
+/// takes as long as filling it.
 class ScanPool {
  public:
-  /// Takes what `scan` has and leaves it memory to use again.
+  /// Takes the data of `scan` and leaves it reusable memory.
   HeldScan hold(Scan& scan);
 
  private:

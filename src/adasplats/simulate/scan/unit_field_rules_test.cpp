@@ -114,7 +114,7 @@ struct SteppedWall {
 
 // Oracle: the shares that are asked for. Runs of one are on either side of an edge; of four rings
 // one above the other they are the same beams.
-TEST(EdgeRuns, AreAsOftenAsAsked) {
+TEST(EdgeRuns, HaveTheRequestedFrequencies) {
   const SteppedWall wall;
   EdgeRunRules rules;
   rules.on = true;
@@ -133,7 +133,7 @@ TEST(EdgeRuns, AreAsOftenAsAsked) {
 }
 
 // Oracle: none may depend on which hits beside the needed ones are there.
-TEST(EdgeRuns, NeedNoMoreThanTheHitsBeside) {
+TEST(EdgeRuns, NeedOnlyTheNeighbouringHits) {
   const SteppedWall wall;
   EdgeRunRules rules;
   rules.on = true;

@@ -13,22 +13,23 @@ namespace adasplats {
 
 namespace {
 
-/// Full angles where the sensor's are not known: Velodyne VLP-16, geometric mean of 1.5 x 3.0 mrad.
+/// Full divergence if that of the sensor is unknown: Velodyne VLP-16, geometric mean of 1.5 x 3.0
+/// mrad.
 constexpr double kUsualDivergence_rad = 2.1e-3;
-/// Emitter and receiver see nothing in common nearer than this (Rasshofer et al. 2011).
+/// The fields of emitter and receiver do not overlap closer than this (Rasshofer et al. 2011).
 constexpr double kMinAirRange_m = 1.0;
-/// Fog sends back 0.046 / (V at 5 % contrast) per sr (Rasshofer et al. 2011), and alpha is ln 20 /
-/// V.
+/// Fog scatters back 0.046 / (V at 5 % contrast) per sr (Rasshofer et al. 2011), and alpha is ln 20
+/// / V.
 const double kFogBackscatter = 0.046 / std::log(20.0);
 
-/// Large against the wavelength, a particle takes twice its cross-section: integral of 2 pi / 4
-/// D^2.
+/// A particle that is large compared to the wavelength has twice its cross-section as extinction:
+/// integral of 2 pi / 4 D^2.
 double extinction_of(const Particles& kind) {
   return 1e-6 * std::numbers::pi * kind.density_per_m3 / (kind.slope_per_mm * kind.slope_per_mm);
 }
 
-/// What a disk of the cross-section of a particle reflects that takes twice that and has the lidar
-/// ratio S: pi * 2 / S.
+/// Reflectance of a disk equivalent to a particle with twice its cross-section as extinction and
+/// the lidar ratio S: pi * 2 / S.
 double reflectance_of(double lidar_ratio_sr) { return 2.0 * std::numbers::pi / lidar_ratio_sr; }
 
 /// Marshall and Palmer 1948: 8000 exp(-4.1 R^-0.21 D) per m^3 and mm. Lidar ratio of drops: 18.8 sr
@@ -59,7 +60,7 @@ double fog_extinction_per_m(const Weather& weather) {
 void check_weather(const Weather& weather, const LidarModel& sensor) {
   check_settings(weather);
   if (!(sensor.max_range_m > 0 && std::isfinite(sensor.max_range_m)))
-    throw Error(ErrorKind::usage, "the sensor '" + sensor.name + "' has no greatest range");
+    throw Error(ErrorKind::usage, "the sensor '" + sensor.name + "' has no maximum range");
 }
 
 bool Weather::is_clear() const { return extinction_per_m(*this) == 0; }

@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// What hangs and falls in the air. Formulas, constants and their sources: docs/noise.md.
+/// Weather: rain, fog and snow. Formulas, constants and their sources: docs/noise.md.
 struct Weather {
   double rain_mm_h = 0;
   /// Meteorological visibility (2 % contrast); 0 or infinite: no fog.
@@ -24,7 +24,7 @@ struct Weather {
   bool is_clear() const;
 };
 
-/// Above the most that was ever measured: 38 mm in a minute (Barot, Guadeloupe, 1970; WMO).
+/// Above the highest rate ever measured: 38 mm in a minute (Barot, Guadeloupe, 1970; WMO).
 inline constexpr double kMaxRain_mm_h = 3000;
 
 template <class Visit>
@@ -67,24 +67,24 @@ void visit_settings(Weather& weather, Visit&& visit) {
 /// Extinction coefficient of the air, 1/m: the sum of the three.
 double extinction_per_m(const Weather& weather);
 
-/// How likely a return that was reported in clear air is reported. A sensor needs the reflectance
-/// n(r) = max(0.8 (r / max_range)^2, 0.005); in clear air m = reflectance / n(r) times what it
-/// needs comes back, in weather exp(-2 alpha r) of that, and it fluctuates exponentially (speckle):
-/// exp(-(exp(2 alpha r) - 1) / m). Reflectances below 0.01 count as 0.01, NaN as 0.3.
+/// Probability that a return reported in clear air is still reported. A sensor needs the
+/// reflectance n(r) = max(0.8 (r / max_range)^2, 0.005). In clear air it receives m = reflectance /
+/// n(r) times the required power, in weather exp(-2 alpha r) of that, with exponential fluctuations
+/// (speckle): exp(-(exp(2 alpha r) - 1) / m). Reflectances below 0.01 count as 0.01, NaN as 0.3.
 double reported_share(const Weather& weather, const LidarModel& sensor, double range_m,
                       double reflectance);
 
-/// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be reported.
+/// Probability that a drop, a flake or fog closer than `range_m` is reported.
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m);
 
-/// Errors: usage (a setting out of range, no greatest range).
+/// Errors: usage (a setting out of range, no maximum range).
 void check_weather(const Weather& weather, const LidarModel& sensor);
 
-/// The weather as a beam of the sensor meets it. Intensities fall by exp(-2 alpha r); returns get
-/// lost (reported_share); the sensor's range noise grows by exp(alpha r); particles in the air
-/// answer nearer than the farthest return of their firing (clutter_share): class and instance 0.
-/// in_air() of firing_report.h does that to the returns of a firing. The table that it points to is
-/// put into `expected`, which must outlive it. Errors: those of check_weather().
+/// The effect of weather on a beam. Intensities decrease by exp(-2 alpha r); returns are lost
+/// (reported_share); the range noise grows by exp(alpha r); particles in the air cause returns
+/// closer than the farthest return of their firing (clutter_share), with class and instance 0.
+/// in_air() of firing_report.h applies the rules to the returns of a firing. Their table is stored
+/// in `expected`, which must outlive them. Errors: those of check_weather().
 AirRules air_rules(const Weather& weather, const LidarModel& sensor, std::vector<double>& expected);
 
 }  // namespace adasplats

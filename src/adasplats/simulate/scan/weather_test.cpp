@@ -167,7 +167,7 @@ void expect_share(std::size_t found, std::size_t all, double share) {
   EXPECT_NEAR(static_cast<double>(found) / n, share, 5 * std::sqrt(share * (1 - share) / n) + 1e-9);
 }
 
-TEST(Weather, WithoutItTheScanIsItself) {
+TEST(Weather, ClearAirLeavesTheScanUnchanged) {
   const auto firings = fan(100);
   Scan scan = wall(firings, 50, 0.5F);
   EXPECT_TRUE(Weather{}.is_clear());
@@ -179,7 +179,7 @@ TEST(Weather, WithoutItTheScanIsItself) {
 
 // Oracle: published relations. Koschmieder; pi N0 / Lambda^3 of Marshall and Palmer 1948, which is
 // 0.365 R^0.63 per km; snow of 1 mm/h has a visibility of about 1 km.
-TEST(Weather, ExtinctionIsThatOfTheLiterature) {
+TEST(Weather, ExtinctionMatchesTheLiterature) {
   EXPECT_NEAR(extinction_per_m({.fog_visibility_m = 100}), 0.03912, 1e-12);
   for (const double rate : {1.0, 10.0, 50.0})
     EXPECT_NEAR(1e3 * extinction_per_m({.rain_mm_h = rate}), 0.365 * std::pow(rate, 0.63),
@@ -194,7 +194,7 @@ TEST(Weather, ExtinctionIsThatOfTheLiterature) {
 }
 
 // Oracle: Beer and Lambert, there and back.
-TEST(Weather, IntensityFallsByTheWayThereAndBack) {
+TEST(Weather, IntensityFallsOverTheWayThereAndBack) {
   const auto firings = fan(500);
   const Weather fog{.fog_visibility_m = 200};
   const Scan scan = in_weather(wall(firings, 30, 0.8F), firings, test_sensor(), {}, fog, 1, 0);
@@ -211,7 +211,7 @@ TEST(Weather, IntensityFallsByTheWayThereAndBack) {
 
 // Oracle: exp(-(exp(2 alpha r) - 1) / m), here from its words; reported far from what could answer
 // in the air in mode "last".
-TEST(Weather, ReturnsGetLostByTheFormula) {
+TEST(Weather, ReturnsAreLostByTheFormula) {
   const auto firings = fan(20'000);
   const LidarModel sensor = test_sensor();
   const BeamOptions last{.mode = ReturnMode::last};
@@ -233,7 +233,7 @@ TEST(Weather, ReturnsGetLostByTheFormula) {
   }
 }
 
-TEST(Weather, UnknownAndTinyReflectancesCountAsTheHeaderSays) {
+TEST(Weather, UnknownAndTinyReflectancesCountAsDocumented) {
   const Weather rain{.rain_mm_h = 30};
   const LidarModel sensor = test_sensor();
   EXPECT_EQ(reported_share(rain, sensor, 60, kNan), reported_share(rain, sensor, 60, 0.3));
@@ -286,7 +286,7 @@ double answers_between(const Weather& weather, double from_m, double to_m) {
 }
 
 // Oracle: the integral of the rates by another rule, and Pearson's chi-square of the ranges.
-TEST(Weather, TheAirAnswersByTheFormula) {
+TEST(Weather, ClutterFollowsTheFormula) {
   const auto firings = fan(50'000);
   const LidarModel sensor = test_sensor();
   for (const Weather& weather :
@@ -318,7 +318,7 @@ TEST(Weather, TheAirAnswersByTheFormula) {
   }
 }
 
-TEST(Weather, TheAirAnswersBeyondTheLeastRangeAtAnyRange) {
+TEST(Weather, ClutterOccursAtAnyRangeBeyondTheMinimum) {
   const auto firings = fan(20'000);
   LidarModel sensor = test_sensor();
   sensor.min_range_m = 3;
@@ -335,7 +335,7 @@ TEST(Weather, TheAirAnswersBeyondTheLeastRangeAtAnyRange) {
   EXPECT_GT(same - scan.ranges_m.begin(), count - count / 100) << "not on a grid";
 }
 
-TEST(Weather, NothingAnswersBehindAWall) {
+TEST(Weather, NoClutterBehindAWall) {
   const auto firings = fan(5'000);
   const BeamOptions first{.mode = ReturnMode::first};
   const Weather snow{.snow_mm_h = 2};
@@ -430,7 +430,7 @@ TEST(Weather, RangesKeepTheResolutionOfTheSensor) {
   for (const float range_m : scan.ranges_m) ASSERT_EQ(std::fmod(range_m, 0.25F), 0.0F);
 }
 
-TEST(Weather, DependsOnSeedScanAndFiringAlone) {
+TEST(Weather, DependsOnlyOnSeedScanAndFiring) {
   const auto firings = fan(4'000);
   const LidarModel sensor = test_sensor();
   const Weather weather{.rain_mm_h = 30, .snow_mm_h = 0.5};
@@ -464,7 +464,7 @@ TEST(Weather, NoFiringsAndNoRangeLeftAreNoReturns) {
       << "no light gets through a millimetre of visibility";
 }
 
-TEST(Weather, RefusesWhatIsNoWeather) {
+TEST(Weather, RejectsInvalidWeather) {
   const LidarModel sensor = test_sensor();
   for (const Weather& wrong :
        {Weather{.rain_mm_h = -1}, Weather{.rain_mm_h = kNan}, Weather{.fog_visibility_m = -5},

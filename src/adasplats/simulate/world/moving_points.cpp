@@ -25,7 +25,7 @@ void check(double value, const char* name) {
                                       std::to_string(value) + ", expected more than 0");
 }
 
-/// Points of the scan that move, by class and instance; each list ascends.
+/// Moving points of the scan, by class and instance; each list ascends.
 std::map<std::uint32_t, Indices> moving_objects(const KittiScan& scan, const LabelScheme& scheme) {
   std::map<std::uint32_t, Indices> objects;
   for (std::uint32_t i = 0; i < scan.classes.size(); ++i) {
@@ -39,14 +39,14 @@ std::map<std::uint32_t, Indices> moving_objects(const KittiScan& scan, const Lab
   return objects;
 }
 
-/// Whether the points of a neighbourhood say where the surface is: three or more, not on a line.
-/// What is a twentieth as wide as long is the noise of a single ring.
+/// Whether the points of a neighbourhood define a surface: at least three, not collinear. A width
+/// below a twentieth of the length is the noise of a single ring.
 bool is_flat(const Moments& moments, const LocalShape& shape) {
   constexpr double kMinWidth = 0.05;
   return moments.count >= 3 && shape.lambda[1] > kMinWidth * kMinWidth * shape.lambda[0];
 }
 
-/// Normals of one object's points, on the side of the sensor, which is at zero.
+/// Normals of the points of one object, oriented towards the sensor, which is at the origin.
 std::vector<Vec3f> object_normals(std::span<const Vec3f> points, const MovingSplatOptions& options,
                                   const Executor& executor) {
   std::vector<Vec3f> normals(points.size());
@@ -57,7 +57,7 @@ std::vector<Vec3f> object_normals(std::span<const Vec3f> points, const MovingSpl
       executor, [&](std::uint32_t) { return limit; },
       [&](std::uint32_t rank, const NeighborList& neighbors) {
         const Vec3f point = points[index.index_of(rank)];
-        // Sums in the order of distance and rank: the list is in no order.
+        // Sums in the order of distance and rank, because the list is unordered.
         std::vector<std::uint64_t> keys;
         for (std::uint32_t k = 0; k < neighbors.size; ++k) keys.push_back(neighbors.key(k));
         std::sort(keys.begin(), keys.end());
@@ -72,7 +72,7 @@ std::vector<Vec3f> object_normals(std::span<const Vec3f> points, const MovingSpl
   return normals;
 }
 
-/// What was measured without what range and incidence did to it.
+/// Measured intensities corrected for range and incidence.
 float reflectance_of(float intensity, Vec3f point, Vec3f normal,
                      const IntensityResponse* response) {
   if (response == nullptr || response->empty()) return intensity;

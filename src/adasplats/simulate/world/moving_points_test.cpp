@@ -101,7 +101,7 @@ TEST_F(MovingSplatsTest, NeighboursAreOfTheSameObject) {
 }
 
 // Oracle: the direction to the sensor.
-TEST_F(MovingSplatsTest, PointsThatSayNothingFaceTheSensor) {
+TEST_F(MovingSplatsTest, PointsWithoutNormalFaceTheSensor) {
   add({3, 4, 0}, kMovingPerson, 1);  // alone
   add({0, 5, 0}, kMovingPerson, 2);  // two
   add({0, 5, 0.1F}, kMovingPerson, 2);

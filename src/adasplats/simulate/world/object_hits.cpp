@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kRaysPerBundle = 64;  // of one ring: 10 degrees of an HDL-64
 static_assert(kFineGrain % kRaysPerBundle == 0);
 
-/// The rays that may meet one object.
+/// The rays that may hit one object.
 struct ObjectRays {
   std::vector<Ray> rays;
   std::vector<std::uint32_t> firings;
@@ -49,14 +49,14 @@ ObjectRays rays_in_object(const ScanRays& scan, const ObjectSighting& object,
   return all;
 }
 
-/// `found` is in ascending order again.
+/// Restores the ascending order of `found`.
 void to_scan(std::span<Hit> found, const ObjectSighting& object, double begin_m, const Ray& ray) {
   for (Hit& hit : found) hit = scan_hit(hit, object, begin_m, ray);
-  // Different distances in the object may be one in the world.
+  // Different distances in the object may round to the same distance in the world.
   std::sort(found.begin(), found.end());
 }
 
-/// The nearest of both go to `hits`; both ascend.
+/// Merges the nearest of both ascending lists into `hits`.
 void merge_nearest(std::span<Hit> hits, std::span<const Hit> found, std::vector<Hit>& buffer) {
   buffer.resize(hits.size() + found.size());
   std::merge(hits.begin(), hits.end(), found.begin(), found.end(), buffer.begin());
@@ -74,7 +74,7 @@ RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(ra
     sum = sum + vec_cast<double>(ray.direction);
   }
   origins = {box.center(), 0.5 * length(box.size())};
-  if (!(length(sum) > 0)) return;  // all around: every sphere may be met
+  if (!(length(sum) > 0)) return;  // rays in all directions: they may hit any sphere
   axis = normalized(sum);
   cos_half = 1;
   for (const Ray& ray : rays)
@@ -84,8 +84,8 @@ RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(ra
   cos_half -= kRounding;
 }
 
-/// Seen from the cone's tip the sphere has the half angle asin(radius / distance); it is out where
-/// the angle to its centre is larger than that and the cone's half angle together.
+/// Seen from the cone's apex, the sphere has the half angle asin(radius / distance); it is outside
+/// if the angle to its centre exceeds the sum of that and the cone's half angle.
 bool RayBundle::may_meet(const WorldSphere& sphere) const {
   const Vec3d to_center = sphere.center - origins.center;
   const double radius = sphere.radius + origins.radius;

@@ -15,8 +15,8 @@
 
 namespace adasplats {
 
-/// A cone around rays that stand side by side: most objects are out of most cones, which saves
-/// looking at every ray for every object.
+/// A cone around neighbouring rays: most objects are outside most cones, which saves testing every
+/// ray for every object.
 struct RayBundle {
   WorldSphere origins;
   Vec3d axis;
@@ -27,14 +27,14 @@ struct RayBundle {
   bool may_meet(const WorldSphere& sphere) const;
 };
 
-/// The rays of one scan, relative to the place's local origin.
+/// The rays of one scan, relative to the scene's local origin.
 struct ScanRays {
   std::vector<Ray> rays;
   std::vector<FiringRay> firings;
   std::vector<RayBundle> bundles;  ///< of 64 each
 };
 
-/// Of every 64 rays.
+/// Makes a bundle of every 64 rays.
 std::vector<RayBundle> bundles_of(std::span<const Ray> rays);
 
 /// Merges the hits of one object into those of the rays of a scan: hits[i * depth + k] of firing i,

@@ -10,35 +10,36 @@
 
 namespace adasplats {
 
-/// Where an object is at one moment of a scan.
+/// Pose of an object at one time of a scan.
 struct ObjectPose {
   Vec3d rows[3];     ///< of the rotation, object from world
-  Vec3d offset;      ///< from the object to the place's local origin, world axes, m
-  double share = 0;  ///< of the revolution that is over then
+  Vec3d offset;      ///< from the object to the scene's local origin, world axes, m
+  double share = 0;  ///< elapsed share of the revolution
 };
 
-/// An object in one scan: all that its rays and hits are made from, on the CPU and on GPUs.
+/// An object in one scan, with all data for its rays and hits, for CPU and GPU.
 struct ObjectSighting {
-  Vec3d center;           ///< of a sphere that holds it during the scan, relative to the place's
+  Vec3d center;           ///< of a sphere that contains it during the scan, relative to the scene's
   double radius_m = 0;    ///< local origin, m
   Vec3d geometry_origin;  ///< of its geometry's local frame, in the object's
   double scale = 1;       ///< m per unit of the geometry
-  float first_share = 0;  ///< of the revolution, from which it is there...
-  float last_share = 1;   ///< ...to which
+  float first_share = 0;  ///< share of the revolution at which it appears...
+  float last_share = 1;   ///< ...and disappears
   std::uint32_t geometry = 0;
   std::uint32_t first_primitive = 0;  ///< in the world
   std::uint32_t first_knot = 0;       ///< its poses by ascending shares: in ObjectSightings
-  std::uint32_t knot_count = 1;       ///< one: it stands still
+  std::uint32_t knot_count = 1;       ///< one: at rest
 };
 
-/// A ray in the frame and unit of an object's geometry. It begins where it comes near the object,
-/// so that objects in millimetres, say, do not ask for more digits than floats have.
+/// A ray in the frame and unit of an object's geometry. It begins near the object, so the precision
+/// of floats suffices, for example, for objects in millimetres.
 struct ObjectRay {
   Ray ray;
-  double begin_m = 0;  ///< of the scan's ray, where this one begins
+  double begin_m = 0;  ///< distance along the scan's ray at which this ray begins
 };
 
-/// Where a ray comes into a sphere, m, not below 0; negative where it does not within its length.
+/// Distance at which a ray enters a sphere, m, at least 0; negative if it does not within its
+/// length.
 ADASPLATS_HD inline double entry_m(const Ray& ray, Vec3d center, double radius_m) {
   constexpr double kNever = -1;
   const Vec3d to_center = center - vec_cast<double>(ray.origin);
@@ -54,13 +55,14 @@ inline ADASPLATS_HD Vec3d turned(const ObjectPose& pose, Vec3d v) {
   return {dot(pose.rows[0], v), dot(pose.rows[1], v), dot(pose.rows[2], v)};
 }
 
-/// A distance along the scan's ray in the unit of the geometry, from where the object's ray begins.
+/// Converts a distance along the scan's ray to the unit of the geometry, from the begin of the
+/// object's ray.
 ADASPLATS_HD inline double in_object(double t_m, double begin_m, double scale) {
   return (t_m - begin_m) / scale;
 }
 
-/// The last of `count` knots, at least two, that has one behind it and is not behind `share`; the
-/// first where all are.
+/// The index of the segment at `share`: the last of `count` (at least two) knots that has a
+/// successor and is not after `share`; the first if all are after it.
 ADASPLATS_HD inline std::uint32_t segment_of(const ObjectPose* knots, std::uint32_t count,
                                              double share) {
   std::uint32_t first = 0, behind = count - 1;
@@ -71,10 +73,10 @@ ADASPLATS_HD inline std::uint32_t segment_of(const ObjectPose* knots, std::uint3
   return first;
 }
 
-/// THE ray of a firing that may meet an object, for every backend. `ray`: relative to the place's
-/// local origin; `share`: of the revolution, when it is fired. Between knots, half a degree apart
-/// at most, origins and directions are mixed linearly, as those of the sensor are. False: it
-/// misses.
+/// The ray of a firing that may hit an object, the same on every backend. `ray`: relative to the
+/// scene's local origin; `share`: of the revolution at the firing. Between knots, at most half a
+/// degree apart, origins and directions are interpolated linearly, like those of the sensor. False:
+/// it misses.
 ADASPLATS_HD inline bool object_ray(const ObjectSighting& object, const ObjectPose* all_knots,
                                     const Ray& ray, float share, ObjectRay& made) {
   const double begin_m = entry_m(ray, object.center, object.radius_m);
@@ -106,7 +108,8 @@ ADASPLATS_HD inline bool object_ray(const ObjectSighting& object, const ObjectPo
   return true;
 }
 
-/// A hit of an object's ray as one of the scan's; none where rounding takes it out of its range.
+/// Converts a hit of an object's ray to one of the scan's ray; none if rounding moves it out of
+/// range.
 ADASPLATS_HD inline Hit scan_hit(Hit found, const ObjectSighting& object, double begin_m,
                                  const Ray& ray) {
   if (!found.valid()) return {};

@@ -17,7 +17,7 @@
 namespace adasplats {
 namespace {
 
-/// Added to every sphere: far above what rays of floats are off by within their range.
+/// Margin of every sphere, far above the rounding errors of rays within their range.
 constexpr double kMargin_m = 1e-2;
 
 std::uint16_t usual_class(std::span<const std::uint16_t> classes) {
@@ -35,8 +35,8 @@ ObjectPose knot_at(const PlacedObject& placed, double time_s, double share, Vec3
   return {{rows[0], rows[1], rows[2]}, scene_origin - pose.translation, share};
 }
 
-/// Begin, end, and in between the times of the object's poses, with as many others as it takes for
-/// it to turn by less than half a degree from one to the next.
+/// Begin, end, and the times of the object's poses in between, with enough additional times for it
+/// to turn by less than half a degree from one to the next.
 std::vector<double> knot_times(const PlacedObject& placed, double begin_s, double end_s) {
   constexpr double kHalfDegree_rad = 0.5 * std::numbers::pi / 180;
   constexpr double kMaxParts = 64;
@@ -85,7 +85,7 @@ WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_
   double bend = 0;
   const auto go_on = [&](const RigidTransform& pose) {
     path.add(pose * center);
-    // Turning takes the centre off the straight line between two poses by less than an eighth of
+    // A rotation moves the centre off the straight line between two poses by less than an eighth of
     // its acceleration, as for any linear interpolation.
     const double turn_rad = angle_between(before.rotation, pose.rotation);
     bend = std::max(bend, 0.125 * length(center) * turn_rad * turn_rad);
@@ -130,7 +130,7 @@ void check_object(const WorldObject& object) {
   const auto fail = [&](const std::string& what) { throw Error(ErrorKind::usage, name + what); };
   if (object.trajectory.empty()) fail(" has no pose");
   if (!(object.scale > 0) || !std::isfinite(object.scale))
-    fail(" has the scale " + std::to_string(object.scale) + ", expected more than 0");
+    fail(" has scale " + std::to_string(object.scale) + ", expected more than 0");
   for (const TimedPose& pose : object.trajectory) {
     const RigidTransform& placed = pose.world_from_sensor;
     bool finite = std::isfinite(pose.time_s) && is_finite(placed.translation);

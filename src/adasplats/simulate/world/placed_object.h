@@ -33,18 +33,18 @@ struct WorldBox {
   }
 };
 
-/// What objects are made of. It does not move in memory: its tracer keeps views.
+/// Geometry of objects. Its address must not change because its tracer keeps views of it.
 struct ObjectGeometry {
-  /// `instances`: one a primitive, or empty.
+  /// `instances`: one per primitive, or empty.
   ObjectGeometry(AnyModel model, std::vector<std::uint16_t> instances);
 
-  /// Built by who asks first: on a GPU nobody does.
+  /// Built on first use; never used on a GPU.
   const Tracer& tracer(const Executor& executor) const;
 
   AnyModel place;
   std::vector<std::uint16_t> instances;
   WorldBox box;               ///< in the object's frame, before it is scaled
-  std::uint16_t usual_class;  ///< that most primitives have
+  std::uint16_t usual_class;  ///< the most frequent class of its primitives
   std::uint32_t primitives;
 
  private:
@@ -52,7 +52,7 @@ struct ObjectGeometry {
   mutable std::unique_ptr<Tracer> tracer_;
 };
 
-/// An object and the numbers of its primitives in the world.
+/// An object and its primitive numbers in the world.
 struct PlacedObject {
   WorldObject object;
   const ObjectGeometry* geometry;
@@ -65,14 +65,15 @@ struct PlacedObject {
   RigidTransform world_from_object(double time_s) const {
     return interpolate(object.trajectory, time_s);
   }
-  /// It moves as long as a scan lasts.
+  /// Whether it moves during a scan of this duration.
   bool moves(double duration_s) const { return duration_s > 0 && object.trajectory.size() > 1; }
 };
 
-/// Holds the whole object at every time from begin_s to end_s, world coordinates.
+/// A sphere that contains the object at every time from begin_s to end_s, world coordinates.
 WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s);
 
-/// The object in a scan from begin_s on; duration_s 0: a snapshot. Appends its poses to `knots`.
+/// The object in a scan that begins at begin_s; duration_s 0: a snapshot. Appends its poses to
+/// `knots`.
 ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double duration_s,
                            Vec3d scene_origin, std::vector<ObjectPose>& knots);
 

@@ -14,16 +14,16 @@
 
 namespace adasplats {
 
-/// Where batches of scans are stored.
+/// Memory of batches of scans.
 enum class BatchMemory : std::uint8_t {
-  host,    ///< on a GPU page-locked, and reused when nobody holds the batch any more
+  host,    ///< page-locked for a GPU, and reused once the batch is released
   device,  ///< of the first GPU; complete when the sink is called
 };
 
 /// Casts into a scene and the objects of its world, on the CPU or on GPUs.
 class SceneCaster : public ScanCaster {
  public:
-  /// Without objects.
+  /// Casts without objects.
   ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
                      std::uint64_t first_number, const Executor& executor,
                      ScanSink sink) const final {
@@ -35,14 +35,14 @@ class SceneCaster : public ScanCaster {
                                    const Executor& executor, ScanSink sink) const = 0;
 
   using BatchSink = FunctionRef<void(ScanBatch&& batch)>;
-  /// The same in batches, in order and without a copy. A batch has the scans of one launch on a
-  /// GPU, of which less memory makes batches smaller; one scan on the CPU. Errors: unavailable (not
-  /// enough GPU memory for one scan; device memory on the CPU).
+  /// The same in batches, in order and without a copy. A batch contains the scans of one launch on
+  /// a GPU (fewer if its memory is small), or one scan on the CPU. Errors: unavailable (not enough
+  /// GPU memory for one scan; device memory on the CPU).
   virtual ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
                                      std::uint64_t first_number, const World* world,
                                      const Executor& executor, BatchMemory memory,
                                      BatchSink sink) const = 0;
-  /// Whether batches hold many scans, and cost no copy.
+  /// Whether batches contain many scans and need no copy.
   virtual bool has_large_batches() const = 0;
 };
 

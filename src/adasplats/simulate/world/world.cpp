@@ -19,17 +19,17 @@ struct World::Impl {
   std::uint32_t first_primitive;
   Vec3d scene_origin;
   std::vector<std::unique_ptr<ObjectGeometry>> geometries;
-  std::vector<bool> lasting;  ///< geometries of objects that are not of one scan alone
+  std::vector<bool> lasting;  ///< geometries of objects that are present in several scans
   std::vector<PlacedObject> objects;
   std::shared_ptr<const int> identity = std::make_shared<int>(0);
   std::uint32_t next_primitive;
   std::vector<std::size_t> in_all_scans;  ///< objects
-  /// Objects of one scan: what other scans have costs nothing.
+  /// Objects of a single scan, by scan, so those of other scans cost nothing.
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> by_scan;
   std::vector<std::uint16_t> classes, instances;  ///< of attributes()
   std::vector<float> intensities;
 
-  /// Objects of a scan in the order in which they were added.
+  /// Objects of a scan in the order of addition.
   std::vector<std::size_t> objects_in(std::uint64_t scan_index, double begin_s,
                                       double end_s) const {
     std::vector<std::size_t> found;
@@ -57,7 +57,7 @@ template <class T, class Of>
 void World::Impl::fill(std::uint32_t first, std::vector<T>& all, std::span<const T> place,
                        T missing, Of&& of) const {
   if (!place.empty() && place.size() != first_primitive)
-    throw std::logic_error("World: an attribute of the place needs one value a primitive");
+    throw std::logic_error("World: an attribute of the scene needs one value per primitive");
   all.clear();
   bool any = !place.empty();
   all.assign(place.begin(), place.end());
@@ -105,7 +105,7 @@ std::size_t World::add_geometries(std::size_t count, FunctionRef<NewGeometry(std
 
 void World::add_object(WorldObject object) {
   if (object.geometry >= impl_->geometries.size())
-    throw std::logic_error("World: an object of a geometry that is not there");
+    throw std::logic_error("World: the geometry of the object does not exist");
   check_object(object);
   const ObjectGeometry* const geometry = impl_->geometries[object.geometry].get();
   if (geometry->primitives >= Hit::kNone - impl_->next_primitive)
@@ -142,7 +142,7 @@ void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                      double scan_duration_s, int depth, std::span<Hit> hits,
                      const Executor& executor) const {
   if (depth < 1 || hits.size() != firings.size() * static_cast<std::size_t>(depth))
-    throw std::logic_error("World: `depth` hits a firing are needed");
+    throw std::logic_error("World: expected `depth` hits per firing");
   ObjectSightings there;
   sight(scan_index, motion, scan_duration_s, there);
   if (there.objects.empty() || firings.empty()) return;

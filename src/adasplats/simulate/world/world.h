@@ -21,31 +21,31 @@
 
 namespace adasplats {
 
-/// Something that stands or moves in the place, in a frame of its own.
+/// An object at rest or in motion in the scene, in its own frame.
 struct WorldObject {
   std::string name;
-  /// Which of the world's geometries it is.
+  /// Number of its geometry in the world.
   std::size_t geometry = 0;
-  /// world_from_object over time; one pose: it stands there. Between poses it moves evenly, before
-  /// the first and after the last it stands, or is not there (`only_during`). Objects move during a
-  /// scan where the scan does (ScanMotion::knots); a scan that stands still is a snapshot.
+  /// world_from_object over time; one pose: at rest. Between poses it moves uniformly; before the
+  /// first and after the last it is at rest or absent (`only_during`). Objects move during a scan
+  /// only if the sensor does (ScanMotion::knots); a scan at rest is a snapshot.
   Trajectory trajectory;
   bool only_during = false;
-  /// There in this scan alone: the paper's frame number (section "SimKITTI32").
+  /// Present only in this scan: the paper's frame number (section "SimKITTI32").
   std::optional<std::uint64_t> only_scan;
   double scale = 1;
   std::optional<std::uint16_t> class_id;  ///< instead of the geometry's classes
   std::uint16_t instance = 0;             ///< 0: the geometry's instances, if it has any
 };
 
-/// What an object is made of. `instances`: one a primitive, or empty; with them a geometry is the
-/// points of many objects, which has no box.
+/// The geometry of an object. `instances`: one per primitive, or empty; with instances, a geometry
+/// contains the points of many objects and has no box.
 struct NewGeometry {
   AnyModel place;
   std::vector<std::uint16_t> instances;
 };
 
-/// A box around an object, as data sets of objects have it.
+/// A box around an object, as in object data sets.
 struct ObjectBox {
   std::uint16_t class_id = 0;
   std::uint16_t instance = 0;
@@ -64,31 +64,31 @@ struct ObjectSightings {
   }
 };
 
-/// What moves in a place and what was put there: cast apart from the place itself, object by
-/// object, so that its cost is up to the objects that a scan can see, not to those of all other
+/// Moving and inserted objects of a scene. They are cast separately from the scene, object by
+/// object, so the cost depends only on the objects that a scan can see, not on those of other
 /// scans.
 class World {
  public:
-  /// `first_primitive`: of the first object, which is the number of primitives of the place.
-  /// `scene_origin`: world coordinates of the place's local origin.
+  /// `first_primitive`: of the first object, equal to the number of primitives of the scene.
+  /// `scene_origin`: world coordinates of the scene's local origin.
   World(std::uint32_t first_primitive, Vec3d scene_origin);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// Geometries are numbered in the order in which they come.
+  /// Adds a geometry; numbers follow the order of the calls.
   std::size_t add_geometry(AnyModel geometry, std::vector<std::uint16_t> instances = {});
-  /// `count` of them at once, the i-th of made(i), which several threads call; gives the number of
-  /// the first.
+  /// Adds `count` geometries, the i-th from made(i), which several threads call; returns the number
+  /// of the first.
   std::size_t add_geometries(std::size_t count, FunctionRef<NewGeometry(std::size_t)> made,
                              const Executor& executor);
-  /// Errors: usage (no poses, times that do not ascend, a scale that is not positive); data (more
-  /// primitives than have numbers); std::logic_error (no such geometry).
+  /// Errors: usage (no poses, times that do not ascend, a scale that is not positive); data (too
+  /// many primitives to number); std::logic_error (no such geometry).
   void add_object(WorldObject object);
 
-  /// Gives an object other poses: one that a user takes somewhere else while scans are made. It
-  /// stays in the scans that it is in. Not while it is cast. Errors: as add_object(), and
-  /// std::logic_error (no such object).
+  /// Replaces the poses of an object that a user moves between scans; the scans in which it is
+  /// present stay the same. Not during casts. Errors: as add_object(), and std::logic_error (no
+  /// such object).
   void move_object(std::size_t object, Trajectory trajectory);
 
   bool empty() const;
@@ -96,39 +96,37 @@ class World {
   const WorldObject& object(std::size_t object) const;
   Vec3d scene_origin() const;
 
-  /// Merges hits of the objects that are there in scan `scan_index` into hits[i * depth + k] of
-  /// firing i, ascending, for the poses in which sensor and objects are when it fires. Primitives
-  /// of objects have numbers from `first_primitive` on, object after object. `scan_duration_s`: of
-  /// a revolution, whose middle is motion.reference. The same bytes for any number of threads.
-  /// Throws std::logic_error where there are not `depth` hits a firing.
+  /// Merges hits of the objects present in scan `scan_index` into hits[i * depth + k] of firing i,
+  /// ascending, for the poses of sensor and objects at the time of the firing. Primitives of
+  /// objects are numbered from `first_primitive` on, object by object. `scan_duration_s`: duration
+  /// of a revolution centred on motion.reference. The bytes do not depend on the number of threads.
+  /// Throws std::logic_error if there are not `depth` hits per firing.
   void add_hits(std::uint64_t scan_index, const LidarModel& sensor, std::span<const Firing> firings,
                 const ScanMotion& motion, double scan_duration_s, int depth, std::span<Hit> hits,
                 const Executor& executor) const;
 
-  /// Appends the objects that are there in a scan, in the order in which they were added: what a
-  /// device needs to cast them as add_hits() does.
+  /// Appends the objects present in a scan, in the order of addition, with the data that a device
+  /// needs to cast them like add_hits().
   void sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
              ObjectSightings& all) const;
   std::size_t geometry_count() const;
   SceneView geometry_view(std::size_t geometry) const;
   const AnyModel& geometry(std::size_t geometry) const;
-  /// Whether objects that are there in many scans are made of it.
+  /// Whether objects that are present in many scans use this geometry.
   bool is_in_all_scans(std::size_t geometry) const;
-  /// Another one for every world, and after every geometry or object that is added: who keeps what
-  /// was made of it knows by it whether that still holds.
+  /// Identity for caches: differs for every world and changes with every added geometry or object.
   std::shared_ptr<const int> identity() const;
 
-  /// What primitives of the place and of the objects carry: `place` continued; views of this world.
-  /// What some objects or the place lack is 0 for them (intensities: NaN).
-  /// They end with the next call, and with an object that is added. Throws std::logic_error where
-  /// the place has values, but not one a primitive.
+  /// Attributes of the primitives of the scene (`place`), followed by those of the objects, as
+  /// views of this world. Missing attributes are 0 (intensities: NaN). Valid until the next call or
+  /// the next added object. Throws std::logic_error if the scene has attributes without a value for
+  /// every primitive.
   PrimitiveAttributes attributes(const PrimitiveAttributes& place);
-  /// Those of the objects alone, from the number of the first one on.
+  /// Attributes of the objects only, starting at the first primitive of the objects.
   PrimitiveAttributes object_attributes();
 
-  /// Boxes around the objects that are there at `time_s` in scan `scan_index`, in the order in
-  /// which they were added. An object without a class of its own has the one that most of its
-  /// primitives have.
+  /// Boxes around the objects present at `time_s` in scan `scan_index`, in the order of addition.
+  /// An object without its own class has the most frequent class of its primitives.
   std::vector<ObjectBox> boxes(std::uint64_t scan_index, double time_s) const;
 
  private:

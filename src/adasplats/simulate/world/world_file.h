@@ -17,14 +17,14 @@ namespace adasplats {
 /// One [[object]] of a world file.
 struct WorldFileObject {
   std::uint64_t line = 0;  ///< of the file, for messages
-  std::string name;        ///< the geometry's file name where none is given
+  std::string name;        ///< default: the file name of the geometry
   std::filesystem::path geometry;
   /// A number, or a name of the label scheme.
   std::optional<std::variant<std::uint16_t, std::string>> class_id;
   std::uint16_t instance = 0;
-  /// Where the geometry stands in the world, or in the frame that `trajectory` moves.
+  /// Pose of the geometry in the world, or in the frame that `trajectory` moves.
   RigidTransform placement;
-  std::filesystem::path trajectory;  ///< empty: it stands
+  std::filesystem::path trajectory;  ///< empty: at rest
   bool only_during = false;
   std::optional<std::uint64_t> only_scan;
   double scale = 1;
@@ -51,14 +51,15 @@ struct WorldFile {
   std::vector<WorldFileObject> objects;
 };
 
-/// Reads the file itself; the files that it names are only looked for. Errors: config with the line
-/// (an unknown key, with the nearest known; a value of another kind or out of range), no_input (a
-/// named file is not there, with the line).
+/// Reads the file and checks that the files it names exist. Errors: config with the line (an
+/// unknown key, with the nearest known key; a value of the wrong type or out of range), no_input (a
+/// named file does not exist, with the line).
 WorldFile read_world_file(const std::filesystem::path& path);
 
-/// Loads what the objects are made of, each file once, and puts the objects into `world`. Classes
-/// by name are those of `scheme`. Errors: config with the line (an unknown class, with the nearest
-/// known; "during" without a second pose), those of load_mesh, load_model and read_trajectory.
+/// Loads the geometries of the objects, each file once, and adds the objects to `world`. Class
+/// names are those of `scheme`. Errors: config with the line (an unknown class, with the nearest
+/// known class; "during" without a second pose), those of load_mesh, load_model and
+/// read_trajectory.
 void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme);
 
 }  // namespace adasplats

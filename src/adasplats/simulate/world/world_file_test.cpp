@@ -46,7 +46,7 @@ class WorldFileTest : public testing::Test {
   Executor executor_{1};
 };
 
-TEST_F(WorldFileTest, ObjectsThatHaveNoNumberLeftNeedAnInstance) {
+TEST_F(WorldFileTest, ObjectsWithoutAFreeNumberNeedAnInstance) {
   std::string content;
   for (int i = 0; i < 65536; ++i) content += "[[object]]\ngeometry = \"parts/car.obj\"\n";
   expect_error(ErrorKind::config, {"instance", "65536"}, [&] { read(content); });
@@ -97,14 +97,14 @@ geometry = "splats.ply"
   EXPECT_EQ(plain.scale, 1);
 }
 
-TEST_F(WorldFileTest, NothingIsAWorldToo) {
+TEST_F(WorldFileTest, AnEmptyFileIsAWorld) {
   EXPECT_TRUE(read("").model.empty());
   EXPECT_TRUE(read("# a comment\n").objects.empty());
   EXPECT_TRUE(filled("model = \"street.ply\"").empty());
 }
 
 // Oracle: the corners of the triangle, turned, scaled and moved by hand.
-TEST_F(WorldFileTest, ObjectsStandWhereTheFileSays) {
+TEST_F(WorldFileTest, ObjectsHaveThePositionsInTheFile) {
   const World world = filled(R"(
 [[object]]
 geometry = "parts/car.obj"

@@ -130,7 +130,7 @@ class WorldTest : public testing::Test {
 };
 
 // Oracle: a world in which it has stood there from the first.
-TEST_F(WorldTest, AnObjectThatIsMovedIsAsIfItHadAlwaysBeenThere) {
+TEST_F(WorldTest, MovingAnObjectEqualsAddingItThere) {
   World moved = world(), there = world();
   for (World* const each : {&moved, &there})
     each->add_object(object(each->add_geometry(wall_mesh(4, 3)), {{0, pose(20, 0, 0)}}));
@@ -197,7 +197,7 @@ TEST_F(WorldTest, TurningWallBesideAStandingSensor) {
 }
 
 // Oracle: slabs. The box drives past, turns and has its centre off its origin.
-TEST_F(WorldTest, BoxThatDrivesPastHasTheOutlineOfItsTimes) {
+TEST_F(WorldTest, APassingBoxHasTheOutlineOfItsTimes) {
   constexpr double kSpeed = 30, kTurn = 1.0;
   const Vec3d half = {2.25, 0.9, 0.75};
   const Vec3d off = {1.5, -0.5, 0.25};
@@ -226,7 +226,7 @@ TEST_F(WorldTest, BoxThatDrivesPastHasTheOutlineOfItsTimes) {
 }
 
 // A scan that stands still is a snapshot of its reference time.
-TEST_F(WorldTest, StandingScanSeesASnapshot) {
+TEST_F(WorldTest, AScanAtRestSeesASnapshot) {
   World world = this->world();
   const std::size_t wall = world.add_geometry(wall_mesh(40, 15));
   world.add_object(object(wall, {{-1, pose(5, 0, 0)}, {1, pose(45, 0, 0)}}));
@@ -239,7 +239,7 @@ TEST_F(WorldTest, StandingScanSeesASnapshot) {
   EXPECT_GT(std::ranges::count_if(hits, &Hit::valid), 2000);
 }
 
-TEST_F(WorldTest, BoxHidesWhatIsBehindItAndNothingElse) {
+TEST_F(WorldTest, ABoxHidesOnlyWhatIsBehindIt) {
   World world = this->world();
   world.add_object(object(world.add_geometry(box_mesh({1, 1, 1})), {{0, pose(10, 0, 0)}}));
   const std::vector<Hit> box = hits_of(world, standing());
@@ -280,7 +280,7 @@ TEST_F(WorldTest, DeeperHitsAreMerged) {
 }
 
 // Oracle: brute force over place and objects as one scene.
-TEST_F(WorldTest, HitsAreThoseOfOneScene) {
+TEST_F(WorldTest, HitsMatchASingleScene) {
   constexpr int kDepth = 5;
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < 2000; ++i) {
@@ -318,7 +318,7 @@ TEST_F(WorldTest, HitsAreThoseOfOneScene) {
   }
 }
 
-TEST_F(WorldTest, ObjectsOfOneScanAreSeenInItAlone) {
+TEST_F(WorldTest, ObjectsOfOneScanAreSeenOnlyInIt) {
   World world = this->world();
   const std::size_t near_box = world.add_geometry(box_mesh({1, 1, 1}));
   for (const std::uint64_t scan : {3U, 7U}) {
@@ -339,7 +339,7 @@ TEST_F(WorldTest, ObjectsOfOneScanAreSeenInItAlone) {
 }
 
 // Oracle: the times of the firings.
-TEST_F(WorldTest, ObjectThatComesDuringAScan) {
+TEST_F(WorldTest, AnObjectThatAppearsDuringAScan) {
   World world = this->world();
   const std::size_t box = world.add_geometry(box_mesh({30, 30, 30}));
   WorldObject coming = object(box, {{0.01, pose(0, 0, 0)}, {5, pose(0, 0, 0)}});
@@ -434,7 +434,7 @@ TEST_F(WorldTest, SameBytesOnAnyThreads) {
   }
 }
 
-TEST_F(WorldTest, AttributesGoOnWhereThoseOfThePlaceEnd) {
+TEST_F(WorldTest, AttributesFollowThoseOfTheScene) {
   World world(2, {});
   SplatModel splats;
   splats.disks.resize(3, {{0, 0, 0}, 1, {1, 0, 0}});
@@ -473,7 +473,7 @@ TEST_F(WorldTest, AttributesGoOnWhereThoseOfThePlaceEnd) {
   EXPECT_THROW(world.attributes(place), std::logic_error);
 }
 
-TEST_F(WorldTest, AttributesThatNobodyHasStayEmpty) {
+TEST_F(WorldTest, MissingAttributesStayEmpty) {
   World world(2, {});
   EXPECT_TRUE(world.empty());
   const std::vector<std::uint16_t> classes = {40, 50};
@@ -488,7 +488,7 @@ TEST_F(WorldTest, AttributesThatNobodyHasStayEmpty) {
   EXPECT_TRUE(world.attributes({}).classes.empty());
 }
 
-TEST_F(WorldTest, BoxesStandAroundTheObjects) {
+TEST_F(WorldTest, BoxesEncloseTheObjects) {
   World world = this->world();
   MeshModel car = box_mesh({2, 0.75F, 0.5F});
   car.origin = {0, 0, 0.5};
@@ -515,7 +515,7 @@ TEST_F(WorldTest, BoxesStandAroundTheObjects) {
               0.5, 1e-9);
 }
 
-TEST_F(WorldTest, ObjectsThatMakeNoSense) {
+TEST_F(WorldTest, InvalidObjects) {
   World world = this->world();
   const std::size_t wall = world.add_geometry(wall_mesh(1, 1));
   const auto expect_refused = [&](const WorldObject& wrong, const std::string& why) {
@@ -543,7 +543,7 @@ TEST_F(WorldTest, ObjectsThatMakeNoSense) {
 }
 
 // Oracle: one geometry after the other.
-TEST_F(WorldTest, GeometriesThatAreMadeAtOnceAreNumberedInTheirOrder) {
+TEST_F(WorldTest, ConcurrentGeometriesAreNumberedInOrder) {
   constexpr std::size_t kCount = 40;
   const auto box = [](std::size_t i) {
     const float half = 0.5F + 0.02F * static_cast<float>(i);
@@ -576,7 +576,7 @@ TEST_F(WorldTest, GeometriesThatAreMadeAtOnceAreNumberedInTheirOrder) {
   }
 }
 
-TEST_F(WorldTest, NothingInManyForms) {
+TEST_F(WorldTest, EmptyInputsOfManyKinds) {
   World world = this->world();
   EXPECT_EQ(hits_of(world, standing()), nothing());
   world.add_object(object(world.add_geometry(SplatModel{}), {{0, {}}}));
