@@ -137,7 +137,7 @@ class FullDisk(ProgramTest):
 
     def test_too_small_for_the_least(self):
         self.run_bad(74, *self.command("--rate", "50000"),
-                     says=["no room: 10001 scans need 46.08 MB if 10 %", "576.06 MB",
+                     says=["not enough disk space: 10001 scans need 46.08 MB if 10 %", "576.06 MB",
                            "MB are free"])
         self.assertEqual(os.listdir(self.disk), [])
 
@@ -149,7 +149,7 @@ class FullDisk(ProgramTest):
                                   says=["No space left on device"])
             kept = os.listdir(self.disk)
             self.assertEqual(kept, [] if word == "mcap" else [".scans.unfinished"], word)
-            self.assertEqual("the same command goes on" in result.stderr, word != "mcap")
+            self.assertEqual("the same command resumes there" in result.stderr, word != "mcap")
             if word == "semantickitti":
                 # With more room it does.
                 subprocess.run(["mount", "-o", "remount,size=64m", str(self.disk)], check=True)

@@ -99,7 +99,7 @@ class SimulateTasks(ProgramTest):
             self.assertIn("returns", self.run_good(*task).stdout)
         scan = self.unfinished / "sequences" / "00" / "velodyne" / "000003.bin"
         before = scan.stat().st_mtime_ns
-        self.assertIn("were done", self.run_good(*tasks[0]).stdout)
+        self.assertIn("already done", self.run_good(*tasks[0]).stdout)
         self.assertEqual(scan.stat().st_mtime_ns, before)
         self.assertEqual(self.plan("10"), [])
         # What is damaged is made again.
@@ -109,7 +109,7 @@ class SimulateTasks(ProgramTest):
         self.assertIn("returns", self.run_good(*tasks[0]).stdout)
         self.assertEqual(scan.read_bytes(), content)
         self.finish()
-        self.assertIn("were done", self.run_good(*tasks[0]).stdout)
+        self.assertIn("already done", self.run_good(*tasks[0]).stdout)
 
     def test_a_run_makes_what_tasks_did_not(self):
         tasks = self.plan("10")
@@ -119,7 +119,7 @@ class SimulateTasks(ProgramTest):
     def test_a_drive_elsewhere_is_an_error_as_in_one_run(self):
         for task in self.plan("30", "--offset", "0,0,9000"):
             self.assertIn("0 returns", self.run_good(*task).stdout)
-            self.assertIn("were done", self.run_good(*task).stdout)
+            self.assertIn("already done", self.run_good(*task).stdout)
         self.run_bad(65, *self.command("--offset", "0,0,9000"), says=["no returns"])
 
     def test_other_jobs_and_options(self):

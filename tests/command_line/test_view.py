@@ -79,7 +79,7 @@ class ViewTest(ProgramTest):
         self.assertEqual([layer["has_errors"] for layer in layers], [False, True])
         process.send_signal(signal.SIGINT)
         said = process.communicate(timeout=20)[1]
-        self.assertRegex(said, "warning: .*errors.ply: does not say which splats")
+        self.assertRegex(said, "warning: .*errors.ply: has no column 'splat'")
 
     def test_errors_with_a_sign_have_parts(self):
         model = self.model()

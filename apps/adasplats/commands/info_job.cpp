@@ -124,8 +124,8 @@ void describe_las(const LasFacts& las, FileFacts& facts) {
                        {"offset", {las.offset.x, las.offset.y, las.offset.z}}};
 }
 
-/// Whether a file's classes are those of the specification of LAS, as far as that can be told: ours
-/// have the ids of any scheme.
+/// Whether a file's classes are those of the specification of LAS, as far as that can be
+/// determined: ours have the ids of any scheme.
 bool has_las_classes(const LasFacts& las, const Table& table, const std::string& label_field) {
   if (!label_field.empty() && label_field != "classification") return false;
   return las.software != "adasplats" && table.find("label") == nullptr &&
@@ -266,7 +266,7 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
                            {"longest_step", steps_s.back()}};
 }
 
-/// What was understood of a drive, as far as there is anything to tell.
+/// What the reader inferred about a drive; fields without a value are left out.
 void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   const auto add = [&facts](const char* name, const char* key, const std::string& text) {
     if (text.empty()) return;

@@ -26,7 +26,7 @@ class DriveReader {
   std::vector<DriveSource> sources();
   /// Of what was read so far, every scan counted once; its drives are complete from the beginning.
   const LoadReport& report() const { return report_; }
-  /// Tells the session how often warnings of single pieces were repeated.
+  /// Reports to the session how often warnings of single parts were repeated.
   void end();
 
  private:

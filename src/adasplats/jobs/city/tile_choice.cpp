@@ -131,7 +131,7 @@ TileAdvice advise_tiles(const CityJob& job, Session& session) {
     return one_piece(most, memory_gb);
   LoadOptions load = job.load;
   load.empty_beams = false;
-  load.own_body_m = 0;   // single scans would not tell it
+  load.own_body_m = 0;   // cannot be estimated from single scans
   load.max_dropped = 1;  // nor whether too much of the whole is dropped
   const OpenInputs inputs(job.inputs, load, session.executor, session.progress);
   const PlaceEstimate place = estimate_place(inputs, session);

@@ -24,7 +24,7 @@ constexpr std::size_t kTilesAGpu = 3;
 /// Threads that one tile keeps busy on the CPU.
 constexpr std::size_t kThreadsPerTile = 8;
 
-/// What workers have to tell.
+/// Messages from workers.
 struct News {
   std::optional<std::size_t> done;
   std::string warning;
@@ -40,7 +40,7 @@ class WorkQueue {
     if (stops_ || next_ == count_) return std::nullopt;
     return next_++;
   }
-  void tell(News news) {
+  void push(News news) {
     const std::lock_guard lock(mutex_);
     news_.push_back(std::move(news));
     changed_.notify_one();
@@ -61,8 +61,8 @@ class WorkQueue {
     changed_.notify_one();
   }
 
-  /// What there is to tell, when there is something, or nothing for a while; false when all workers
-  /// have ended and everything was told.
+  /// Waits for a message, or returns none after a while; false when all workers have ended and no
+  /// message is left.
   bool wait(std::size_t workers, std::deque<News>& news) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(100),
@@ -88,7 +88,7 @@ class WorkQueue {
 class QueuedWarnings final : public ProgressSink {
  public:
   explicit QueuedWarnings(WorkQueue& queue) : queue_(queue) {}
-  void warn(std::string_view message) override { queue_.tell({{}, std::string(message)}); }
+  void warn(std::string_view message) override { queue_.push({{}, std::string(message)}); }
 
  private:
   WorkQueue& queue_;
@@ -102,7 +102,7 @@ void work_on(WorkQueue& queue, const Session& whole, int threads, DeviceChoice d
     Session session = {executor, warnings, whole.seed, device};
     while (const std::optional<std::size_t> k = queue.next()) {
       work(*k, session);
-      queue.tell({k, {}});
+      queue.push({k, {}});
     }
   } catch (...) {
     queue.fail(std::current_exception());

@@ -85,7 +85,7 @@ inline constexpr std::string_view kLidar4dComparable = "same protocol, other sce
 inline constexpr std::string_view kLidar4dDiffers[] = {
     "another recording than the paper's (KITTI-360)", "no LPIPS",
     "no dynamic scene: what moves is not in the model and counts against it",
-    "a pixel returns where its ray hits; the paper foretells a probability with a network"};
+    "a pixel returns where its ray hits; the paper predicts a probability with a network"};
 
 /// What is evaluated in addition.
 struct HeldOutExtras {
