@@ -35,8 +35,8 @@ void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
         windows.window_scans);
 }
 
-/// The windows of a drive: all as long, to a scan, none longer than `window_scans` (2 or more);
-/// each overlaps with the next by half. One, where that holds the drive.
+/// Splits a drive into windows of at most `window_scans` (2 or more) scans. Their lengths differ by
+/// at most one scan, and each overlaps the next by half. A short drive has one window.
 std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans);
 
 /// A drive whose scans need not be in memory.

@@ -28,8 +28,8 @@ struct GpuSearch {
 /// or in a build without CUDA it says so in `reason`.
 GpuSearch find_gpus();
 
-/// What other work leaves of a GPU's memory, bytes; 0 where it is not known. Starts CUDA on
-/// it, which takes a while and some memory.
+/// Free memory of a GPU, bytes; 0 if CUDA does not report it. Starts CUDA on the GPU, which takes
+/// a while and some memory.
 std::size_t free_memory_bytes(int device);
 
 /// Whether this build has CUDA code.

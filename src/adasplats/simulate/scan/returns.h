@@ -131,9 +131,9 @@ std::size_t reported_returns(std::span<Return> pulses, const BeamOptions& option
 /// The returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the order in
 /// which the sensor reports them (reported_returns()). `classes`: of the primitives, or empty. At
 /// most options.returns; `out` has that size. Never mixes hits of two classes or of two objects
-/// that stand apart: the range of a return is the mean of the echoes within depth_gap_m of its
-/// first one, as a receiver triggers on the rising edge. Gives how many there are. Throws
-/// std::logic_error where there is no class of a primitive.
+/// that are apart: the range of a return is the mean of the echoes within depth_gap_m of its
+/// first one, as a receiver triggers on the rising edge. Returns the number of returns. Throws
+/// std::logic_error if a primitive has no class.
 std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights,
                        std::span<const std::uint16_t> classes, const BeamOptions& options,
                        std::span<Return> out);

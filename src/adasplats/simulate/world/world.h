@@ -114,8 +114,8 @@ class World {
   const AnyModel& geometry(std::size_t geometry) const;
   /// Whether objects that are there in many scans are made of it.
   bool is_in_all_scans(std::size_t geometry) const;
-  /// Another one for every world, and after every geometry or object that is added: who keeps what
-  /// was made of it knows by it whether that still holds.
+  /// Differs between worlds and changes when geometry or an object is added, so that caches of
+  /// derived data can detect that they are out of date.
   std::shared_ptr<const int> identity() const;
 
   /// What primitives of the place and of the objects carry: `place` continued; views of this world.
