@@ -219,6 +219,14 @@ int failed(int code, const std::string& message) {
   return code;
 }
 
+/// The parser's "Could not convert: --cell = abc" as "--cell = abc: the value has the wrong type".
+std::string conversion_message(const CLI::ConversionError& error) {
+  constexpr std::string_view kPrefix = "Could not convert: ";
+  const std::string message = error.what();
+  if (!message.starts_with(kPrefix)) return message;
+  return message.substr(kPrefix.size()) + ": the value has the wrong type (see --help)";
+}
+
 /// Every way in which a run can end.
 int guarded_run(int argc, char** argv) {
   try {
@@ -230,6 +238,8 @@ int guarded_run(int argc, char** argv) {
     return kExitSignal + kSigPipe;
   } catch (const Error& error) {
     return failed(exit_code(error.kind()), error.what());
+  } catch (const CLI::ConversionError& error) {
+    return failed(exit_code(ErrorKind::usage), conversion_message(error));
   } catch (const CLI::ParseError& error) {
     return failed(exit_code(ErrorKind::usage), error.what());
   } catch (const std::bad_alloc&) {
