@@ -72,7 +72,7 @@ struct Program {
     commands.push_back(make_send_command(app));
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",
                                "  adasplats evaluate c2c scans street/mapping.ply\n"
-                               "  adasplats evaluate resimulate place.ply sequences/01\n");
+                               "  adasplats evaluate resimulate model.ply sequences/01\n");
     for (auto& command : make_evaluate_commands(evaluate)) commands.push_back(std::move(command));
     commands.push_back(make_fit_drop_command(app));
     commands.push_back(make_fit_sensor_command(app));

@@ -270,9 +270,10 @@ class ScansOfFile {
 /// Warns that pieces of a file do not have whole scans.
 void warn_of_cut_scans(const std::filesystem::path& file, const std::string& why,
                        ProgressSink& progress) {
-  progress.warn(file.string() + ": " + why +
-                "; since it is read in pieces, empty beams are not found, and traffic in the "
-                "driven path is removed only along the path of its own piece");
+  progress.warn(
+      file.string() + ": " + why +
+      "; it is read in parts, so empty beams are not found, and traffic in the driven path "
+      "is removed only along the path of each part");
 }
 
 /// Pieces of whole scans; none if the file has no scans.
