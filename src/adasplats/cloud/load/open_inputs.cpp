@@ -115,8 +115,8 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage(
-        "`viewpoint` and `trajectory` need point files; the inputs are sequence folders, which "
-        "contain their own poses (poses.txt)");
+        "`viewpoint` and `trajectory` need point files; all inputs are drives, which use the pose "
+        "of each scan");
 }
 
 /// Rounded to the steps of a file's coordinates, as its points are: headers may have more digits.
