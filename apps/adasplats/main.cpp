@@ -72,7 +72,7 @@ struct Program {
     commands.push_back(make_send_command(app));
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",
                                "  adasplats evaluate c2c scans street/mapping.ply\n"
-                               "  adasplats evaluate resimulate place.ply sequences/01\n");
+                               "  adasplats evaluate resimulate model.ply sequences/01\n");
     for (auto& command : make_evaluate_commands(evaluate)) commands.push_back(std::move(command));
     commands.push_back(make_fit_drop_command(app));
     commands.push_back(make_fit_sensor_command(app));
@@ -219,6 +219,14 @@ int failed(int code, const std::string& message) {
   return code;
 }
 
+/// The parser's "Could not convert: --cell = abc" as "--cell = abc: the value has the wrong type".
+std::string conversion_message(const CLI::ConversionError& error) {
+  constexpr std::string_view kPrefix = "Could not convert: ";
+  const std::string message = error.what();
+  if (!message.starts_with(kPrefix)) return message;
+  return message.substr(kPrefix.size()) + ": the value has the wrong type (see --help)";
+}
+
 /// Every way in which a run can end.
 int guarded_run(int argc, char** argv) {
   try {
@@ -230,6 +238,8 @@ int guarded_run(int argc, char** argv) {
     return kExitSignal + kSigPipe;
   } catch (const Error& error) {
     return failed(exit_code(error.kind()), error.what());
+  } catch (const CLI::ConversionError& error) {
+    return failed(exit_code(ErrorKind::usage), conversion_message(error));
   } catch (const CLI::ParseError& error) {
     return failed(exit_code(ErrorKind::usage), error.what());
   } catch (const std::bad_alloc&) {

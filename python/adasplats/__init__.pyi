@@ -437,14 +437,14 @@ class PointCloud:
         """(N, 3) float32, m, relative to origin."""
     @property
     def origin_kinds(self) -> NDArray[np.uint8] | None:
-        """(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; or
+        """(N,) uint8, source of sensor_positions: 0 unknown, 1 guessed, 2 stated, 3 measured; or
         None."""
     @property
     def sensor_positions(self) -> NDArray[np.float32] | None:
         """(N, 3) float32, m, relative to origin; or None."""
     @property
     def intensities(self) -> NDArray[np.float32] | None:
-        """(N,) float32, in the unit of the file, NaN where it is not known; or None."""
+        """(N,) float32, in the unit of the file, NaN if unknown; or None."""
     @property
     def classes(self) -> NDArray[np.uint16] | None:
         """(N,) uint16, ids of a label scheme; or None."""
@@ -456,8 +456,7 @@ class PointCloud:
         """(N,) uint32, the scan that a point is from; or None."""
     @property
     def lasers(self) -> NDArray[np.uint16] | None:
-        """(N,) uint16, the laser that measured a point, topmost 0; 65535 where it is not known; or
-        None."""
+        """(N,) uint16, the laser that measured a point, topmost 0; 65535 if unknown; or None."""
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""

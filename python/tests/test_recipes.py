@@ -217,7 +217,7 @@ def test_compare_rejects_wrong_arguments(street, tmp_path, monkeypatch):
                               **{"program": PROGRAM, **options})
         assert not (tmp_path / "none" / "compare.json").exists()
 
-    rejects(ValueError, "'basics' is not known, did you mean 'basic'", methods=["basics"])
+    rejects(ValueError, "unknown method 'basics', did you mean 'basic'", methods=["basics"])
     rejects(TypeError, "methods must be None or a list of strings", methods="basic")
     rejects(TypeError, "meshes must be None or a dict", meshes=["a.ply"])
     rejects(ValueError, "'a b' must consist of letters", meshes={"a b": street.mesh})

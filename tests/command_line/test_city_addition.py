@@ -162,7 +162,7 @@ class CityAddition(ProgramTest):
         self.make_first()
         far = self.folder / "far.ply"
         write_cloud(far, moved(self.new_points, 60))
-        self.run_warned("whether they fit is not known", *self.addition(new=far))
+        self.run_warned("their fit cannot be checked", *self.addition(new=far))
         old, new = self.tiles(self.first), self.tiles(self.both)
         self.assertEqual([tile for key, tile in new.items() if key in old], list(old.values()))
         self.assertGreater(sum(tile["splats"] for key, tile in new.items() if key not in old), 100)

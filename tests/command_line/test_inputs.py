@@ -220,7 +220,7 @@ class Dropped(ProgramTest):
         before = self.names()
         self.run_bad(65, "simulate", model, "--trajectory", self.poses, "--sensor", self.sensor,
                      "--offset", "0,0,5000", "-o", self.folder / "scans",
-                     says=["no returns", "of the model's box", "offset"])
+                     says=["no returns", "from the model's box", "offset"])
         self.assertEqual(self.names(), before)
 
 

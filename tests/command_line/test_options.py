@@ -58,7 +58,7 @@ class OptionsTest(ProgramTest):
     def test_default_method_prints_its_own_figures(self):
         path = self.folder / "m.ply"
         text = self.run_good("model", self.cloud, "-o", path, "--labels", "semantickitti").stdout
-        for word in [" cells, ", " seeds, ", " measured rays"]:
+        for word in [" cells, ", " seeds; removed ", " measured rays"]:
             self.assertIn(word, text)
         for word in ["R 0", "E 0", "noisy", "resampled"]:
             self.assertNotIn(word, text)

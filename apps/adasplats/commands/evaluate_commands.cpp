@@ -173,10 +173,10 @@ class EvaluateResimulateCommand final : public ResultCommand {
   explicit EvaluateResimulateCommand(CLI::App& evaluate)
       : ResultCommand(
             evaluate, "resimulate", "Cast the beams of held-out scans again and compare ranges",
-            "  adasplats evaluate resimulate place.ply sequences/01\n"
-            "  adasplats evaluate resimulate place.ply sequences/01 --max-range 80 --report "
+            "  adasplats evaluate resimulate model.ply sequences/01\n"
+            "  adasplats evaluate resimulate model.ply sequences/01 --max-range 80 --report "
             "held-out.json\n"
-            "  adasplats evaluate resimulate place.ply sequences/01 --protocol lidar4d\n") {
+            "  adasplats evaluate resimulate model.ply sequences/01 --protocol lidar4d\n") {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
     require(add_path(app, "SEQUENCE", job_.sequence,

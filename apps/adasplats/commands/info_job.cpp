@@ -103,7 +103,7 @@ std::string fields_of(const Table& table) {
 /// Which system, of what says one or not.
 void describe_crs(const Crs& crs, FileFacts& facts) {
   const std::string name = crs.name();
-  facts.rows.emplace_back("coordinate system", name.empty() ? "not said" : name);
+  facts.rows.emplace_back("coordinate system", name.empty() ? "none in the file" : name);
   facts.json["crs"] = name;
   if (!crs.wkt.empty()) facts.json["crs_wkt"] = crs.wkt;
 }

@@ -55,13 +55,12 @@ std::string figures_of(const BuildReport& built) {
   const ConsistentReport& report = *built.consistent;
   const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
   if (!report.checked) return seeds + ", no visibility check (no measured rays)";
-  return seeds + ", " + grouped(report.seeds_removed) + " of them contradicted by " +
-         grouped(report.rays) + " measured rays" +
-         (report.empty_beams == 0
-              ? std::string()
-              : " and " + grouped(report.empty_beams) + " beams without return") +
-         " and removed, " + grouped(report.splats_filled) +
-         " splats put back where rays fell through";
+  const std::string empty_beams =
+      report.empty_beams == 0 ? ""
+                              : " and " + grouped(report.empty_beams) + " beams without return";
+  return seeds + "; removed " + grouped(report.seeds_removed) + " seeds that contradict " +
+         grouped(report.rays) + " measured rays" + empty_beams + ", restored " +
+         grouped(report.splats_filled) + " where rays missed all splats";
 }
 
 std::string segmentation_text(const SegmentReport& segmented) {

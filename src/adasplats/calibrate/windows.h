@@ -35,8 +35,8 @@ void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
         windows.window_scans);
 }
 
-/// Splits a drive into windows of equal length (to within one scan), at most `window_scans` (2 or
-/// more); each overlaps the next by half. A single window if it covers the drive.
+/// Splits a drive into windows of at most `window_scans` (2 or more) scans. Their lengths differ by
+/// at most one scan, and each overlaps the next by half. A short drive has one window.
 std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans);
 
 /// A drive that is read in parts.

@@ -115,11 +115,11 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 std::string unknown_word(const std::string& what, const std::string& word,
                          const std::vector<std::string>& known) {
-  const std::string found = what + " '" + word + "' is not known";
+  const std::string found = "unknown " + what + " '" + word + "'";
   if (const std::string meant = did_you_mean(word, known); !meant.empty()) return found + meant;
   std::string all;
   for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-  return found + (known.empty() ? "" : "; known are " + all);
+  return found + (known.empty() ? "" : "; expected one of " + all);
 }
 
 }  // namespace adasplats

@@ -65,7 +65,7 @@ std::optional<std::string> nearest_word(const std::string& word,
 /// ", did you mean 'x'?" or ", did you mean 'x', 'y' or 'z'?" of similar_words(); "" for none.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
-/// "WHAT 'x' is not known, did you mean 'y'?", or with a list of all known words.
+/// "unknown WHAT 'x', did you mean 'y'?", or with a list of all known words.
 std::string unknown_word(const std::string& what, const std::string& word,
                          const std::vector<std::string>& known);
 

@@ -203,7 +203,7 @@ void read_packets(const TomlTable& table, std::size_t beams, LidarModel& model) 
     const std::string word = table.text("packets", "");
     const std::vector<std::string> words = list_of<PacketFormat>(kPacketFormats);
     if (std::ranges::find(words, word) == words.end())
-      throw table.error("packets", "have an unknown format: " + unknown_word("it", word, words));
+      throw table.error("packets", "have an " + unknown_word("format", word, words));
     if (!model.packets) model.packets.emplace();
     model.packets->format = value_of(word, kPacketFormats);
   }

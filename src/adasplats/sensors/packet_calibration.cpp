@@ -99,7 +99,7 @@ Vec3d common_origin(const LidarModel& model) {
                        "its beams have different origins, which Ouster metadata cannot hold");
   if (origin.y != 0)
     throw not_ouster(model,
-                     "the origin of its beams is beside the axis (y is not 0), which Ouster "
+                     "the origin of its beams is off the axis (y is not 0), which Ouster "
                      "metadata cannot hold");
   return origin;
 }

@@ -240,11 +240,11 @@ std::string origin_warning(bool checks, const OriginCounts& counts) {
                      : std::to_string(lacking) + " of " + std::to_string(all) + " points have no";
   if (!checks)
     return which +
-           " sensor positions: their normals are not oriented (supply `trajectory` or `viewpoint`)";
+           " sensor positions, so normals are not oriented (supply `trajectory` or `viewpoint`)";
   const std::string guesses = " measured sensor positions (" + std::to_string(guessed) +
                               " points have guessed ones, which only orient normals)";
   return which + (guessed == 0 ? " sensor positions" : guesses) +
-         ": their splats cannot be checked against rays";
+         ", so splats cannot be checked against rays";
 }
 
 }  // namespace

@@ -93,9 +93,9 @@ std::vector<double> elevations_of(const ScanRings& scan, const RecordingRings& r
   return elevations_rad;
 }
 
-/// Whether any beam of a ring can be as steep in the world as an empty one has to be; false for a
-/// ring that is not known. So most rings of most sensors, and all of KITTI's on level roads, need
-/// no look at single beams.
+/// Whether any beam of a ring can be as steep in the world as an empty beam must be; false for a
+/// ring without elevation. It spares the test of single beams in most rings of most sensors, and
+/// in all rings of KITTI on level roads.
 bool may_be_empty(double elevation_rad, const Mat3d& world_from_sensor,
                   const EmptyBeamOptions& options) {
   constexpr double kRounding = 1e-9;

@@ -123,7 +123,8 @@ std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
   if (folder.count(FileKind::points) == 0) {
     throw Error(ErrorKind::no_input, folder.path.string() +
                                          ": contains neither a folder 'velodyne' nor point files" +
-                                         (others == 0 ? "" : "; it contains " + list_of(folder)));
+                                         (others == 0 ? "" : ", only " + list_of(folder)) +
+                                         "; give the folder that contains the scans");
   }
   const std::vector<fs::path>& files = folder.files.at(FileKind::points);
   const std::size_t poses =

@@ -70,7 +70,7 @@ PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track
                             double time_offset_s);
 
 /// Scales the intensities of a drive to 0..1, as in KITTI, if they are bytes: all are whole numbers
-/// from 0 to 255, and one exceeds 1. Else they are not changed.
+/// from 0 to 255, and one exceeds 1. Otherwise they stay.
 class IntensityScale {
  public:
   /// Inferred from some scans of the drive.

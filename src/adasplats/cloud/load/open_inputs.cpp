@@ -115,8 +115,8 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage(
-        "`viewpoint` and `trajectory` need a point file; all inputs have their own sensor "
-        "positions");
+        "`viewpoint` and `trajectory` need point files; all inputs are drives, which use the pose "
+        "of each scan");
 }
 
 /// Rounded to the steps of a file's coordinates, as its points are: headers may have more digits.
@@ -270,9 +270,10 @@ class ScansOfFile {
 /// Warns that pieces of a file do not have whole scans.
 void warn_of_cut_scans(const std::filesystem::path& file, const std::string& why,
                        ProgressSink& progress) {
-  progress.warn(file.string() + ": " + why +
-                "; since it is read in pieces, empty beams are not found, and traffic in the "
-                "driven path is removed only along the path of its own piece");
+  progress.warn(
+      file.string() + ": " + why +
+      "; it is read in parts, so empty beams are not found, and traffic in the driven path "
+      "is removed only along the path of each part");
 }
 
 /// Pieces of whole scans; none if the file has no scans.

@@ -34,9 +34,9 @@ RecordedPoses poses_of_trajectory(const DriveInput& drive, const std::vector<dou
 RecordedPoses poses_of_clouds(const DriveInput& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s);
 
-/// Poses to drive the same route again: those of the clouds' frame, or of a vehicle that no
-/// transforms connect to it. Without `clouds` (null): those of `poses_topic`, of the only topic of
-/// poses, or of the only frame that moves by tf. Errors: usage, data.
+/// Poses to drive the same route again: those of the clouds' frame, or those of a vehicle if no
+/// transforms connect it to that frame. Without `clouds` (null): those of `poses_topic`, of the
+/// only topic of poses, or of the only frame that tf moves. Errors: usage, data.
 RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey* clouds,
                                const std::string& poses_topic);
 

@@ -17,7 +17,7 @@
 
 namespace adasplats {
 
-/// A beam that returned nothing: what it passed is free.
+/// A beam without return: the space along it is free.
 struct EmptyBeam {
   Vec3f origin;            ///< where it left the sensor, relative to the cloud's origin, m
   Vec3f direction;         ///< unit, world axes
@@ -64,24 +64,26 @@ struct PointAttribute {
   const char* name;    ///< of the member, in Python and in pickles
   const char* column;  ///< of the files of save_cloud_ply(); empty: saved with the positions
   const char* title;   ///< in messages
-  int tie_rank;        ///< of points at one place the attribute of the least rank decides first
-  const char* about;   ///< what the numbers are
+  int tie_rank;  ///< orders points at equal positions: the lowest rank counts first; 0, 1, 2, ...
+  const char* about;  ///< meaning of the values, for Python
 };
 template <class Of>
 PointAttribute(Of, const char*, const char*, const char*, int, const char*) -> PointAttribute<Of>;
 
-/// Calls visit(PointAttribute) for every attribute, in the order of files; positions are none. What
-/// treats attributes alike goes through it, so that a new one is a member and an entry here.
+/// Calls visit(PointAttribute) for every attribute except positions, in the order of files. A new
+/// attribute needs a member and an entry here, and a member of gpu::DeviceCloud with the same name.
+/// Code that copies or compares all attributes uses this function. These copy chosen ones by name:
+/// points_of_classes(), the windows of calibrate_drives() and even_out() of a city's tiles.
 template <class Visit>
 void for_each_attribute(Visit&& visit) {
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.sensor_positions); },
                        "sensor_positions", "", "sensor positions", 4, "m, relative to origin"});
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.origin_kinds); },
                        "origin_kinds", "origin_kind", "kinds of origins", 5,
-                       "how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured"});
+                       "source of sensor_positions: 0 unknown, 1 guessed, 2 stated, 3 measured"});
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.intensities); },
                        "intensities", "intensity", "intensities", 3,
-                       "in the unit of the file, NaN where it is not known"});
+                       "in the unit of the file, NaN if unknown"});
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.classes); }, "classes",
                        "label", "classes", 0, "ids of a label scheme"});
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.instances); }, "instances",
@@ -91,7 +93,7 @@ void for_each_attribute(Visit&& visit) {
                        "the scan that a point is from"});
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.lasers); }, "lasers",
                        "laser", "lasers", 6,
-                       "the laser that measured a point, topmost 0; 65535 where it is not known"});
+                       "the laser that measured a point, topmost 0; 65535 if unknown"});
 }
 
 /// The address of an attribute's values; null for one that a cloud lacks.
@@ -100,14 +102,14 @@ auto data_or_null(const Values& values) {
   return values.empty() ? nullptr : values.data();
 }
 
-/// How many points have an origin of each kind, by its number.
+/// Number of points with an origin of each kind.
 using OriginCounts = std::array<std::size_t, 4>;
 OriginCounts count_origins(const PointCloud& cloud);
-/// "measured", or "measured 812, not known 188": the kinds that there are; "no" where none is
-/// known.
+/// "measured", or "measured 812, not known 188": the kinds that occur; "no" if no point has an
+/// origin.
 std::string describe_origins(const OriginCounts& counts);
 
-/// The points of `cloud` in the order of `indices`, every attribute along; empty beams stay.
+/// The points of `cloud` with all attributes, in the order of `indices`; empty beams stay.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);
 
 /// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes

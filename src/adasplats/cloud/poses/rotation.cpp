@@ -43,7 +43,7 @@ Mat3d slerp(const Quaternion& a, const Quaternion& b, double s) {
   cosine = std::min(1.0, side * cosine);
   const double angle = std::acos(cosine);
   const double sine = std::sin(angle);
-  // Where the angle vanishes so does the difference between arc and chord.
+  // For a vanishing angle, linear interpolation is exact and avoids 0 / 0.
   const double of_a = sine > 1e-9 ? std::sin((1 - s) * angle) / sine : 1 - s;
   const double of_b = side * (sine > 1e-9 ? std::sin(s * angle) / sine : s);
   const Quaternion q = normalized({of_a * a.w + of_b * b.w, of_a * a.x + of_b * b.x,

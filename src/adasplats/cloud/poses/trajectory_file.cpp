@@ -101,7 +101,7 @@ RigidTransform transform_from_rows(const std::filesystem::path& path, std::uint6
 }
 
 constexpr const char* kStateFrame =
-    "; where the poses are the LiDAR's own, say so by the line 'Tr: 1 0 0 0 0 1 0 0 0 0 1 0'";
+    "; if the poses are those of the LiDAR, write the line 'Tr: 1 0 0 0 0 1 0 0 0 0 1 0'";
 
 /// The `Tr:` line of a KITTI calib.txt: camera_from_velodyne. A sequence needs one, since its poses
 /// are the camera's.
@@ -110,8 +110,8 @@ std::optional<RigidTransform> read_calibration(const std::filesystem::path& fold
   if (!is_there(path)) {
     if (!is_there(folder / "velodyne")) return std::nullopt;
     throw Error(ErrorKind::data, path.string() +
-                                     ": is missing; its line 'Tr:' brings the poses of a "
-                                     "sequence, which are the camera's, to the LiDAR" +
+                                     ": is missing; its line 'Tr:' transforms the poses of a "
+                                     "sequence from the camera to the LiDAR" +
                                      kStateFrame);
   }
   std::string names;

@@ -36,7 +36,7 @@ void add_lasers(const std::vector<std::size_t>& counts, ConeScore& score) {
     const std::size_t below = i + 1 == counts.size() ? 0 : counts[i + 1];
     points += static_cast<double>(counts[i]);
     filled += counts[i] > 0 ? 1 : 0;
-    // Under a tenth of what its neighbours have: noise brings as much over from them.
+    // At most a tenth of its neighbours' mean count: noise spreads as many from the neighbours.
     empty += 20 * counts[i] <= above + below ? 1 : 0;
   }
   if (first >= end) return;

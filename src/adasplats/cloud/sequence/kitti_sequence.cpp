@@ -61,7 +61,8 @@ Trajectory poses_of_scans(const std::filesystem::path& poses_file, Trajectory po
   if (matched.size() == scans.size()) return matched;
   if (poses.size() == scans.size()) return poses;
   throw Error(ErrorKind::data, poses_file.string() + ": " + std::to_string(poses.size()) +
-                                   " poses, " + std::to_string(scans.size()) + " scans");
+                                   " poses, " + std::to_string(scans.size()) +
+                                   " scans; every scan needs a pose");
 }
 
 void require_labels_of_scans(const KittiSequence& sequence) {
@@ -136,6 +137,11 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   sequence.labels = files_by_name(folder / "labels", ".label");
   if (!sequence.labels.empty()) require_labels_of_scans(sequence);
   const std::filesystem::path poses_file = folder / "poses.txt";
+  if (!std::filesystem::exists(poses_file))
+    throw Error(ErrorKind::no_input,
+                poses_file.string() +
+                    ": is missing; every scan of a sequence needs a pose (poses of another file: "
+                    "give the folder 'velodyne' as input and the file as `trajectory`)");
   sequence.trajectory = poses_of_scans(poses_file, read_trajectory(poses_file), sequence.scans);
   return sequence;
 }

@@ -27,7 +27,7 @@ std::pair<std::uint16_t, double> SensorCones::nearest(Vec3d point) const {
   const std::size_t first = start - std::min(start, kAround);
   const std::size_t end = std::min(start + kAround + 1, cones.size());
   for (std::size_t i = first; i < end; ++i) {
-    // Where tips are one, the nearest is one of the two that the point is between.
+    // If cones share an apex, the nearest is one of the two that enclose the point.
     const bool beside = i + 1 == start || i == start + 1;
     if (i == start || (!beside && cones[i].height_m == cones[start].height_m)) continue;
     const double residual_rad = residual_of(i);

@@ -28,8 +28,8 @@ struct GpuSearch {
 /// build without CUDA, `reason` explains it.
 GpuSearch find_gpus();
 
-/// Free memory of a GPU, bytes; 0 if unknown. Starts CUDA on the device, which takes some time and
-/// memory.
+/// Free memory of a GPU, bytes; 0 if CUDA does not report it. Starts CUDA on the GPU, which takes
+/// a while and some memory.
 std::size_t free_memory_bytes(int device);
 
 /// Whether this build has CUDA code.

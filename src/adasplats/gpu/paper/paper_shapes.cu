@@ -55,7 +55,7 @@ void fit_shapes(const Vec3f* points, const DeviceLists& lists, DeviceBase& base,
            });
 }
 
-/// Output of the distances of neighbourhoods to their planes.
+/// Output arrays: sums of distances of neighbourhoods to their planes.
 struct PlaneSums {
   float* errors;               ///< of each point: sum over its neighbours
   std::uint32_t* memberships;  ///< nullptr: no votes

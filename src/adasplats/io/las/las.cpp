@@ -23,8 +23,7 @@ std::uint64_t records_to_read(const InputFile& file, const LasHeader& header, bo
   if (salvage) return room;
   throw file.error_here("the file holds " + std::to_string(room) + " of " +
                         std::to_string(header.points) + " point records of " +
-                        std::to_string(header.record_bytes) +
-                        " bytes; the option salvage reads them");
+                        std::to_string(header.record_bytes) + " bytes; `salvage` reads them");
 }
 
 }  // namespace

@@ -69,8 +69,8 @@ void check_layout(const InputFile& file, const HeaderBytes& bytes, const LasHead
   const std::uint64_t room = (header.points_offset_bytes - header.header_bytes) / kVlrHeaderBytes;
   if (header.vlr_count > room) {
     throw bytes.error(100, "found " + std::to_string(header.vlr_count) +
-                               " variable length records, there is room for " +
-                               std::to_string(room) + " before the points");
+                               " as the number of variable length records, but at most " +
+                               std::to_string(room) + " fit before the points");
   }
   if (header.format >= kLasFormatCount) {
     throw bytes.error(104, "found point format " + std::to_string(header.format) +

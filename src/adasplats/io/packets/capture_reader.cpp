@@ -87,7 +87,8 @@ void CaptureReader::read_head() {
   place_.is_swapped = swapped(magic) == kMicrosecondMagic || swapped(magic) == kNanosecondMagic;
   const std::uint32_t in_order = place_.is_swapped ? swapped(magic) : magic;
   if (in_order != kMicrosecondMagic && in_order != kNanosecondMagic)
-    throw file_.error_here("neither PCAP nor PCAPNG (first number " + std::to_string(magic) + ")");
+    throw file_.error_here("neither PCAP nor PCAPNG: found " + std::to_string(magic) +
+                           " as the first number");
   const std::string_view head = take(kClassicHeadBytes, "the head of the capture");
   constexpr std::uint32_t kTypeBits = 0xFFFF;
   const std::uint32_t type = number_at<std::uint32_t>(head, 20) & kTypeBits;

@@ -109,10 +109,10 @@ PointFit require_fit(const CityToExtend& before, const CityWork& work, Resumable
   const PointFit fit = measure_fit(before, work);
   if (fit.parts == 0) {
     work.session.progress.warn("the new points and " + before.path().string() +
-                               " have next to nothing in common: whether they fit is not known (" +
+                               " hardly overlap, so their fit cannot be checked (" +
                                std::to_string(fit.rays) + " new rays end near its splats)");
   } else if (std::max(length(fit.shift_m), fit.part_shift_m) > work.job.addition.max_shift_m) {
-    throw Error(ErrorKind::data, "the new points lie beside " + before.path().string() +
+    throw Error(ErrorKind::data, "the new points are shifted against " + before.path().string() +
                                      ": they fit best when all "
                                      "are shifted by " +
                                      metres(fit.shift_m.x) + ", " + metres(fit.shift_m.y) + ", " +

@@ -76,9 +76,10 @@ CityTaskResult finished_tile(TileKey tile, const FolderTask& task) {
     throw no_such_tile(tile, task.path());
   const std::string file = model_file_of(tile);
   if (!task.has(file))
-    throw Error(ErrorKind::data, (task.path() / file).string() +
-                                     ": not as it was written, and the city is finished: model it "
-                                     "anew (`overwrite`)");
+    throw Error(ErrorKind::data,
+                (task.path() / file).string() +
+                    ": has changed since it was written, and the city is finished; "
+                    "model it again (`overwrite`)");
   return {file, true};
 }
 

@@ -48,9 +48,9 @@ class ModelMaker {
     scheme_ = classifier_ ? semantickitti_labels() : label_scheme_for(options_.labels, inputs);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
-                  "the method semantic needs labels (semantickitti, paris-carla-3d, pandaset, "
-                  "nuscenes, asprs or a file), or "
-                  "`segment`, with which a network gives the points classes");
+                  "the method semantic needs labels: name their scheme with `labels` "
+                  "(semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a file), or "
+                  "classify the points with `segment`");
     }
   }
 

@@ -156,8 +156,8 @@ void throw_no_returns(std::size_t rays, const ScanScene& scene, std::span<const 
   }
   throw Error(ErrorKind::data, "no returns: none of " + std::to_string(rays) + " rays in " +
                                    std::to_string(scans.size()) +
-                                   " scans hit anything; the sensor came within " +
-                                   decimetres(nearest_m) + " m of the model's box and measures " +
+                                   " scans hit anything; the sensor is at least " +
+                                   decimetres(nearest_m) + " m from the model's box and measures " +
                                    decimetres(sensor.min_range_m) + " to " +
                                    decimetres(sensor.max_range_m) + " m (" + question + ")");
 }

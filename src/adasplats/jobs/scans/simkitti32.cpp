@@ -108,7 +108,7 @@ void require_in_view(const ModelScene& scene, std::span<const ScanMotion> scans,
     if (is_hit) return;
   }
   throw_no_returns(firings.size() * first.size(), scene, first, sensor,
-                   "are sequence and model in one frame? offset shifts the sensor");
+                   "are sequence and model in the same frame? `offset` shifts the sensor");
 }
 
 /// Share of the static points of some scans whose ray hits the model within half a metre of the

@@ -42,8 +42,9 @@ std::vector<EncodedFile> boxes_of(const ScanScene& scene, std::size_t index, con
 void require_returns(const SimulateResult& result, const ScanScene& scene,
                      std::span<const ScanMotion> scans, const LidarModel& sensor) {
   if (result.hits != 0 || result.scans_resumed != 0) return;
-  throw_no_returns(result.rays, scene, scans, sensor,
-                   "are trajectory and model in one frame? offset and mount shift it");
+  throw_no_returns(
+      result.rays, scene, scans, sensor,
+      "are trajectory and model in the same frame? `offset` and `mount` shift the sensor");
 }
 
 /// The smallest usual scale of intensities that the scene does not exceed.

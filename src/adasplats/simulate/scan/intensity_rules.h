@@ -108,7 +108,7 @@ struct IntensityShares {
   double below = 0;  ///< of the others: that report less
 };
 
-/// What a unit reports where a model expects `expected`.
+/// The intensity that a calibrated sensor reports where a model expects `expected`.
 ADASPLATS_HD inline float unit_intensity(const IntensityRules& rules, std::uint32_t ring,
                                          float expected, const IntensityShares& shares) {
   const float level = level_of(rules, ring, expected);

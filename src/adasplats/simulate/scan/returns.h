@@ -126,12 +126,12 @@ std::vector<float> sub_ray_weights(const BeamOptions& options);
 /// reported one is not reported (1 m for the VLS-128: manual 63-9483 rev. A, section 6.2.3).
 std::size_t reported_returns(std::span<Return> pulses, const BeamOptions& options);
 
-/// Computes the returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the
-/// order of the sensor's reports (reported_returns()). `classes`: of the primitives, or empty. At
-/// most options.returns, which is the size of `out`; returns their number. Never mixes hits of
-/// different classes or of separate objects: the range of a return is the mean of the echoes within
-/// depth_gap_m of its first one, because a receiver triggers on the rising edge. Throws
-/// std::logic_error if the class of a primitive is missing.
+/// The returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the order in
+/// which the sensor reports them (reported_returns()). `classes`: of the primitives, or empty. At
+/// most options.returns; `out` has that size. Never mixes hits of two classes or of two objects
+/// that are apart: the range of a return is the mean of the echoes within depth_gap_m of its
+/// first one, as a receiver triggers on the rising edge. Returns the number of returns. Throws
+/// std::logic_error if a primitive has no class.
 std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights,
                        std::span<const std::uint16_t> classes, const BeamOptions& options,
                        std::span<Return> out);

@@ -17,7 +17,7 @@
 namespace adasplats {
 namespace {
 
-/// Margin of every sphere, far above the rounding errors of rays within their range.
+/// Added to the radius of every sphere: far above the rounding error of float rays in range.
 constexpr double kMargin_m = 1e-2;
 
 std::uint16_t usual_class(std::span<const std::uint16_t> classes) {

@@ -105,7 +105,7 @@ std::size_t World::add_geometries(std::size_t count, FunctionRef<NewGeometry(std
 
 void World::add_object(WorldObject object) {
   if (object.geometry >= impl_->geometries.size())
-    throw std::logic_error("World: the geometry of the object does not exist");
+    throw std::logic_error("World: an object of a geometry that does not exist");
   check_object(object);
   const ObjectGeometry* const geometry = impl_->geometries[object.geometry].get();
   if (geometry->primitives >= Hit::kNone - impl_->next_primitive)

@@ -114,7 +114,8 @@ class World {
   const AnyModel& geometry(std::size_t geometry) const;
   /// Whether objects that are present in many scans use this geometry.
   bool is_in_all_scans(std::size_t geometry) const;
-  /// Identity for caches: differs for every world and changes with every added geometry or object.
+  /// Differs between worlds and changes when geometry or an object is added, so that caches of
+  /// derived data can detect that they are out of date.
   std::shared_ptr<const int> identity() const;
 
   /// Attributes of the primitives of the scene (`place`), followed by those of the objects, as

@@ -100,7 +100,7 @@ class WorldTable {
     std::filesystem::path file = (path_.parent_path() / name).lexically_normal();
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
-      throw error(key, "is " + file.string() + ", which is not there", ErrorKind::no_input);
+      throw error(key, "is " + file.string() + ", which does not exist", ErrorKind::no_input);
     return file;
   }
 
