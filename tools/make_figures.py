@@ -1,29 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the figures of README.md and docs/*.md from the JSON that measured them.
+"""Writes the figures of README.md, docs/*.md and docs/research/*.md from JSON files of measurements.
 
 A figure is a link whose definition, at the end of the document, names file, key and format:
 
     Built in [66 s][kitti time].
     [kitti time]: bench/results/cpu.json "kitti/models/consistent/model/seconds/total as 0 s"
 
-The key goes down through objects by name, through lists by the member "name". Zeros of the format
-stand for digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups, "0.0x" is a ratio, "text"
-takes the value as it is. "A over B" divides, "mean of A, B" averages (of values under the same
-file), "1 - A" takes the rest; "mean of" is done first, then "over", "1 -" last. What the file lacks
-becomes "–". Whole tables stand between
+The key goes down through objects by name, through lists by the member "name". The zeros of
+the format are digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups digits, "0.0x" is a
+ratio, "text" copies the value. "A over B" divides, "mean of A, B" averages values of one file, "1 - A"
+subtracts; "mean of" binds tightest, then "over", then "1 -". A missing value becomes "–". Whole tables
+are between
 
     <!-- table: comparison compare/street/compare.json -->   and   <!-- /table -->
 
 (a name of TABLES, a file, for bench/results also the key of the models).
 
-Between <!-- log --> and <!-- /log --> are figures of an earlier version that nothing measures again;
-elsewhere in the documents of STRICT a figure that is no such link is a fault.
+Between <!-- log --> and <!-- /log --> are figures of an earlier version that are not measured again;
+elsewhere in the documents of STRICT a figure that is no such link is an error.
 
 usage: tools/make_figures.py               writes the documents
-       tools/make_figures.py --check       says what differs; exit code 1 where something does; before
-                                           that shows that it finds a figure changed by hand
+       tools/make_figures.py --check       runs a self-test and reports differences; exit code 1 if any
 """
 import json
 import pathlib
@@ -33,8 +32,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 STRICT = ("README.md", "docs/results.md", "docs/performance.md")
+STRICT_FOLDERS = ("docs/research/",)
 MISSING = "–"
-# Measured before files told their commit; a file that tells one leaves this list.
+# Files that were measured before they stored their commit.
 BEFORE_COMMITS = ()
 
 LOOKS_DEFINED = re.compile(r'^\[[^\]\n]+\]: \S+\.json.*$', re.M)
@@ -44,10 +44,10 @@ TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: (\S+))? -->\n)(.*?)(<!-- 
 FORMAT = re.compile(r"(0,000|0)(?:\.(0+))?( ?)(%|cm|mm|ms|s|m|GB|MB|kB|M|k|x|times|)$")
 SCALES = {"%": 100, "cm": 100, "mm": 1000, "ms": 1000, "GB": 1e-9, "MB": 1e-6, "kB": 1e-3,
           "M": 1e-6, "k": 1e-3}
-# What reads like a measured figure: a number with one of these behind it.
+# A number with one of these units reads like a measured figure.
 NAKED = re.compile(r"(?<![\w.,-])\d[\d,.]*\d*(?: to \d[\d.,]*)? ?"
                    r"(?:%|cm\b|mm\b|ms\b|s\b|GB\b|MB\b|x\b|times\b|scans/s\b|a second\b)")
-# What is no claim of ours: comments, links' targets, the paper's figures, names of measures.
+# Not our measurements: code, comments, link targets, the paper's figures, names of metrics.
 CODE = (re.compile(r"^```.*?^```", re.S | re.M), re.compile(r"`[^`\n]*`"))
 QUIET = (re.compile(r"<!-- log -->.*?<!-- /log -->", re.S),
          re.compile(r"<!-- table: .*?<!-- /table -->", re.S), re.compile(r"<!--.*?-->", re.S),
@@ -56,7 +56,7 @@ QUIET = (re.compile(r"<!-- log -->.*?<!-- /log -->", re.S),
 
 
 class Fault(Exception):
-    """A definition that cannot be followed."""
+    """An invalid definition of a figure."""
 
 
 def part_of(value, name):
@@ -101,7 +101,7 @@ def text_of(value, form):
 
 
 class Files:
-    """The JSON files, each read once; whether one tells its commit."""
+    """The JSON files, each read once, and whether they name their commit."""
 
     def __init__(self):
         self.read = {}
@@ -113,17 +113,17 @@ class Files:
         return self.read[path]
 
     def faults(self, root):
-        """Files that tell no commit, and those that BEFORE_COMMITS excuses for nothing."""
+        """Files without a commit, and entries of BEFORE_COMMITS that are not needed."""
         for path, data in sorted(self.read.items()):
             name = str(path.relative_to(root.resolve()))
             parts = list(data.get("parts", {}).values()) or [data]
             sources = [x.get("provenance", x) for x in parts]
-            told = all(x.get("commit", "unknown") not in (None, "", "unknown") for x in sources)
+            has_commit = all(x.get("commit", "unknown") not in (None, "", "unknown") for x in sources)
             if any(x.get("dirty") for x in sources):
-                yield name + ": measured with changes that no commit holds"
-            if data and told == (name in BEFORE_COMMITS):
-                yield name + (": tells its commit and stands in BEFORE_COMMITS" if told else
-                              ": tells no commit")
+                yield name + ": measured with uncommitted changes"
+            if data and has_commit == (name in BEFORE_COMMITS):
+                yield name + (": names its commit but is in BEFORE_COMMITS" if has_commit else
+                              ": names no commit")
 
 
 def figure_of(data, key, form):
@@ -177,7 +177,7 @@ CALIBRATION = [
     ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm"),
     ("ghosts", "calibrated/returns/ghosts", "0.0 %"),
     ("holes", "calibrated/returns/upward/holes", "0.0 %"),
-    ("returns foretold (F1)", "calibrated/returns/upward/f1", "0.0 %")]
+    ("returns predicted (F1)", "calibrated/returns/upward/f1", "0.0 %")]
 CALIBRATION_PARTS = [
     ("all parts", "calibrated/within_10cm", "0.0 %"), *(
         (title, f"parts/{key}/within_10cm", "0.0 %") for title, key in (
@@ -234,7 +234,7 @@ REALISM_STATISTICS = [(title, f"shown/statistics/{key}", "text") for title, key 
     ("in runs of 6 to 20", "missing_runs_6_to_20"), ("from planes, mm", "plane_residual_m"),
     ("rings found", "unfolded_rings"), ("highest intensity", "intensity_most"),
     ("farthest range, m", "range_most_m"), ("nearer than 2.5 m", "near_points"))]
-FORETOLD = [
+PREDICTED = [
     ("rank correlation of intensities", "foretold/intensity/rank_correlation", "0.000"),
     ("RMSE after one curve", "foretold/intensity/rmse_after_curve", "0.0000"),
     ("of beams within 0.5 m", "foretold/intensity_near/rmse_after_curve", "0.0000"),
@@ -278,7 +278,7 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
           "realism": ("rows", REALISM), "realism_logistic": ("rows", REALISM_LOGISTIC),
-          "realism_statistics": ("rows", REALISM_STATISTICS), "foretold": ("rows", FORETOLD),
+          "realism_statistics": ("rows", REALISM_STATISTICS), "predicted": ("rows", PREDICTED),
           "unfolding": ("rows", UNFOLDING),
           "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
           "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED), "thin": ("competitors", THIN_THINGS)}
@@ -311,7 +311,7 @@ def table_of(kind, data, key):
 # ---- documents -----------------------------------------------------------------------------
 
 def made(document, text, files):
-    """The text with every figure and table as the files have them, and what cannot be followed."""
+    """The text with every figure and table from the files, and the errors."""
     faults = []
 
     def guarded(function, otherwise):
@@ -344,7 +344,7 @@ def made(document, text, files):
 
 
 def blank(match):
-    """Blanks in its place: lines keep their numbers."""
+    """Blanks of the same length: line numbers stay."""
     return re.sub(r"[^\n]", " ", match[0])
 
 
@@ -355,7 +355,7 @@ def hidden(text, patterns):
 
 
 def naked_figures(text):
-    """(line, figure) of what claims something and names no source."""
+    """(line, figure) of figures that name no source."""
     figures = {name for name, *_ in DEFINITION.findall(text)}
     text = hidden(text, (*QUIET, *CODE, DEFINITION))
     text = LINK.sub(lambda m: blank(m) if m[2] in figures else m[0], text)
@@ -377,11 +377,12 @@ def differences(name, before, after):
 
 
 def documents(root):
-    return [root / "README.md", *sorted((root / "docs").glob("*.md"))]
+    return [root / "README.md", *sorted((root / "docs").glob("*.md")),
+            *sorted((root / "docs" / "research").glob("*.md"))]
 
 
 def work(root, check):
-    """Writes or checks all documents; what is wrong, one line each."""
+    """Writes or checks all documents; returns the errors, one line each."""
     files, faults, missing = Files(), [], 0
     for document in documents(root):
         before = document.read_text(encoding="utf-8")
@@ -394,7 +395,7 @@ def work(root, check):
         elif after != before:
             document.write_text(after, encoding="utf-8")
             print(f"make_figures: wrote {name}")
-        if name in STRICT:
+        if name in STRICT or name.startswith(STRICT_FOLDERS):
             faults += [f"{name}:{line}: '{figure}' names no source" for line, figure in
                        naked_figures(after)]
     faults += files.faults(root)
@@ -404,7 +405,7 @@ def work(root, check):
 
 
 def self_test():
-    """A figure, a table and a naked figure, each changed by hand, are found."""
+    """Detects a figure, a table and a figure without source that were changed by hand."""
     text = ("Built in [2.50 s][time], [88 %][share] of it, [0.50x][means].\n\n"
             "<!-- table: comparison ../a.json -->\n<!-- /table -->\n"
             '\n[time]: ../a.json "x/seconds as 0.00 s"\n[share]: ../a.json "1 - x/rest as 0 %"\n'
@@ -433,9 +434,9 @@ def self_test():
             print(f"self-test found: {faults[0]}")
         page.write_text(good)
         (root / "a.json").write_text(json.dumps({**data, "commit": ""}))
-        assert work(root, check=True) == ["a.json: tells no commit"]
+        assert work(root, check=True) == ["a.json: names no commit"]
         (root / "a.json").write_text(json.dumps({**data, "dirty": True}))
-        assert work(root, check=True) == ["a.json: measured with changes that no commit holds"]
+        assert work(root, check=True) == ["a.json: measured with uncommitted changes"]
 
 
 def main():
@@ -448,8 +449,8 @@ def main():
     for fault in faults:
         print(fault, file=sys.stderr)
     if faults:
-        sys.exit(f"make_figures: {len(faults)} faults; tools/make_figures.py writes the figures")
-    print("make_figures: every figure is as its file has it")
+        sys.exit(f"make_figures: {len(faults)} errors; tools/make_figures.py writes the figures")
+    print("make_figures: every figure agrees with its file")
 
 
 if __name__ == "__main__":
