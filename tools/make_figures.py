@@ -1,28 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the figures of README.md, docs/*.md and docs/research/*.md from JSON files of measurements.
+"""Writes the figures of README.md, docs/*.md and docs/research/*.md from measured JSON files.
 
 A figure is a link whose definition, at the end of the document, names file, key and format:
 
     Built in [66 s][kitti time].
     [kitti time]: bench/results/cpu.json "kitti/models/consistent/model/seconds/total as 0 s"
 
-The key goes down through objects by name, through lists by the member "name". The zeros of
-the format are digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups digits, "0.0x" is a
-ratio, "text" copies the value. "A over B" divides, "mean of A, B" averages values of one file, "1 - A"
-subtracts; "mean of" binds tightest, then "over", then "1 -". A missing value becomes "–". Whole tables
-are between
+The key goes down through objects by name, through lists by the member "name". The zeros of the
+format are digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups digits, "0.0x" is a
+ratio, "text" copies the value. "A over B" divides, "mean of A, B" averages values of one file,
+"1 - A" subtracts; "mean of" binds tightest, then "over", then "1 -". A missing value becomes "–".
+Whole tables are between
 
     <!-- table: comparison compare/street/compare.json -->   and   <!-- /table -->
 
 (a name of TABLES, a file, for bench/results also the key of the models).
 
-Between <!-- log --> and <!-- /log --> are figures of an earlier version that are not measured again;
-elsewhere in the documents of STRICT a figure that is no such link is an error.
+Between <!-- log --> and <!-- /log --> are figures of an earlier version that are not measured
+again; elsewhere in the documents of STRICT and STRICT_FOLDERS a figure without a link is an error.
 
 usage: tools/make_figures.py               writes the documents
-       tools/make_figures.py --check       runs a self-test and reports differences; exit code 1 if any
+       tools/make_figures.py --check       runs a self-test, reports differences; exit code 1 if any
 """
 import json
 import pathlib
@@ -118,7 +118,7 @@ class Files:
             name = str(path.relative_to(root.resolve()))
             parts = list(data.get("parts", {}).values()) or [data]
             sources = [x.get("provenance", x) for x in parts]
-            has_commit = all(x.get("commit", "unknown") not in (None, "", "unknown") for x in sources)
+            has_commit = all(x.get("commit") not in (None, "", "unknown") for x in sources)
             if any(x.get("dirty") for x in sources):
                 yield name + ": measured with uncommitted changes"
             if data and has_commit == (name in BEFORE_COMMITS):
@@ -185,9 +185,9 @@ CALIBRATION_PARTS = [
             ("without elevations", "no_elevations"), ("without mount", "no_mount"),
             ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
 MOUNTS = [
-    ("turn left, degrees", "mount/turn_left_deg", "0.000"),
-    ("shift left", "mount/shift_left_m", "0.0 cm"),
-    ("height left", "mount/height_left_m", "0.0 cm"),
+    ("remaining rotation error, degrees", "mount/turn_left_deg", "0.000"),
+    ("remaining shift", "mount/shift_left_m", "0.0 cm"),
+    ("remaining height error", "mount/height_left_m", "0.0 cm"),
     *(column for column in CALIBRATION[1:6])]
 STREETS = [
     ("splats", "primitives", "0.00 M"), ("ghosts", "ghosts", "0.0 %"), ("holes", "holes", "0.0 %"),
@@ -227,11 +227,12 @@ REALISM_LOGISTIC = [
     *((f"{group}, logistic", f"shown/logistic/{group}", "text") for group in REALISM_GROUPS),
     ("all, real against real", "shown/real_real/all", "text")]
 REALISM_STATISTICS = [(title, f"shown/statistics/{key}", "text") for title, key in (
-    ("returns", "returns"), ("noise of ranges, mm", "range_noise_m"),
-    ("offsets of lasers, mm", "laser_offsets_m"), ("noise of intensities", "intensity_noise"),
-    ("scatter of rings' intensities", "intensity_rings"), ("zeros", "intensity_zeros"),
+    ("returns", "returns"), ("range noise, mm", "range_noise_m"),
+    ("laser offsets, mm", "laser_offsets_m"), ("intensity noise", "intensity_noise"),
+    ("spread of rings' intensities", "intensity_rings"), ("zeros", "intensity_zeros"),
     ("zero after zero", "intensity_zero_next"), ("missing in runs of one", "missing_runs_of_1"),
-    ("in runs of 6 to 20", "missing_runs_6_to_20"), ("from planes, mm", "plane_residual_m"),
+    ("in runs of 6 to 20", "missing_runs_6_to_20"),
+    ("distance from planes, mm", "plane_residual_m"),
     ("rings found", "unfolded_rings"), ("highest intensity", "intensity_most"),
     ("farthest range, m", "range_most_m"), ("nearer than 2.5 m", "near_points"))]
 PREDICTED = [
@@ -246,16 +247,17 @@ UNFOLDING = [
     ("scans", "scans", "0"), ("real with 64 rings", "scans_with_64_rings/real", "0 %"),
     ("simulated with 64 rings", "scans_with_64_rings/simulated", "0 %"),
     ("right ring, worst scan", "right_ring/least", "0.0 %"), ("mean", "right_ring/mean", "0.0 %"),
-    ("points a ring, simulated / real, least", "rings/ratio_least", "0.000"),
-    ("most", "rings/ratio_most", "0.000"),
+    ("points per ring, simulated / real, minimum", "rings/ratio_least", "0.000"),
+    ("maximum", "rings/ratio_most", "0.000"),
     ("points in the vehicle's shadow, real", "shadow/real", "0"),
     ("simulated", "shadow/simulated", "0")]
 TRANSFER = [
     *((f"{network} on {judged}", f"figures/{network} on {judged}/miou", "0.0 %")
       for network in ("real", "simulated") for judged in ("real", "simulated")),
-    ("the real network loses", "losses/real network, real to simulated", "0.0"),
-    ("on real scans the simulated one is worse by", "losses/on real, real to simulated network",
-     "0.0")]
+    ("loss of the real network on simulated scans", "losses/real network, real to simulated",
+     "0.0"),
+    ("simulated network below the real one on real scans",
+     "losses/on real, real to simulated network", "0.0")]
 INPUT_KINDS = [("written by", "written_by", "text"), ("other reader", "other_reader", "text"),
                ("points", "points", "0,000"), ("largest difference", "shown", "text")]
 INPUT_DRIVES = [("scans of", "scans_of", "text"), ("held-out beams", "rays", "0,000"),
@@ -267,8 +269,7 @@ LAZ_SPEED = [("points", "points", "0,000"), ("format", "point_format", "0"), *(
         ("LASzip, 1 thread", "LASzip/1"), ("unpacking alone, 1 thread", "decoder/1"),
         ("2 threads", "decoder/2")))]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
-# Name: (the rows' key where the document gives none, columns). A column that no row fills is left
-# out.
+# Name: (default key of the rows, columns). A column without values is omitted.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
           "parts": ("drives", CALIBRATION_PARTS),
@@ -281,7 +282,8 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "realism_statistics": ("rows", REALISM_STATISTICS), "predicted": ("rows", PREDICTED),
           "unfolding": ("rows", UNFOLDING),
           "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
-          "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED), "thin": ("competitors", THIN_THINGS)}
+          "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED),
+          "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):
