@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that files and functions named in documents exist.
 
-1. A path within a stage ("splats/paper/grow.h", "io/las", "gpu/trace/...") in ARCHITECTURE.md or
-   docs/*.md is a folder or a file, with or without its extension.
+1. A path within a stage ("splats/paper/grow.h", "io/las", "gpu/trace/...") in ARCHITECTURE.md,
+   docs/*.md or docs/research/*.md is a folder or a file, with or without its extension.
 2. A `name` or `name()` in the section "A tour" of ARCHITECTURE.md occurs in the sources.
 
 usage: tools/check_paths.py
@@ -69,7 +69,8 @@ def main():
         sys.exit("check_paths: the self-test failed")
     architecture = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     faults = tour_faults(architecture, all_sources())
-    for path in [ROOT / "ARCHITECTURE.md", *sorted((ROOT / "docs").glob("*.md"))]:
+    for path in [ROOT / "ARCHITECTURE.md", *sorted((ROOT / "docs").glob("*.md")),
+                 *sorted((ROOT / "docs" / "research").glob("*.md"))]:
         faults += path_faults(path.name, path.read_text(encoding="utf-8"))
     for fault in faults:
         print(fault, file=sys.stderr)

@@ -1,29 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the figures of README.md and docs/*.md from the JSON that measured them.
+"""Writes the figures of README.md, docs/*.md and docs/research/*.md from measured JSON files.
 
 A figure is a link whose definition, at the end of the document, names file, key and format:
 
     Built in [66 s][kitti time].
     [kitti time]: bench/results/cpu.json "kitti/models/consistent/model/seconds/total as 0 s"
 
-The key goes down through objects by name, through lists by the member "name". Zeros of the format
-stand for digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups, "0.0x" is a ratio, "text"
-takes the value as it is. "A over B" divides, "mean of A, B" averages (of values under the same
-file), "1 - A" takes the rest; "mean of" is done first, then "over", "1 -" last. What the file lacks
-becomes "–". Whole tables stand between
+The key goes down through objects by name, through lists by the member "name". The zeros of the
+format are digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups digits, "0.0x" is a
+ratio, "text" copies the value. "A over B" divides, "mean of A, B" averages values of one file,
+"1 - A" subtracts; "mean of" binds tightest, then "over", then "1 -". A missing value becomes "–".
+Whole tables are between
 
     <!-- table: comparison compare/street/compare.json -->   and   <!-- /table -->
 
 (a name of TABLES, a file, for bench/results also the key of the models).
 
-Between <!-- log --> and <!-- /log --> are figures of an earlier version that nothing measures again;
-elsewhere in the documents of STRICT a figure that is no such link is a fault.
+Between <!-- log --> and <!-- /log --> are figures of an earlier version that are not measured
+again; elsewhere in the documents of STRICT and STRICT_FOLDERS a figure without a link is an error.
 
 usage: tools/make_figures.py               writes the documents
-       tools/make_figures.py --check       says what differs; exit code 1 where something does; before
-                                           that shows that it finds a figure changed by hand
+       tools/make_figures.py --check       runs a self-test, reports differences; exit code 1 if any
 """
 import json
 import pathlib
@@ -33,8 +32,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 STRICT = ("README.md", "docs/results.md", "docs/performance.md")
+STRICT_FOLDERS = ("docs/research/",)
 MISSING = "–"
-# Measured before files told their commit; a file that tells one leaves this list.
+# Files that were measured before they stored their commit.
 BEFORE_COMMITS = ()
 
 LOOKS_DEFINED = re.compile(r'^\[[^\]\n]+\]: \S+\.json.*$', re.M)
@@ -44,10 +44,10 @@ TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: (\S+))? -->\n)(.*?)(<!-- 
 FORMAT = re.compile(r"(0,000|0)(?:\.(0+))?( ?)(%|cm|mm|ms|s|m|GB|MB|kB|M|k|x|times|)$")
 SCALES = {"%": 100, "cm": 100, "mm": 1000, "ms": 1000, "GB": 1e-9, "MB": 1e-6, "kB": 1e-3,
           "M": 1e-6, "k": 1e-3}
-# What reads like a measured figure: a number with one of these behind it.
+# A number with one of these units reads like a measured figure.
 NAKED = re.compile(r"(?<![\w.,-])\d[\d,.]*\d*(?: to \d[\d.,]*)? ?"
                    r"(?:%|cm\b|mm\b|ms\b|s\b|GB\b|MB\b|x\b|times\b|scans/s\b|a second\b)")
-# What is no claim of ours: comments, links' targets, the paper's figures, names of measures.
+# Not our measurements: code, comments, link targets, the paper's figures, names of metrics.
 CODE = (re.compile(r"^```.*?^```", re.S | re.M), re.compile(r"`[^`\n]*`"))
 QUIET = (re.compile(r"<!-- log -->.*?<!-- /log -->", re.S),
          re.compile(r"<!-- table: .*?<!-- /table -->", re.S), re.compile(r"<!--.*?-->", re.S),
@@ -56,7 +56,7 @@ QUIET = (re.compile(r"<!-- log -->.*?<!-- /log -->", re.S),
 
 
 class Fault(Exception):
-    """A definition that cannot be followed."""
+    """An invalid definition of a figure."""
 
 
 def part_of(value, name):
@@ -101,7 +101,7 @@ def text_of(value, form):
 
 
 class Files:
-    """The JSON files, each read once; whether one tells its commit."""
+    """The JSON files, each read once, and whether they name their commit."""
 
     def __init__(self):
         self.read = {}
@@ -113,17 +113,17 @@ class Files:
         return self.read[path]
 
     def faults(self, root):
-        """Files that tell no commit, and those that BEFORE_COMMITS excuses for nothing."""
+        """Files without a commit, and entries of BEFORE_COMMITS that are not needed."""
         for path, data in sorted(self.read.items()):
             name = str(path.relative_to(root.resolve()))
             parts = list(data.get("parts", {}).values()) or [data]
             sources = [x.get("provenance", x) for x in parts]
-            told = all(x.get("commit", "unknown") not in (None, "", "unknown") for x in sources)
+            has_commit = all(x.get("commit") not in (None, "", "unknown") for x in sources)
             if any(x.get("dirty") for x in sources):
-                yield name + ": measured with changes that no commit holds"
-            if data and told == (name in BEFORE_COMMITS):
-                yield name + (": tells its commit and stands in BEFORE_COMMITS" if told else
-                              ": tells no commit")
+                yield name + ": measured with uncommitted changes"
+            if data and has_commit == (name in BEFORE_COMMITS):
+                yield name + (": names its commit but is in BEFORE_COMMITS" if has_commit else
+                              ": names no commit")
 
 
 def figure_of(data, key, form):
@@ -177,7 +177,7 @@ CALIBRATION = [
     ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm"),
     ("ghosts", "calibrated/returns/ghosts", "0.0 %"),
     ("holes", "calibrated/returns/upward/holes", "0.0 %"),
-    ("returns foretold (F1)", "calibrated/returns/upward/f1", "0.0 %")]
+    ("returns predicted (F1)", "calibrated/returns/upward/f1", "0.0 %")]
 CALIBRATION_PARTS = [
     ("all parts", "calibrated/within_10cm", "0.0 %"), *(
         (title, f"parts/{key}/within_10cm", "0.0 %") for title, key in (
@@ -185,9 +185,9 @@ CALIBRATION_PARTS = [
             ("without elevations", "no_elevations"), ("without mount", "no_mount"),
             ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
 MOUNTS = [
-    ("turn left, degrees", "mount/turn_left_deg", "0.000"),
-    ("shift left", "mount/shift_left_m", "0.0 cm"),
-    ("height left", "mount/height_left_m", "0.0 cm"),
+    ("remaining rotation error, degrees", "mount/turn_left_deg", "0.000"),
+    ("remaining shift", "mount/shift_left_m", "0.0 cm"),
+    ("remaining height error", "mount/height_left_m", "0.0 cm"),
     *(column for column in CALIBRATION[1:6])]
 STREETS = [
     ("splats", "primitives", "0.00 M"), ("ghosts", "ghosts", "0.0 %"), ("holes", "holes", "0.0 %"),
@@ -227,14 +227,15 @@ REALISM_LOGISTIC = [
     *((f"{group}, logistic", f"shown/logistic/{group}", "text") for group in REALISM_GROUPS),
     ("all, real against real", "shown/real_real/all", "text")]
 REALISM_STATISTICS = [(title, f"shown/statistics/{key}", "text") for title, key in (
-    ("returns", "returns"), ("noise of ranges, mm", "range_noise_m"),
-    ("offsets of lasers, mm", "laser_offsets_m"), ("noise of intensities", "intensity_noise"),
-    ("scatter of rings' intensities", "intensity_rings"), ("zeros", "intensity_zeros"),
+    ("returns", "returns"), ("range noise, mm", "range_noise_m"),
+    ("laser offsets, mm", "laser_offsets_m"), ("intensity noise", "intensity_noise"),
+    ("spread of rings' intensities", "intensity_rings"), ("zeros", "intensity_zeros"),
     ("zero after zero", "intensity_zero_next"), ("missing in runs of one", "missing_runs_of_1"),
-    ("in runs of 6 to 20", "missing_runs_6_to_20"), ("from planes, mm", "plane_residual_m"),
+    ("in runs of 6 to 20", "missing_runs_6_to_20"),
+    ("distance from planes, mm", "plane_residual_m"),
     ("rings found", "unfolded_rings"), ("highest intensity", "intensity_most"),
     ("farthest range, m", "range_most_m"), ("nearer than 2.5 m", "near_points"))]
-FORETOLD = [
+PREDICTED = [
     ("rank correlation of intensities", "foretold/intensity/rank_correlation", "0.000"),
     ("RMSE after one curve", "foretold/intensity/rmse_after_curve", "0.0000"),
     ("of beams within 0.5 m", "foretold/intensity_near/rmse_after_curve", "0.0000"),
@@ -246,16 +247,17 @@ UNFOLDING = [
     ("scans", "scans", "0"), ("real with 64 rings", "scans_with_64_rings/real", "0 %"),
     ("simulated with 64 rings", "scans_with_64_rings/simulated", "0 %"),
     ("right ring, worst scan", "right_ring/least", "0.0 %"), ("mean", "right_ring/mean", "0.0 %"),
-    ("points a ring, simulated / real, least", "rings/ratio_least", "0.000"),
-    ("most", "rings/ratio_most", "0.000"),
+    ("points per ring, simulated / real, minimum", "rings/ratio_least", "0.000"),
+    ("maximum", "rings/ratio_most", "0.000"),
     ("points in the vehicle's shadow, real", "shadow/real", "0"),
     ("simulated", "shadow/simulated", "0")]
 TRANSFER = [
     *((f"{network} on {judged}", f"figures/{network} on {judged}/miou", "0.0 %")
       for network in ("real", "simulated") for judged in ("real", "simulated")),
-    ("the real network loses", "losses/real network, real to simulated", "0.0"),
-    ("on real scans the simulated one is worse by", "losses/on real, real to simulated network",
-     "0.0")]
+    ("loss of the real network on simulated scans", "losses/real network, real to simulated",
+     "0.0"),
+    ("simulated network below the real one on real scans",
+     "losses/on real, real to simulated network", "0.0")]
 INPUT_KINDS = [("written by", "written_by", "text"), ("other reader", "other_reader", "text"),
                ("points", "points", "0,000"), ("largest difference", "shown", "text")]
 INPUT_DRIVES = [("scans of", "scans_of", "text"), ("held-out beams", "rays", "0,000"),
@@ -267,8 +269,7 @@ LAZ_SPEED = [("points", "points", "0,000"), ("format", "point_format", "0"), *(
         ("LASzip, 1 thread", "LASzip/1"), ("unpacking alone, 1 thread", "decoder/1"),
         ("2 threads", "decoder/2")))]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
-# Name: (the rows' key where the document gives none, columns). A column that no row fills is left
-# out.
+# Name: (default key of the rows, columns). A column without values is omitted.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
           "parts": ("drives", CALIBRATION_PARTS),
@@ -278,10 +279,11 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
           "realism": ("rows", REALISM), "realism_logistic": ("rows", REALISM_LOGISTIC),
-          "realism_statistics": ("rows", REALISM_STATISTICS), "foretold": ("rows", FORETOLD),
+          "realism_statistics": ("rows", REALISM_STATISTICS), "predicted": ("rows", PREDICTED),
           "unfolding": ("rows", UNFOLDING),
           "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
-          "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED), "thin": ("competitors", THIN_THINGS)}
+          "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED),
+          "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):
@@ -311,7 +313,7 @@ def table_of(kind, data, key):
 # ---- documents -----------------------------------------------------------------------------
 
 def made(document, text, files):
-    """The text with every figure and table as the files have them, and what cannot be followed."""
+    """The text with every figure and table from the files, and the errors."""
     faults = []
 
     def guarded(function, otherwise):
@@ -344,7 +346,7 @@ def made(document, text, files):
 
 
 def blank(match):
-    """Blanks in its place: lines keep their numbers."""
+    """Blanks of the same length: line numbers stay."""
     return re.sub(r"[^\n]", " ", match[0])
 
 
@@ -355,7 +357,7 @@ def hidden(text, patterns):
 
 
 def naked_figures(text):
-    """(line, figure) of what claims something and names no source."""
+    """(line, figure) of figures that name no source."""
     figures = {name for name, *_ in DEFINITION.findall(text)}
     text = hidden(text, (*QUIET, *CODE, DEFINITION))
     text = LINK.sub(lambda m: blank(m) if m[2] in figures else m[0], text)
@@ -377,11 +379,12 @@ def differences(name, before, after):
 
 
 def documents(root):
-    return [root / "README.md", *sorted((root / "docs").glob("*.md"))]
+    return [root / "README.md", *sorted((root / "docs").glob("*.md")),
+            *sorted((root / "docs" / "research").glob("*.md"))]
 
 
 def work(root, check):
-    """Writes or checks all documents; what is wrong, one line each."""
+    """Writes or checks all documents; returns the errors, one line each."""
     files, faults, missing = Files(), [], 0
     for document in documents(root):
         before = document.read_text(encoding="utf-8")
@@ -394,7 +397,7 @@ def work(root, check):
         elif after != before:
             document.write_text(after, encoding="utf-8")
             print(f"make_figures: wrote {name}")
-        if name in STRICT:
+        if name in STRICT or name.startswith(STRICT_FOLDERS):
             faults += [f"{name}:{line}: '{figure}' names no source" for line, figure in
                        naked_figures(after)]
     faults += files.faults(root)
@@ -404,7 +407,7 @@ def work(root, check):
 
 
 def self_test():
-    """A figure, a table and a naked figure, each changed by hand, are found."""
+    """Detects a figure, a table and a figure without source that were changed by hand."""
     text = ("Built in [2.50 s][time], [88 %][share] of it, [0.50x][means].\n\n"
             "<!-- table: comparison ../a.json -->\n<!-- /table -->\n"
             '\n[time]: ../a.json "x/seconds as 0.00 s"\n[share]: ../a.json "1 - x/rest as 0 %"\n'
@@ -433,9 +436,9 @@ def self_test():
             print(f"self-test found: {faults[0]}")
         page.write_text(good)
         (root / "a.json").write_text(json.dumps({**data, "commit": ""}))
-        assert work(root, check=True) == ["a.json: tells no commit"]
+        assert work(root, check=True) == ["a.json: names no commit"]
         (root / "a.json").write_text(json.dumps({**data, "dirty": True}))
-        assert work(root, check=True) == ["a.json: measured with changes that no commit holds"]
+        assert work(root, check=True) == ["a.json: measured with uncommitted changes"]
 
 
 def main():
@@ -448,8 +451,8 @@ def main():
     for fault in faults:
         print(fault, file=sys.stderr)
     if faults:
-        sys.exit(f"make_figures: {len(faults)} faults; tools/make_figures.py writes the figures")
-    print("make_figures: every figure is as its file has it")
+        sys.exit(f"make_figures: {len(faults)} errors; tools/make_figures.py writes the figures")
+    print("make_figures: every figure agrees with its file")
 
 
 if __name__ == "__main__":
