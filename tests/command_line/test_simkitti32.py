@@ -397,7 +397,7 @@ class GivenModel(SequenceTest):
     def test_model_of_another_place(self):
         write_cloud(self.cloud, [(x + 1000, y, z, label) for x, y, z, label in tiny_place()])
         self.place = self.model("far.ply", "--no-calibrate")
-        self.refuse(65, says=["no returns", f"in {SCANS} scans", "of the model's box"])
+        self.refuse(65, says=["no returns", f"in {SCANS} scans", "m from the model's box"])
 
     def test_model_of_another_place_around_the_sensor(self):
         write_cloud(self.cloud, [(x, y, z + 0.9, label) for x, y, z, label in tiny_place()])
