@@ -5,7 +5,7 @@
 
 1. A path within a stage ("splats/paper/grow.h", "io/las", "gpu/trace/...") in ARCHITECTURE.md,
    docs/*.md or docs/research/*.md is a folder or a file, with or without its extension.
-2. A `name` or `name()` in the section "A tour" of ARCHITECTURE.md occurs in the sources.
+2. A `name` or `name()` in the section "Data flow" of ARCHITECTURE.md occurs in the sources.
 
 usage: tools/check_paths.py
 """
@@ -43,9 +43,9 @@ def path_faults(name, text):
 
 
 def tour_faults(text, sources):
-    tour = re.search(r"^## A tour\n(.*?)^## ", text, re.S | re.M)
+    tour = re.search(r"^## Data flow\n(.*?)^## ", text, re.S | re.M)
     if not tour:
-        return ['ARCHITECTURE.md: the section "A tour" is missing']
+        return ['ARCHITECTURE.md: the section "Data flow" is missing']
     return [f"ARCHITECTURE.md: {word} in the tour is not in the sources"
             for word in sorted(set(NAME.findall(tour[1]))) if not re.search(rf"\b{word}\b", sources)]
 
@@ -60,7 +60,7 @@ def all_sources():
 def self_test():
     wrong = list(path_faults("x.md", "see splats/paper/grown.h and io/nowhere"))
     right = list(path_faults("x.md", "see splats/paper/grow.h, io/las and `core/setting`"))
-    missing = tour_faults("## A tour\n`no_such_name` and `load_cloud`\n## Rules\n", "load_cloud")
+    missing = tour_faults("## Data flow\n`no_such_name` and `load_cloud`\n## Rules\n", "load_cloud")
     return len(wrong) == 2 and not right and len(missing) == 1
 
 
