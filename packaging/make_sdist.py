@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 def metadata():
     """What setuptools makes of pyproject.toml."""
     from setuptools import build_meta
-    # It tells what it does.
+    # It prints each step.
     with tempfile.TemporaryDirectory() as name, contextlib.redirect_stdout(sys.stderr):
         folder = build_meta.prepare_metadata_for_build_wheel(name)
         return (pathlib.Path(name) / folder / "METADATA").read_bytes()
