@@ -339,8 +339,8 @@ TEST(Las, GarbageInTheHeader) {
     put(bad, offset, value);
     return bad;
   };
-  expect_data_error(with(100, std::uint32_t{1069128089}), {"byte 100", "1069128089", "room for 0"});
-  expect_data_error(with(100, std::uint32_t{1}), {"byte 100", "room for 0"});
+  expect_data_error(with(100, std::uint32_t{1069128089}), {"byte 100", "1069128089", "at most 0 fit"});
+  expect_data_error(with(100, std::uint32_t{1}), {"byte 100", "at most 0 fit"});
   expect_data_error(with(0, 'X'), {"'XASF'"});
   expect_data_error(with(24, std::uint8_t{2}), {"version 2.2"});
   expect_data_error(with(25, std::uint8_t{9}), {"version 1.9"});
