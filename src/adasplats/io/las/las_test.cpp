@@ -339,7 +339,8 @@ TEST(Las, GarbageInTheHeader) {
     put(bad, offset, value);
     return bad;
   };
-  expect_data_error(with(100, std::uint32_t{1069128089}), {"byte 100", "1069128089", "at most 0 fit"});
+  expect_data_error(with(100, std::uint32_t{1069128089}),
+                    {"byte 100", "1069128089", "at most 0 fit"});
   expect_data_error(with(100, std::uint32_t{1}), {"byte 100", "at most 0 fit"});
   expect_data_error(with(0, 'X'), {"'XASF'"});
   expect_data_error(with(24, std::uint8_t{2}), {"version 2.2"});

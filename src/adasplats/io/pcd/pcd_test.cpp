@@ -127,7 +127,7 @@ TEST(Pcd, SizeTypeAndCount) {
   for (const char* count : {"0 1", "-1 1", "4294967296 1", "1", "1 1 1"})
     expect_data_error(with("4 4", "F F", count), {"COUNT"});
   expect_data_error(with("4 4", "F F", "65536 65536"), {"more than 65536"});
-  expect_data_error(with("4 4", "F F", "65000 1"), {"at most 0 fit"});
+  expect_data_error(with("4 4", "F F", "65000 1"), {"room for 0"});
 }
 
 // Fault 12.
