@@ -23,7 +23,6 @@ namespace adasplats {
 
 using gpu::cuda_check;
 using gpu::DeviceGuard;
-using gpu::DevicePart;
 using gpu::SceneParts;
 
 namespace {

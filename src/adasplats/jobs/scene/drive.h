@@ -34,6 +34,28 @@ struct DriveOptions {
   std::filesystem::path motion;     ///< poses of that motion; empty: those of `trajectory`
 };
 
+/// The settings for recordings as trajectories.
+template <class Visit>
+void visit_recording_settings(DriveOptions& drive, const char* group, Visit&& visit) {
+  visit(Setting{.name = "topic",
+                .help = "Recording as trajectory: topic of the points that define the times of the "
+                        "scans (default: the only one)",
+                .value = "NAME",
+                .group = group},
+        drive.topic);
+  visit(Setting{.name = "poses_topic",
+                .help = "Recording as trajectory: topic of the poses, of type tf, odometry or "
+                        "poses (default: tf, else the only one)",
+                .value = "NAME",
+                .group = group},
+        drive.poses_topic);
+  visit(Setting{.name = "motion",
+                .help = "Poses that describe the motion within scans if the trajectory has too few "
+                        "(with --rolling-shutter)",
+                .group = group},
+        drive.motion);
+}
+
 /// Everything but the trajectory, `at`, the path, and the mount, which users give as MountSettings.
 template <class Visit>
 void visit_settings(DriveOptions& drive, Visit&& visit) {
@@ -83,23 +105,7 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
                 .group = kGroup,
                 .basic = true},
         drive.rolling_shutter);
-  visit(Setting{.name = "topic",
-                .help = "Recording as trajectory: topic of the points that define the times of the "
-                        "scans (default: the only one)",
-                .value = "NAME",
-                .group = kGroup},
-        drive.topic);
-  visit(Setting{.name = "poses_topic",
-                .help = "Recording as trajectory: topic of the poses, of type tf, odometry or "
-                        "poses (default: tf, else the only one)",
-                .value = "NAME",
-                .group = kGroup},
-        drive.poses_topic);
-  visit(Setting{.name = "motion",
-                .help = "Poses that describe the motion within scans if the trajectory has too few "
-                        "(with --rolling-shutter)",
-                .group = kGroup},
-        drive.motion);
+  visit_recording_settings(drive, kGroup, visit);
 }
 
 /// Throws usage unless exactly one of `trajectory`, `at` and `path` is given, or if a setting has
