@@ -75,7 +75,10 @@ void add_points(Seeds& seeds) {
   seeds.add("e57-xml",
             {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" "
              "xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\"><!-- c --><a b='&lt;1&#65;'>"
-             "<![CDATA[x]]></a><n:v/></e57Root>"});
+             "<![CDATA[x]]></a><data3D type=\"Vector\"><vectorChild type=\"Structure\"><points "
+             "type=\"CompressedVector\" fileOffset=\"0\" recordCount=\"0\"><prototype "
+             "type=\"Structure\"><cartesianX type=\"Float\"/><cartesianY type=\"Float\"/>"
+             "<cartesianZ type=\"Float\"/></prototype></points></vectorChild></data3D></e57Root>"});
   seeds.add("wkt", {"PROJCS[\"a\",GEOGCS[\"b\",UNIT[\"degree\",0.0174]],UNIT[\"US survey foot\","
                     "0.3048006096],AXIS[\"x\",EAST]]",
                     "COMPD_CS[\"c\",PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"metre\",1]],VERT_CS[\"h\","
