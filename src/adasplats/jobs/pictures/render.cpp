@@ -26,7 +26,7 @@
 namespace adasplats {
 namespace {
 
-constexpr int kMaxPixels = 1 << 28;
+constexpr int kMaxRenderPixels = 1 << 28;
 
 /// The panels of a picture side by side.
 class Panels {
@@ -104,7 +104,7 @@ class Panels {
 void check(const RenderJob& job) {
   check(job.view);
   const auto parts = static_cast<int>(std::max<std::size_t>(job.models.size(), 1));
-  if (job.view.width > kMaxPixels / job.view.height / parts) {
+  if (job.view.width > kMaxRenderPixels / job.view.height / parts) {
     throw Error(ErrorKind::usage, "`width` and `height` are out of range");
   }
   check_settings(job);
