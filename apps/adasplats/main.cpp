@@ -222,7 +222,7 @@ int failed(int code, const std::string& message) {
 /// The parser's "Could not convert: --cell = abc" as "--cell = abc: the value has the wrong type".
 std::string conversion_message(const CLI::ConversionError& error) {
   constexpr std::string_view kPrefix = "Could not convert: ";
-  const std::string message = error.what();
+  std::string message = error.what();
   if (!message.starts_with(kPrefix)) return message;
   return message.substr(kPrefix.size()) + ": the value has the wrong type (see --help)";
 }
