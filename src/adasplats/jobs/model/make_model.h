@@ -85,8 +85,8 @@ struct ModelOptions {
   std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
   SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
   BuildOptions build;
-  /// The user has asked for `build.remove`: where it can remove nothing, that is an error and not
-  /// only said.
+  /// The user requested `build.remove`: if it cannot remove anything, that is an error instead of a
+  /// warning.
   bool removal_is_asked = false;
   CalibrationChoice calibration;
 };

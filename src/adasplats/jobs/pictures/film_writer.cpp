@@ -62,7 +62,7 @@ class Mp4Film final : public FilmWriter {
     if (result.end != ChildEnd::done)
       throw Error(ErrorKind::unavailable, path_.string() + ": ffmpeg failed: " + result.message);
     std::error_code error;
-    fs::rename(made, path_, error);  // of one file system: the folder stands beside the film
+    fs::rename(made, path_, error);  // same file system: the folder is next to the film
     if (error) throw Error(ErrorKind::io, path_.string() + ": " + error.message());
   }
 
