@@ -91,8 +91,8 @@ struct ModelOptions {
   CalibrationChoice calibration;
 };
 
-/// The network that gives the points their classes; nothing where none is to. Errors: usage (labels
-/// beside it, `remove` moving of a network that knows nothing that moves), those of
+/// The network that classifies the points; nothing if none is requested. Errors: usage (labels are
+/// given, too; `remove` is moving, but the network has no moving classes), those of
 /// PointClassifier.
 std::optional<PointClassifier> classifier_for(const ModelOptions& options);
 

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Frames as numbered pictures in a folder beside the film, which ffmpeg then makes a film of.
+/// Writes frames as numbered pictures in a folder next to the film; ffmpeg then encodes them.
 class Mp4Film final : public FilmWriter {
  public:
   Mp4Film(fs::path ffmpeg, fs::path path, double frames_per_s)
