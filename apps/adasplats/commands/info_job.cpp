@@ -17,6 +17,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
@@ -194,7 +195,7 @@ FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) 
   if (!radii.empty()) {
     std::sort(radii.begin(), radii.end());
     const auto at = [&](std::size_t i) { return centimetres(static_cast<double>(radii[i])); };
-    facts.rows.emplace_back("radius: least, median, greatest",
+    facts.rows.emplace_back("radius: minimum, median, maximum",
                             at(0) + ", " + at(radii.size() / 2) + ", " + at(radii.size() - 1));
   }
   if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
@@ -258,8 +259,8 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
   const double last_s = sequence.trajectory.back().time_s;
   const double median_s = steps_s[steps_s.size() / 2];
   facts.rows.emplace_back("times", fixed(first_s, 3) + " .. " + fixed(last_s, 3) + " s, scans " +
-                                       fixed(median_s, 3) + " s apart, at most " +
-                                       fixed(steps_s.back(), 3) + " s");
+                                       fixed(median_s, 3) + " s apart (maximum " +
+                                       fixed(steps_s.back(), 3) + " s)");
   facts.json["times_s"] = {{"first", first_s},
                            {"last", last_s},
                            {"median_step", median_s},
@@ -270,7 +271,7 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
 void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   const auto add = [&facts](const char* name, const char* key, const std::string& text) {
     if (text.empty()) return;
-    facts.rows.emplace_back(name, text);
+    facts.rows.emplace_back(name, with_settings_as_options(text));
     facts.json[key] = text;
   };
   add("points in the", "points_in", drive.points_in);
@@ -278,20 +279,21 @@ void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   add("clocks", "clock", drive.clock);
   add("not checked", "unchecked", drive.unchecked);
   add("intensities", "intensities", drive.intensities);
-  add("left out", "left_out", drive.left_out);
+  add("skipped", "left_out", drive.left_out);
   if (!drive.crs.empty()) describe_crs(drive.crs, facts);
 }
 
-/// What the points are taken for: who measured them, and from where.
+/// The sensor, where its beams start, and its motion within a scan.
 void describe_beams(const ScanBeams& beams, const std::string& motion, FileFacts& facts) {
   const std::string sensor = beams.sensor.empty() ? "not recognised" : beams.sensor;
   facts.rows.emplace_back("sensor", sensor);
   facts.rows.emplace_back("beams from", beams.description());
   const std::string known = !motion.empty()              ? motion
-                            : !beams.sweeps_m.empty()    ? "taken out of the points"
-                            : !beams.raw_motions.empty() ? "in the points, as measured; taken out"
-                                                         : "not known: scans as if standing still";
-  facts.rows.emplace_back("motion of a scan", known);
+                            : !beams.sweeps_m.empty()    ? "already compensated in the points"
+                            : !beams.raw_motions.empty() ? "points as measured, compensated"
+                                                         : "unknown; the sensor is assumed to be "
+                                                           "at rest during a scan";
+  facts.rows.emplace_back("motion of a scan", with_settings_as_options(known));
   facts.json["motion"] = known;
   facts.json["sensor"] = beams.sensor;
   facts.json["beams"] = beams.description();
@@ -354,7 +356,7 @@ FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme
         open_recording_drive(drive_of(input, options), survey, session.executor, session.progress),
         "recording", scheme, options, session);
   } catch (const Error& error) {
-    // Which topics there are is what the user needs to mend that.
+    // The list of topics shows what to select.
     facts = {};
     facts.kind = "recording";
     facts.rows.emplace_back("no drive", error.what());

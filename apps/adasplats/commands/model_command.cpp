@@ -40,9 +40,10 @@ constexpr const char* kModelExamples =
 /// How well the sensor positions explain the points; empty without evidence.
 std::string origins_text(const std::optional<OriginCheck>& check) {
   if (!check || check->near_rise == 0) return {};
-  return "Sensor positions are plausible: shifted ones make rays cross " +
-         fixed(check->near_rise, 2) + " and " + fixed(check->far_rise, 2) +
-         " times as many surfaces\n";
+  const bool is_plausible = origin_objection(*check).empty() && origin_doubt(*check).empty();
+  return std::string("Sensor positions are ") + (is_plausible ? "plausible" : "doubtful") +
+         ": shifted ones make rays cross " + fixed(check->near_rise, 2) + " and " +
+         fixed(check->far_rise, 2) + " times as many surfaces\n";
 }
 
 /// The figures of the method.

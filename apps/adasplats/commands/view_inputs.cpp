@@ -289,8 +289,9 @@ class Loading {
 LoadedView load_view(const ViewJob& job, Session& session) {
   const Sorted sorted = sorted_inputs(job);
   if (sorted.clouds.empty() && !job.cloud_option.empty()) {
-    throw Error(ErrorKind::usage,
-                job.cloud_option + " has no effect: no points are shown (--cloud)");
+    throw Error(ErrorKind::usage, job.cloud_option +
+                                      " has no effect: no points are shown (--cloud shows points, "
+                                      "--poses a trajectory)");
   }
   if (sorted.model.empty() && job.sensor_is_asked) {
     throw Error(ErrorKind::usage, "--sensor has no effect: the input has no model to simulate in");

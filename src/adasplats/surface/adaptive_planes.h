@@ -16,7 +16,7 @@
 
 namespace adasplats {
 
-struct AdaptivePlaneOptions {  // sources of the numbers: docs/fidelity.md
+struct AdaptivePlaneOptions {  // sources of the numbers: docs/research/consistent.md
   /// Neighbourhood sizes to try, ascending; the largest that is still a plane is used. Large ones
   /// average out noise and registration errors and never consist of a single scan ring.
   std::array<std::uint32_t, 5> scales = {10, 20, 40, 80, 160};

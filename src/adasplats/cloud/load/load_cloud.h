@@ -86,7 +86,7 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
-                .help = "Remove points closer to their sensor than this as the recording vehicle, "
+                .help = "Remove points closer to their sensor than this (the recording vehicle), "
                         "m; 0 keeps all (default: points that move with the sensor)",
                 .value = "M",
                 .key = "own_body_m",
@@ -103,8 +103,8 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
-                .help = "Trust the sensor positions of the file even if points are hidden behind "
-                        "others from there, as later returns are",
+                .help = "Accept the sensor positions even if other points hide some points from "
+                        "them, as with later returns",
                 .group = group},
         load.trust_origins);
   visit(

@@ -161,7 +161,9 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
     throw Error(ErrorKind::data, drive.folder.string() +
                                      ": cannot determine whether its points are in the sensor "
                                      "frame or in world coordinates (" +
-                                     verdict.because + "); set `points_in` to sensor or world");
+                                     verdict.because +
+                                     "); check the units, axes and clock of the poses, or set "
+                                     "`points_in` to sensor or world");
   auto sequence = open_as_world();
   if (sequence) {
     sequence->facts.points_in = "world (" + verdict.because + ")";

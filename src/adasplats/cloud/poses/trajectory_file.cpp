@@ -151,7 +151,8 @@ std::vector<double> read_times(const std::filesystem::path& path, std::size_t co
   }
   if (times_s.size() != count)
     throw Error(ErrorKind::data, path.string() + ": " + std::to_string(times_s.size()) +
-                                     " times, " + std::to_string(count) + " poses");
+                                     " times, but " + std::to_string(count) +
+                                     " poses; both files need one line per scan");
   return times_s;
 }
 

@@ -88,7 +88,9 @@ void take_labels(const std::filesystem::path& path, KittiScan& scan) {
   const std::size_t points = scan.positions.size();
   if (labels.size() != points)
     throw Error(ErrorKind::data, path.string() + ": " + std::to_string(labels.size()) +
-                                     " labels, " + std::to_string(points) + " points");
+                                     " labels, but the scan has " + std::to_string(points) +
+                                     " points; one of the two files is truncated or of another "
+                                     "scan");
   scan.classes.reserve(points);
   scan.instances.reserve(points);
   for (const std::uint32_t label : labels) {
@@ -128,7 +130,8 @@ bool is_kitti_sequence(const std::filesystem::path& folder) {
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   if (is_kitti_raw_drive(folder)) return open_kitti_raw_drive(folder);
   if (!is_kitti_sequence(folder))
-    throw Error(ErrorKind::no_input, folder.string() + ": has no folder 'velodyne'");
+    throw Error(ErrorKind::no_input,
+                folder.string() + ": not a SemanticKITTI sequence (no folder 'velodyne')");
   KittiSequence sequence;
   sequence.folder = folder;
   sequence.scans = files_by_name(folder / "velodyne", ".bin");

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Points of the tiles whose cells say how dense cells are, about.
+/// Approximate number of points in the tiles that the spacing of cells is measured in.
 constexpr std::size_t kSurveyedPoints = 16'000'000;
 
 /// Spacings of cells by whether they have a beam.
@@ -28,7 +28,7 @@ struct Spacings {
   std::vector<float> with_beam, without;
 };
 
-/// Tiles all over the city whose cells say how dense cells are: all of them, or every n-th.
+/// Tiles in which the spacing of cells is measured: all, or every n-th.
 std::vector<TileKey> surveyed(const CityWork& work) {
   std::size_t points = 0;
   for (const TileKey tile : work.tiles.tiles) points += work.points_in(tile);

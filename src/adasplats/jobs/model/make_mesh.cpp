@@ -39,7 +39,7 @@ class Steps {
   Steps(std::vector<StepTime>& times, ProgressSink& progress)
       : times_(times), progress_(progress) {}
 
-  /// `passes`: how many ProgressPasses the work consists of; 0: that cannot be said.
+  /// `passes`: how many ProgressPasses the work consists of; 0: unknown.
   template <class Work>
   auto run(const std::string& name, int passes, Work&& work) {
     progress_.begin_step(name, static_cast<std::uint64_t>(passes) * kPassUnits);

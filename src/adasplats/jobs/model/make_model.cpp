@@ -32,8 +32,8 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
                   "each surface (see cell, neighbors, denoise and remove)");
 }
 
-/// Makes one model; the points come from `load_points`. Building takes the memory that they stand
-/// in: where it fails on a GPU they are loaded again.
+/// Makes one model from the points of `load_points`. Building consumes the points; if it fails on a
+/// GPU, they are loaded again.
 class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;

@@ -69,7 +69,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
     if (!objection.empty()) throw Error(ErrorKind::data, objection);
   }
   if (checked) {
-    begin_step("ray check of seeds", options.balance_rounds);
+    begin_step("visibility check of seeds", options.balance_rounds);
     steps.order_rays(options);
     for (int i = 0; i < options.balance_rounds; ++i) steps.balance_seeds(i, options);
     report.rays = steps.counts().rays;
@@ -79,7 +79,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
   begin_step("cover", 1);
   steps.cover(checked, options);
   if (checked) {
-    begin_step("ray check of splats", options.strict_rounds);
+    begin_step("visibility check of splats", options.strict_rounds);
     for (int i = 0; i < options.strict_rounds; ++i) steps.limit_overhangs(i, options);
     steps.limit_unchosen();
   }

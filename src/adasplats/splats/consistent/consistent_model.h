@@ -39,7 +39,7 @@ namespace adasplats {
 // - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
 // Without sensor positions the steps with rays are skipped, and disks stay smaller.
 
-/// Options of the consistent method; docs/fidelity.md gives the source of each number.
+/// Options of the consistent method; docs/research/consistent.md gives the source of each number.
 struct ConsistentOptions {
   double cell_m = 0.05;  ///< side of the cells that points are fused in
   /// Cells are split if no plane around them is larger than this scale (of `planes.scales`)...

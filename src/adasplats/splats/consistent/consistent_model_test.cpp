@@ -567,9 +567,9 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   const std::vector<std::string> expected = {"fusion",
                                              "planes",
                                              "check of sensor positions",
-                                             "ray check of seeds",
+                                             "visibility check of seeds",
                                              "cover",
-                                             "ray check of splats",
+                                             "visibility check of splats",
                                              "settling",
                                              "filling"};
   EXPECT_EQ(made.steps, expected);

@@ -36,8 +36,8 @@ const Column& required(const Table& table, const std::filesystem::path& path,
                        std::string_view name) {
   const Column* column = table.find(name);
   if (column == nullptr)
-    throw data_error({path, {}, {}}, "not a splat model: no vertex property '" + std::string(name) +
-                                         "' (a model has x y z nx ny nz radius)");
+    throw data_error({path, {}, {}}, "not a model (no vertex property '" + std::string(name) +
+                                         "'); 'adasplats model' builds one from a point cloud");
   return *column;
 }
 

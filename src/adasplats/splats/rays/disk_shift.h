@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-struct SettleOptions {      // sources of the numbers: docs/fidelity.md
+struct SettleOptions {      // sources of the numbers: docs/research/consistent.md
   double reach_m = 0.4;     ///< rays with a larger range error are ignored
   double scale_m = 0.08;    ///< scale of the Cauchy weights on range errors
   double prior_rays = 3;    ///< weight of the current position, in rays
