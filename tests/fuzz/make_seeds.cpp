@@ -349,11 +349,11 @@ void add_settings(Seeds& seeds) {
       "sensor-json",
       {R"({"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],"lidar_mode":)"
        R"("512x20","lidar_origin_to_beam_origin_mm":15,"lidar_to_sensor_transform":)"
-       R"([-1,0,0,0,0,-1,0,0,0,0,1,36,0,0,0,1],"prod_line":"OS-0-128","prod_sn":"7"})",
+       R"([-1,0,0,0,0,-1,0,0,0,0,1,36,0,0,0,1],"prod_line":"OS-0-2","prod_sn":"7"})",
        R"({"beam_intrinsics":{"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],)"
        R"("beam_to_lidar_transform":[1,0,0,15,0,1,0,0,0,0,1,0,0,0,0,1]},"config_params":)"
        R"({"lidar_mode":"512x20","udp_profile_lidar":"RNG19_RFL8_SIG16_NIR16_DUAL"},)"
-       R"("sensor_info":{"prod_line":"OS-0-128"}})"});
+       R"("sensor_info":{"prod_line":"OS-0-2"}})"});
   seeds.add("sensor-yaml",
             {"# mine\nlasers:\n- {dist_correction: 1.5, laser_id: 0, rot_correction: 0.1,\n"
              "  vert_correction: -0.2, vert_offset_correction: 0.19}\n- laser_id: 1\n"

@@ -30,6 +30,12 @@ struct LidarFile {
 /// The error text if beams fire after the end of their column: "leave 27 us a column, but...".
 std::optional<std::string> column_fault(const LidarModel& model);
 
+/// The error text if all elevations of a manufacturer's file are 0, or two beams have the same
+/// ones. Both lists of angles have a value a beam, in the order of the file.
+std::optional<std::string> angle_fault(const LidarModel& model);
+/// The error text if angles from a file in degrees seem to be radians.
+std::optional<std::string> degrees_fault(const LidarModel& model);
+
 /// The model of a file: beams topmost first; beams that skip columns become a free pattern.
 LidarModel finished_model(LidarFile file);
 

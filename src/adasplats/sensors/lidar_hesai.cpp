@@ -84,6 +84,11 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
                         angle_deg(fields[columns.azimuth], "azimuth", 360, lines.place())});
   }
   if (channels.empty()) throw data_error({path, {}, {}}, "the table has no channels");
+  const int last = std::ranges::max(channels, {}, &Channel::number).number;
+  if (static_cast<std::size_t>(last) != channels.size())
+    throw data_error({path, {}, {}}, "the table has " + std::to_string(channels.size()) +
+                                         " channels, but their numbers go up to " +
+                                         std::to_string(last) + "; expected 1, 2, 3, ...");
   return channels;
 }
 
@@ -210,6 +215,8 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
     model.elevations_rad.push_back(radians(channel.elevation_deg));
     model.azimuth_offsets_rad.push_back(-radians(channel.azimuth_deg));
   }
+  for (const auto& fault : {angle_fault(model), degrees_fault(model)})
+    if (fault) throw data_error({path, {}, {}}, *fault);
   if (times) {
     add_firing_times(*times, channels, file);
   } else if (base.has_beams() && std::ranges::is_sorted(channels, {}, &Channel::number)) {

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
@@ -181,6 +183,67 @@ LidarFile base_of(const std::string& product_line, std::size_t beams) {
   return default_rotating_lidar();
 }
 
+/// Removes the entries of `values` that are not kept.
+template <class T>
+void keep_beams(std::vector<T>& values, const std::vector<bool>& kept) {
+  std::size_t beam = 0;
+  std::erase_if(values, [&](const T&) { return !kept[beam++]; });
+}
+
+/// The number of beams in the product line: 16 of "OS-1-16-A0"; nothing if it has none.
+std::optional<std::size_t> beams_of_product(const std::string& line) {
+  if (!line.starts_with("OS-")) return std::nullopt;
+  const std::size_t dash = line.find('-', 3);
+  if (dash == std::string::npos) return std::nullopt;
+  return parse_number<std::size_t>(
+      std::string_view(line).substr(dash + 1, line.find('-', dash + 1) - dash - 1));
+}
+
+/// Sensors of 16 and 32 beams have lists of 64 up to firmware 1.13, with angles 0 for beams that do
+/// not exist. Packets have all 64. Errors: data if the others are not those of the product.
+void drop_padding(const Metadata& metadata, const std::string& line, LidarModel& model) {
+  const std::size_t listed = model.elevations_rad.size();
+  if (const auto fault = degrees_fault(model)) throw metadata.fault(*fault);
+  std::vector<bool> kept(listed);
+  for (std::size_t beam = 0; beam < listed; ++beam)
+    kept[beam] = model.elevations_rad[beam] != 0 || model.azimuth_offsets_rad[beam] != 0;
+  const auto real = static_cast<std::size_t>(std::ranges::count(kept, true));
+  const std::size_t product = beams_of_product(line).value_or(listed - real > 1 ? real : listed);
+  const bool is_padded = listed - real > 1 && real > 0 && listed != product;
+  const std::size_t found = is_padded ? real : listed;
+  if (found != product && real > 0)
+    throw metadata.fault("beam_altitude_angles and beam_azimuth_angles have " +
+                         std::to_string(found) + (is_padded ? " beams that are not 0" : " beams") +
+                         ", prod_line is " + shown(line));
+  if (is_padded) {
+    keep_beams(model.elevations_rad, kept);
+    keep_beams(model.azimuth_offsets_rad, kept);
+    keep_beams(model.beam_origins_m, kept);
+    if (model.packets) {
+      keep_beams(model.packets->laser_ids, kept);
+      keep_beams(model.packets->range_offsets_m, kept);
+      model.packets->lasers = listed;
+    }
+  }
+  if (const auto fault = angle_fault(model)) throw metadata.fault(*fault);
+}
+
+/// The columns that the sensor measures: [first, last] of column_window.
+void read_window(const Metadata& metadata, LidarModel& model) {
+  const std::vector<double> window = metadata.numbers("column_window");
+  if (window.empty()) return;
+  const auto is_column = [&](double column) {
+    return column >= 0 && column < model.columns && column == std::floor(column);
+  };
+  if (window.size() != 2 || !std::ranges::all_of(window, is_column))
+    throw metadata.fault("column_window is not [first, last] of " + std::to_string(model.columns) +
+                         " columns (lidar_mode)");
+  const double columns = model.columns;
+  if (std::fmod(window[1] + 1 - window[0] + columns, columns) == 0) return;  // all of them
+  model.window_begin = window[0] / columns;
+  model.window_end = (window[1] + 1) / columns;
+}
+
 }  // namespace
 
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path) {
@@ -208,6 +271,8 @@ LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& p
   if (model.packets)
     for (std::size_t beam = 0; beam < model.elevations_rad.size(); ++beam)
       model.packets->laser_ids.push_back(static_cast<std::uint32_t>(beam));
+  drop_padding(metadata, line, model);
+  read_window(metadata, model);
   return file;
 }
 

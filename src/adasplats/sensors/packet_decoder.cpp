@@ -322,7 +322,9 @@ std::vector<MeasuredColumn> PacketDecoder::columns(std::string_view payload) con
 
 bool PacketDecoder::has_returns(std::string_view payload, std::size_t k) const {
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser)
-    if (parser_->returns_at(sensor_, payload, k, laser).count > 0) return true;
+    if (sensor_.ring_of_laser[laser] != kNoRing &&
+        parser_->returns_at(sensor_, payload, k, laser).count > 0)
+      return true;
   return false;
 }
 
@@ -330,9 +332,10 @@ void PacketDecoder::add_points(std::string_view payload, std::size_t k,
                                const MeasuredColumn& column, PacketPoints& points) const {
   const LidarModel& model = sensor_.model;
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser) {
+    const std::size_t ring = sensor_.ring_of_laser[laser];
+    if (ring == kNoRing) continue;
     const LaserReturns returns = parser_->returns_at(sensor_, payload, k, laser);
     if (returns.count == 0) continue;
-    const std::size_t ring = sensor_.ring_of_laser[laser];
     const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
     const Firing firing = firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s);
     for (std::size_t number = 0; number < returns.count; ++number) {

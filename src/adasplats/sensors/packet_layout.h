@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -39,6 +40,8 @@ struct PacketLayout {
   /// The manufacturer's number of each beam, its position in a firing; one a beam, or empty: 0 is
   /// the topmost.
   std::vector<std::uint32_t> laser_ids;
+  /// Positions of a firing if they are more than the beams; else 0.
+  std::size_t lasers = 0;
   /// Added to a packet's range, which then starts at the origin of the beam, m; one a beam, or
   /// empty for zero. Velodyne: dist_correction of the calibration.
   std::vector<double> range_offsets_m;

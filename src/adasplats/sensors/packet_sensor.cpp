@@ -29,9 +29,9 @@ Error not_packets(const LidarModel& model, const std::string& why) {
 }
 
 void check_beams(const LidarModel& model, PacketFormat format, std::size_t lasers) {
-  const std::size_t beams = model.elevations_rad.size();
+  const std::size_t beams = std::max(model.elevations_rad.size(), model.packets->lasers);
   const std::string name(word_of(format, kPacketFormats));
-  if (!model.free_pattern.empty() || model.rosette || beams == 0)
+  if (!model.free_pattern.empty() || model.rosette || model.elevations_rad.empty())
     throw not_packets(
         model, "does not fire all its beams in every column, which packets " + name + " require");
   const bool fits = lasers != 0
@@ -75,7 +75,7 @@ PacketSensor packet_sensor(const LidarModel& model) {
       model.packets->format, facts_of_packets(model.packets->format), model, {}, {}, {}};
   check_beams(model, sensor.format, sensor.facts.lasers);
   const std::size_t beams = model.elevations_rad.size();
-  sensor.ring_of_laser.resize(beams);
+  sensor.ring_of_laser.resize(std::max(beams, model.packets->lasers), kNoRing);
   sensor.laser_of_ring.resize(beams);
   for (std::size_t ring = 0; ring < beams; ++ring) {
     const std::size_t laser =

@@ -407,6 +407,17 @@ TEST(LoadCloud, ColumnsOfFiles) {
   EXPECT_TRUE(cloud.scan_indices.empty());
 }
 
+TEST(LoadCloud, MisspeltColumnsAreWarnedAbout) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.csv", "x,y,z,intensty,other\n1,2,3,4,5\n");
+  Listener listener;
+  EXPECT_TRUE(load_cloud(std::span(&file, 1), {}, Executor(1), listener).first.intensities.empty());
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("a.csv: column 'intensty' is not read, did you mean "
+                                      "'intensity'?"),
+            std::string::npos);
+}
+
 TEST(LoadCloud, NamedColumns) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.csv", "x,y,z,label,kind,px,py,pz\n1,2,3,40,9,7,8,9\n");

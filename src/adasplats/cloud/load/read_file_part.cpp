@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -11,6 +10,7 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 
@@ -30,24 +30,6 @@ const std::array<Triple, 6> kSensorNames = {
      {"scalar_x_lidar_position", "scalar_y_lidar_position", "scalar_z_lidar_position"},
      {"scalar_sensor_x", "scalar_sensor_y", "scalar_sensor_z"},
      {"scalar_x_origin", "scalar_y_origin", "scalar_z_origin"}}};
-const std::initializer_list<std::string_view> kClassNames = {
-    "label",    "class", "classification", "semantic", "scalar_label", "scalar_classification",
-    "sem_class"};
-const std::initializer_list<std::string_view> kIntensityNames = {"intensity",
-                                                                 "reflectance",
-                                                                 "remission",
-                                                                 "reflectivity",
-                                                                 "luma",
-                                                                 "scalar_intensity",
-                                                                 "scalar_reflectance",
-                                                                 "scalar_remission",
-                                                                 "scalar_reflectivity",
-                                                                 "scalar_luma"};
-const std::initializer_list<std::string_view> kInstanceNames = {"instance", "scalar_instance"};
-const std::initializer_list<std::string_view> kTimeNames = {
-    "time",       "timestamp", "gps_time", "scalar_time", "scalar_timestamp", "scalar_gps_time",
-    "offset_time"};
-const std::initializer_list<std::string_view> kScanNames = {"scan_index", "scalar_scan_index"};
 
 /// A table and the file it is from, for messages.
 struct PointFile {
@@ -64,12 +46,6 @@ struct PointFile {
   const Column* find(std::string_view lower_name) const {
     for (const Column& column : table.columns)
       if (lower_case(column.name) == lower_name) return &column;
-    return nullptr;
-  }
-
-  const Column* first_of(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view name : names)
-      if (const Column* column = find(name)) return column;
     return nullptr;
   }
 
@@ -199,7 +175,8 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
                            ", which this version does not know; metres assumed");
     case NoteKind::salvaged: return progress.warn(start + "salvaged " + note.text);
     case NoteKind::left_out: return progress.warn(start + "left out: " + note.text);
-    case NoteKind::intensity_scale: return progress.warn(start + note.text);
+    case NoteKind::intensity_scale:
+    case NoteKind::unnamed_columns: return progress.warn(start + note.text);
     case NoteKind::geographic:
       if (file.table.rows == 0) return;
       throw Error(ErrorKind::data,
@@ -217,6 +194,24 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
     case NoteKind::no_return:
     case NoteKind::wrong_count: return;
   }
+}
+
+/// Warns about columns that the user may have expected to be read.
+void warn_about_columns(const PointFile& file, const CloudPart& part, const LoadOptions& options,
+                        ProgressSink& progress) {
+  const std::string start = file.path.string() + ": ";
+  for (const Column& column : file.table.columns) {
+    if (column.name == options.label_field || column.name == options.sensor_x_field ||
+        column.name == options.sensor_y_field || column.name == options.sensor_z_field)
+      continue;
+    if (const auto likely = likely_column_name(column.name))
+      progress.warn(start + "column " + shown(column.name) + " is not read, did you mean '" +
+                    *likely + "'? Rename the column to use it");
+  }
+  if (!options.trajectory.empty() && part.times_s.empty() && part.world_sensors.empty() &&
+      has_times(options.trajectory))
+    progress.warn(start + "no column of times (found " + file.column_list() +
+                  "); sensor positions are guessed from the nearest poses");
 }
 
 /// Only LAS declares its clock: adjusted GPS time if a note reports it, else seconds of the week.
@@ -247,13 +242,11 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);
-  const Column* time = file.first_of(kTimeNames);
-  // The name in Ouster's drivers; with a column s it is a texture coordinate.
-  if (time == nullptr && file.find("s") == nullptr) time = file.find("t");
-  if (time != nullptr) {
+  if (const Column* const time = find_column(table, PointColumn::time)) {
+    const double unit_s = time_unit_of_name(time->name);
     part.times_s.resize(table.rows);
-    for_each_value(*time, [&part](std::size_t i, auto value) {
-      part.times_s[i] = static_cast<double>(value);
+    for_each_value(*time, [&](std::size_t i, auto value) {
+      part.times_s[i] = unit_s * static_cast<double>(value);
     });
     part.declared_clock = declared_clock_of(file);
   }
@@ -262,17 +255,19 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
     read_origin_kinds(file, *column, cloud);
   if (!options.label_field.empty())
     read_labels(file, file.named(options.label_field), cloud);
-  else if (const Column* column = file.first_of(kClassNames))
+  else if (const Column* column = find_column(table, PointColumn::classification))
     read_labels(file, *column, cloud);
-  if (const Column* column = file.first_of(kInstanceNames)) read_instances(file, *column, cloud);
-  if (const Column* column = file.first_of(kScanNames))
+  if (const Column* column = find_column(table, PointColumn::instance))
+    read_instances(file, *column, cloud);
+  if (const Column* column = find_column(table, PointColumn::scan_index))
     cloud.scan_indices = read_whole_numbers(file, *column);
-  if (const Column* column = file.first_of(kIntensityNames)) {
+  if (const Column* column = find_column(table, PointColumn::intensity)) {
     cloud.intensities.resize(table.rows);
     for_each_value(*column, [&cloud](std::size_t i, auto value) {
       cloud.intensities[i] = static_cast<float>(value);
     });
   }
+  warn_about_columns(file, part, options, progress);
   return part;
 }
 

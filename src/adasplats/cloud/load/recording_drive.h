@@ -44,7 +44,7 @@ struct RecordingSurvey {
   std::map<std::string, TopicSurvey> topics;
 };
 
-/// Reads a recording from front to back. Memory: 112 bytes per pose and 56 per cloud. Errors: those
+/// Reads a recording from front to back. Memory: 120 bytes per pose and 56 per cloud. Errors: those
 /// of Recording; data for invalid messages of clouds and poses.
 RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink& progress);
 
