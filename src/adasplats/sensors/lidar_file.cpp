@@ -126,6 +126,7 @@ void LidarFile::clear_pattern() {
   model.drop.reset();
   model.body.reset();
   model.packets.reset();
+  model.packet_profile.clear();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

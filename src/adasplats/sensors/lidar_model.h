@@ -85,6 +85,8 @@ struct LidarModel {
   std::optional<VehicleBody> body;
   /// Layout of its UDP packets, if it is supported.
   std::optional<PacketLayout> packets;
+  /// The profile of an Ouster's packets if it is not supported; else empty.
+  std::string packet_profile;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second
