@@ -36,7 +36,7 @@ class RevolutionFinder {
   RevolutionFinder(const PacketDecoder& decoder, PacketSource& source)
       : decoder_(decoder),
         source_(source),
-        clock_(!is_ouster(decoder.sensor().format)),
+        clock_(!decoder.has_full_time()),
         column_ns_(std::llround(decoder.column_s() * static_cast<double>(kSecond_ns))) {}
 
   void add(const Datagram& datagram, const std::string& what) {
@@ -46,14 +46,17 @@ class RevolutionFinder {
     if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
     if (source_.packets == 0)
       source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
-                         (is_ouster(decoder_.sensor().format) ? clock_.shift_ns() : 0);
+                         (decoder_.has_full_time() ? clock_.shift_ns() : 0);
     ++source_.packets;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!columns[k].is_valid) continue;
       const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
       const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
-      if (begins_anew) cut_step_ = cut_before(columns[k]);
-      if (begins_anew || begins_revolution(columns[k])) {
+      const bool begins_turn = begins_anew || begins_revolution(columns[k]);
+      if (begins_anew || (begins_turn && decoder_.numbers_revolutions()))
+        cut_step_ = cut_before(columns[k]);
+      if (begins_turn) {
+        if (!begins_anew) check_turn(columns[k], time_ns);
         source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
       }
@@ -76,7 +79,8 @@ class RevolutionFinder {
   /// The step at which revolutions begin, if this column is the first.
   std::uint32_t cut_before(const MeasuredColumn& column) const {
     const LidarModel& model = decoder_.sensor().model;
-    if (is_ouster(decoder_.sensor().format) || model.first_azimuth_rad != 0) return 0;
+    if (decoder_.numbers_revolutions()) return column.step;
+    if (model.first_azimuth_rad != 0) return 0;
     // A quarter of a column earlier: azimuths are rounded.
     const std::uint32_t turn = decoder_.steps_per_turn();
     return (column.step + turn - turn / (4 * model.columns)) % turn;
@@ -87,9 +91,24 @@ class RevolutionFinder {
   }
   /// The head passed the end of a turn, or went back (packets are missing).
   bool begins_revolution(const MeasuredColumn& column) const {
-    if (is_ouster(decoder_.sensor().format) && column.frame != last_.frame) return true;
+    if (decoder_.numbers_revolutions()) return column.frame != last_.frame;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
     return since_cut(column) + back < since_cut(last_);
+  }
+  /// Counts numbered revolutions whose end contradicts the columns per revolution: by the time
+  /// since the last column, another number of columns is missing up to this one.
+  void check_turn(const MeasuredColumn& column, std::int64_t time_ns) {
+    if (!decoder_.numbers_revolutions()) return;
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    const double missing = (column.step + turn - last_.step) % turn;
+    const double passed = static_cast<double>(time_ns - last_ns_) / static_cast<double>(column_ns_);
+    if (std::fabs(std::remainder(passed - missing, turn)) < turn / 8.0) return;
+    ++source_.odd_turns;
+    if (!source_.contradiction.empty()) return;
+    const LidarModel& model = decoder_.sensor().model;
+    source_.contradiction = "end revolutions after column " + std::to_string(last_.step) +
+                            ", but " + model.name + " has " + std::to_string(model.columns) +
+                            " columns per revolution";
   }
   double share_of_turn(const MeasuredColumn& last) const {
     const double turn = decoder_.steps_per_turn();
@@ -163,6 +182,11 @@ PacketSurvey survey_packets(const std::filesystem::path& path,
     if (!survey.decoder || !survey.decoder->has_size(datagram->payload)) continue;
     if (const auto objection = survey.decoder->objection(datagram->payload)) {
       if (source.objection.empty()) source.objection = *objection;
+      continue;
+    }
+    if (const auto contradiction = survey.decoder->contradiction(datagram->payload)) {
+      if (source.contradiction.empty()) source.contradiction = *contradiction;
+      ++source.contradictions;
       continue;
     }
     const auto [finder, is_new] =
@@ -251,9 +275,8 @@ class PacketScans final : public ScanSource {
   static constexpr std::int64_t kFullHour_ns = 3'600'000'000'000;
 
   bool is_of_source(const Datagram& datagram) const {
-    return decoder_->has_size(datagram.payload) &&
-           source_ == address_text(datagram.from) + ":" + std::to_string(datagram.to_port) &&
-           !decoder_->objection(datagram.payload);
+    return source_ == address_text(datagram.from) + ":" + std::to_string(datagram.to_port) &&
+           decoder_->accepts(datagram.payload);
   }
   void add_column(const Datagram& datagram, std::size_t k, const MeasuredColumn& column,
                   double time_s, FileScan& scan) const {
@@ -277,21 +300,40 @@ std::string list_of_sources(const PacketSurvey& survey) {
     list += (list.empty() ? "" : ", ") + name + " (" + std::to_string(source.datagrams) +
             " datagrams" +
             (source.packets > 0 ? ", " + std::to_string(source.packets) + " of the sensor" : "") +
-            (source.objection.empty() ? "" : "; some " + source.objection) + ")";
+            (source.objection.empty() ? "" : "; some " + source.objection) +
+            (source.contradiction.empty() ? "" : "; some " + source.contradiction) + ")";
   return list.empty() ? "none" : list;
+}
+
+/// Whether the sensor's file is of another device or mode than the packets, rather than single
+/// packets damaged.
+bool contradicts_file(const PacketSource& source) {
+  constexpr std::uint64_t kDamaged = 10;  // one in
+  return source.contradictions > source.packets / kDamaged ||
+         (source.odd_turns > 0 && 2 * source.odd_turns + 1 >= source.revolutions.size());
+}
+
+Error wrong_file(const PacketSurvey& survey, const std::string& name, const PacketSource& source) {
+  return {ErrorKind::data, survey.path.string() + ": packets of " + name + " " +
+                               source.contradiction +
+                               "; give the file of this sensor in this mode as `packet_sensor`"};
 }
 
 /// The given source, else the only one.
 const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& survey,
                                                             const std::string& stated) {
-  const std::pair<const std::string, PacketSource>* chosen = nullptr;
+  const std::pair<const std::string, PacketSource>*chosen = nullptr, *wrong = nullptr;
   std::size_t count = 0;
   for (const auto& entry : survey.sources) {
-    if (entry.second.packets == 0 || (!stated.empty() && entry.first != stated)) continue;
+    if (!stated.empty() && entry.first != stated) continue;
+    if (contradicts_file(entry.second)) wrong = &entry;
+    if (entry.second.packets == 0) continue;
     chosen = &entry;
     ++count;
   }
   const std::string sources = "; UDP from: " + list_of_sources(survey);
+  if (wrong != nullptr && (count == 0 || chosen == wrong))
+    throw wrong_file(survey, wrong->first, wrong->second);
   if (count == 0)
     throw Error(stated.empty() ? ErrorKind::data : ErrorKind::usage,
                 survey.path.string() + ": has no packets of " +
@@ -316,9 +358,16 @@ void warn_of_packets(const PacketSurvey& survey, const std::string& name,
   warn(survey.counts.torn, "datagrams lack fragments and are skipped");
   warn(survey.counts.cut, "frames are truncated and are skipped");
   warn(survey.counts.timeless, "frames have no time and are skipped");
-  if (!source.objection.empty())
-    progress.warn(survey.path.string() + ": some packets of " + name + " " + source.objection +
-                  " and are skipped");
+  for (const std::string& fault : {source.objection, source.contradiction})
+    if (!fault.empty())
+      progress.warn(survey.path.string() + ": some packets of " + name + " " + fault +
+                    " and are skipped");
+  const PacketSensor& sensor = survey.decoder->sensor();
+  const std::uint64_t serial = sensor.model.packets->serial;
+  if (sensor.format == PacketFormat::ouster_legacy && serial != 0)
+    progress.warn(survey.path.string() +
+                  ": packets of profile LEGACY have no serial number; make sure that " +
+                  sensor.model.name + " (" + std::to_string(serial) + ") is of this sensor");
 }
 
 /// Warns of revolutions cut by the start or end of the capture.

@@ -34,6 +34,10 @@ struct PacketSource {
   std::uint64_t dual_packets = 0;            ///< those with two returns per firing
   std::uint64_t gaps = 0, lost_columns = 0;  ///< from missing packets
   std::string objection;  ///< why some datagrams of the right size are rejected; empty: none are
+  /// How packets contradict the sensor's file (PacketDecoder::contradiction()); empty: none do.
+  std::string contradiction;
+  std::uint64_t contradictions = 0;  ///< packets that do
+  std::uint64_t odd_turns = 0;       ///< ends of revolutions after another number of columns
   std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
   std::vector<Revolution> revolutions;
 };
