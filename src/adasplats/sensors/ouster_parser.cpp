@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdio>
-#include <numbers>
 #include <string>
 
 #include "adasplats/sensors/packet_bytes.h"
@@ -35,11 +34,12 @@ struct ColumnHead {
 
 class OusterParser final : public PacketParser {
  public:
+  PacketTraits traits(const PacketSensor& /*sensor*/) const override {
+    return {.has_frames = true};
+  }
   std::uint32_t steps_per_turn(const PacketSensor& sensor) const override {
     return sensor.model.columns;
   }
-  bool has_full_time() const override { return true; }
-  bool numbers_revolutions() const override { return true; }
   std::optional<std::string> objection(const PacketSensor& sensor,
                                        std::string_view payload) const override;
   std::optional<std::string> contradiction(const PacketSensor& sensor,
@@ -144,8 +144,8 @@ std::vector<MeasuredColumn> OusterParser::columns(const PacketSensor& sensor,
     MeasuredColumn column;
     column.time_ns = value_at<std::int64_t>(payload, head);
     column.step = value_at<std::uint16_t>(payload, head + 8);
-    column.head_rad = model.first_azimuth_rad -
-                      2.0 * std::numbers::pi * column.step / static_cast<double>(model.columns);
+    column.head_rad =
+        model.first_azimuth_rad - kWholeTurn_rad * column.step / static_cast<double>(model.columns);
     if (sensor.format == PacketFormat::ouster_legacy) {
       column.frame = value_at<std::uint16_t>(payload, head + 10);
       column.is_valid = value_at<std::uint32_t>(

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "adasplats/sensors/packet_layout.h"
@@ -14,15 +11,6 @@
 namespace adasplats {
 
 // Private to sensors/: byte offsets in packets. All numbers are little-endian.
-
-static_assert(std::endian::native == std::endian::little, "packets are little-endian");
-
-template <class T>
-T value_at(std::string_view bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
 
 // Velodyne, all sensors: 12 blocks of 100 bytes (flag, azimuth in 0.01 degrees, 32 channels of a
 // range and an intensity), microseconds past the hour of the first firing, two factory bytes.

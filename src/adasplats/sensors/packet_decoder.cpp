@@ -25,13 +25,11 @@ void add_return(LaserReturns& returns, PacketReturn found) {
 }
 
 PacketDecoder::PacketDecoder(PacketSensor sensor)
-    : sensor_(std::move(sensor)), parser_(&parser_of(sensor_.format)) {}
+    : sensor_(std::move(sensor)),
+      parser_(&parser_of(sensor_.format)),
+      traits_(parser_->traits(sensor_)) {}
 
 std::uint32_t PacketDecoder::steps_per_turn() const { return parser_->steps_per_turn(sensor_); }
-
-bool PacketDecoder::has_full_time() const { return parser_->has_full_time(); }
-
-bool PacketDecoder::numbers_revolutions() const { return parser_->numbers_revolutions(); }
 
 bool PacketDecoder::has_size(std::string_view payload) const {
   return parser_->has_size(sensor_, payload);

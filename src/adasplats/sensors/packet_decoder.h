@@ -17,12 +17,20 @@ namespace adasplats {
 
 /// Time and azimuth of the head for one firing of all lasers.
 struct MeasuredColumn {
-  std::int64_t time_ns = 0;  ///< by the sensor's clock, or since the full hour (has_full_time())
-  double head_rad = 0;       ///< counter-clockwise from +x, when the first laser fires
-  double turn_rad_s = 0;     ///< angular velocity of the head, counter-clockwise
-  std::uint32_t step = 0;    ///< of steps_per_turn() since the start of the revolution
-  std::uint32_t frame = 0;   ///< number of the revolution (numbers_revolutions())
-  bool is_valid = true;      ///< the column was measured
+  std::int64_t time_ns =
+      0;                ///< by the sensor's clock, or since the full hour (PacketTraits::is_hourly)
+  double head_rad = 0;  ///< counter-clockwise from +x, when the first laser fires
+  double turn_rad_s = 0;    ///< angular velocity of the head, counter-clockwise
+  std::uint32_t step = 0;   ///< of steps_per_turn() since the start of the revolution
+  std::uint32_t frame = 0;  ///< with PacketTraits::has_frames
+  bool is_valid = true;     ///< the column was measured
+};
+
+/// Properties of a sensor's columns that depend on the manufacturer.
+struct PacketTraits {
+  bool is_hourly = false;   ///< times count from the full hour
+  bool has_frames = false;  ///< columns have the number of their revolution
+  bool has_cut = false;     ///< revolutions begin at step 0, else anywhere
 };
 
 /// The returns of one laser in one column, the nearest first: none, one or two.
@@ -52,10 +60,7 @@ class PacketDecoder {
   const PacketSensor& sensor() const { return sensor_; }
   std::uint32_t steps_per_turn() const;
   double column_s() const { return sensor_.column_s(); }
-  /// Whether packets have whole times (Ouster), not only times since the full hour (Velodyne).
-  bool has_full_time() const;
-  /// Whether packets have the number of the revolution (Ouster).
-  bool numbers_revolutions() const;
+  const PacketTraits& traits() const { return traits_; }
 
   /// Whether a payload has the size of the sensor's packets.
   bool has_size(std::string_view payload) const;
@@ -84,6 +89,7 @@ class PacketDecoder {
  private:
   PacketSensor sensor_;
   const PacketParser* parser_;  ///< of the manufacturer; a static object
+  PacketTraits traits_;
 };
 
 }  // namespace adasplats

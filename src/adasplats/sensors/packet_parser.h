@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,14 +17,31 @@
 
 namespace adasplats {
 
-// Private to sensors/: the manufacturers' formats behind PacketDecoder.
+// Private to sensors/: the parts of PacketDecoder that depend on the manufacturer.
 
-/// The part of PacketDecoder that depends on the manufacturer; its functions are documented there.
+static_assert(std::endian::native == std::endian::little, "packets are little-endian");
+
+inline constexpr double kWholeTurn_rad = 2.0 * std::numbers::pi;
+inline constexpr double kNanosecondsInOne_s = 1e9;
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+inline std::string hexadecimal(unsigned value) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "0x%02X", value);
+  return text.data();
+}
+
+/// The functions are documented in PacketDecoder.
 class PacketParser {
  public:
+  virtual PacketTraits traits(const PacketSensor& sensor) const = 0;
   virtual std::uint32_t steps_per_turn(const PacketSensor& sensor) const = 0;
-  virtual bool has_full_time() const = 0;
-  virtual bool numbers_revolutions() const = 0;
   virtual bool has_size(const PacketSensor& sensor, std::string_view payload) const {
     return payload.size() == sensor.payload_bytes();
   }
@@ -40,11 +61,11 @@ class PacketParser {
   ~PacketParser() = default;
 };
 
+/// Adds a return unless it is empty or equal to another one; the nearest comes first.
+void add_return(LaserReturns& returns, PacketReturn found);
+
 // Static objects; parser_of() in packet_decoder.cpp chooses.
 const PacketParser& velodyne_parser();
 const PacketParser& ouster_parser();
-
-/// Adds a return unless it is empty or equal to the first one; the nearer one comes first.
-void add_return(LaserReturns& returns, PacketReturn found);
 
 }  // namespace adasplats

@@ -4,9 +4,7 @@
 // Velodyne's packets: byte offsets and sources in packet_bytes.h.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -19,17 +17,9 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kVelodyneTail = kVelodyneBlocks * kBlockBytes;
-constexpr double kTurnOfHead_rad = 2.0 * std::numbers::pi;
-constexpr double kNanosecondsOfVelodyne = 1e9;
 
 std::uint16_t azimuth_of_block(std::string_view payload, std::size_t block) {
   return value_at<std::uint16_t>(payload, block * kBlockBytes + 2);
-}
-
-std::string hexadecimal(unsigned value) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%02X", value);
-  return text.data();
 }
 
 /// The number of blocks per firing of all lasers; 1 if a block holds several firings.
@@ -95,11 +85,12 @@ PacketReturn velodyne_return(std::string_view payload, std::size_t block, std::s
 
 class VelodyneParser final : public PacketParser {
  public:
+  PacketTraits traits(const PacketSensor& sensor) const override {
+    return {.is_hourly = true, .has_cut = sensor.model.first_azimuth_rad != 0};
+  }
   std::uint32_t steps_per_turn(const PacketSensor& /*sensor*/) const override {
     return kAzimuthSteps;
   }
-  bool has_full_time() const override { return false; }
-  bool numbers_revolutions() const override { return false; }
   std::optional<std::string> objection(const PacketSensor& sensor,
                                        std::string_view payload) const override;
   bool is_dual(const PacketSensor& sensor, std::string_view payload) const override;
@@ -155,7 +146,7 @@ std::vector<MeasuredColumn> VelodyneParser::columns(const PacketSensor& sensor,
   const auto azimuth_at = [&](std::size_t block) {
     return std::uint32_t{azimuth_of_block(payload, blocks.first(block))};
   };
-  const double first_steps = -sensor.model.first_azimuth_rad / kTurnOfHead_rad * kAzimuthSteps;
+  const double first_steps = -sensor.model.first_azimuth_rad / kWholeTurn_rad * kAzimuthSteps;
   const auto micros = value_at<std::uint32_t>(payload, kVelodyneTail);
   std::vector<MeasuredColumn> columns;
   // Steps between blocks; the last block repeats the value of the previous one.
@@ -174,9 +165,9 @@ std::vector<MeasuredColumn> VelodyneParser::columns(const PacketSensor& sensor,
       MeasuredColumn column;
       column.time_ns = std::int64_t{micros} * 1000 - stamp_after_first_ns(sensor.format) +
                        std::llround(static_cast<double>(columns.size()) * sensor.column_s() *
-                                    kNanosecondsOfVelodyne);
-      column.head_rad = -steps / kAzimuthSteps * kTurnOfHead_rad;
-      column.turn_rad_s = -per_firing / kAzimuthSteps * kTurnOfHead_rad / sensor.column_s();
+                                    kNanosecondsInOne_s);
+      column.head_rad = -steps / kAzimuthSteps * kWholeTurn_rad;
+      column.turn_rad_s = -per_firing / kAzimuthSteps * kWholeTurn_rad / sensor.column_s();
       column.step = static_cast<std::uint32_t>(since_begin);
       columns.push_back(column);
     }

@@ -36,7 +36,7 @@ class RevolutionFinder {
   RevolutionFinder(const PacketDecoder& decoder, PacketSource& source)
       : decoder_(decoder),
         source_(source),
-        clock_(!decoder.has_full_time()),
+        clock_(decoder.traits().is_hourly),
         column_ns_(std::llround(decoder.column_s() * static_cast<double>(kSecond_ns))) {}
 
   void add(const Datagram& datagram, const std::string& what) {
@@ -46,16 +46,16 @@ class RevolutionFinder {
     if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
     if (source_.packets == 0)
       source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
-                         (decoder_.has_full_time() ? clock_.shift_ns() : 0);
+                         (decoder_.traits().is_hourly ? 0 : clock_.shift_ns());
     ++source_.packets;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!columns[k].is_valid) continue;
       const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
       const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
-      const bool begins_turn = begins_anew || begins_revolution(columns[k]);
-      if (begins_anew || (begins_turn && decoder_.numbers_revolutions()))
+      const bool begins = begins_anew || begins_revolution(columns[k]);
+      if (begins_anew || (begins && decoder_.traits().has_frames))
         cut_step_ = cut_before(columns[k]);
-      if (begins_turn) {
+      if (begins) {
         if (!begins_anew) check_turn(columns[k], time_ns);
         source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
@@ -78,12 +78,11 @@ class RevolutionFinder {
   }
   /// The step at which revolutions begin, if this column is the first.
   std::uint32_t cut_before(const MeasuredColumn& column) const {
-    const LidarModel& model = decoder_.sensor().model;
-    if (decoder_.numbers_revolutions()) return column.step;
-    if (model.first_azimuth_rad != 0) return 0;
+    if (decoder_.traits().has_frames) return column.step;
+    if (decoder_.traits().has_cut) return 0;
     // A quarter of a column earlier: azimuths are rounded.
     const std::uint32_t turn = decoder_.steps_per_turn();
-    return (column.step + turn - turn / (4 * model.columns)) % turn;
+    return (column.step + turn - turn / (4 * decoder_.sensor().model.columns)) % turn;
   }
   std::uint32_t since_cut(const MeasuredColumn& column) const {
     const std::uint32_t turn = decoder_.steps_per_turn();
@@ -91,14 +90,14 @@ class RevolutionFinder {
   }
   /// The head passed the end of a turn, or went back (packets are missing).
   bool begins_revolution(const MeasuredColumn& column) const {
-    if (decoder_.numbers_revolutions()) return column.frame != last_.frame;
+    if (decoder_.traits().has_frames) return column.frame != last_.frame;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
     return since_cut(column) + back < since_cut(last_);
   }
   /// Counts numbered revolutions whose end contradicts the columns per revolution: by the time
   /// since the last column, another number of columns is missing up to this one.
   void check_turn(const MeasuredColumn& column, std::int64_t time_ns) {
-    if (!decoder_.numbers_revolutions()) return;
+    if (!decoder_.traits().has_frames) return;
     const std::uint32_t turn = decoder_.steps_per_turn();
     const double missing = (column.step + turn - last_.step) % turn;
     const double passed = static_cast<double>(time_ns - last_ns_) / static_cast<double>(column_ns_);
