@@ -213,4 +213,10 @@ LidarModel load_lidar_model(const std::string& name_or_path) {
   return finished_model(read_lidar(name_or_path, 0));
 }
 
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name) {
+  LidarModel model = finished_model(read_ouster_json(metadata, name));
+  model.name = name;
+  return model;
+}
+
 }  // namespace adasplats

@@ -136,6 +136,10 @@ LidarModel hdl_32_paper();
 /// line), data (errors in other formats).
 LidarModel load_lidar_model(const std::string& name_or_path);
 
+/// The sensor of an Ouster's metadata that are no file; `name` is its name, and begins messages.
+/// Errors: data.
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name);
+
 /// Names of the sensors in the library.
 std::vector<std::string> lidar_model_names();
 
