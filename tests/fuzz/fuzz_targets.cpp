@@ -47,8 +47,11 @@ constexpr FuzzTarget kTargets[] = {
     {"clouds", "a.mcap", "cloud/load/recording_drive.cpp cloud/load/recording_poses.cpp",
      &survey_clouds, 4 * kKiB, kZstdWindow_mb},
     {"pcap", "a.pcap", "io/packets", &read_capture},
-    {"packet", "", "sensors/packet_decoder.cpp", &read_packet, 26 * kKiB},
-    {"capture", "a.pcap", "cloud/load/packet_drive.cpp", &survey_capture, 8 * kKiB},
+    {"packet", "",
+     "sensors/packet_decoder.cpp sensors/ouster_parser.cpp sensors/velodyne_parser.cpp",
+     &read_packet, 26 * kKiB},
+    {"capture", "a.pcap", "cloud/load/packet_drive.cpp cloud/load/packet_file.cpp", &survey_capture,
+     8 * kKiB},
     // Places
     {"obj", "a.obj", "io/text/obj.cpp splats/model/mesh_model.cpp", &read_mesh},
     {"mesh-ply", "a.ply", "splats/model/mesh_model.cpp io/ply", &read_mesh},

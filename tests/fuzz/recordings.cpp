@@ -64,6 +64,20 @@ void read_ros_message(const Input& input) {
             "no more poses than bytes");
     return;
   }
+  constexpr std::array<std::string_view, 6> kPacketTypes = {
+      "velodyne_msgs/VelodyneScan", "nebula_msgs/NebulaPackets", "pandar_msgs/PandarScan",
+      "hesai_ros_driver/UdpFrame",  "ouster_ros/PacketMsg",      kRosString};
+  const std::size_t after_cloud = type - kTypes.size() - 1;
+  if (type > kTypes.size() && after_cloud < kPacketTypes.size()) {
+    const std::string_view packets = kPacketTypes[after_cloud];
+    if (packets == kRosString)
+      require(ros_string(bytes, encoding, "m").size() <= bytes.size(),
+              "no text beyond the message");
+    else
+      for (const RosPacket& packet : ros_packets(bytes, packets, encoding, "m").packets)
+        require(packet.bytes.size() <= bytes.size(), "no packet beyond the message");
+    return;
+  }
   const RosCloudHead head = ros_cloud_head(bytes, encoding, "m");
   const Table table = ros_points(bytes, encoding, "m");
   require_sound(table, bytes.size());
@@ -91,8 +105,15 @@ void read_packed_bytes(const Input& input) {
 
 void survey_clouds(const Input& input) {
   ProgressSink quiet;
-  for (const auto& [name, topic] : survey_recording(input.file, quiet).topics)
+  const RecordingSurvey survey = survey_recording(input.file, quiet);
+  for (const auto& [name, topic] : survey.topics)
     require(topic.clouds.size() <= topic.messages, "no more clouds than messages");
+  DriveSettings settings;
+  if (is_read_by_packets(survey, settings)) {
+    settings.packets_of = "velodyne-vlp-16";
+    for (const auto& [name, source] : survey_packets(survey, settings, quiet).sources)
+      require(source.packets <= source.datagrams, "no more packets than datagrams");
+  }
   const RecordedTrajectory found = trajectory_of_recording(input.file, "", "", quiet);
   for (std::size_t k = 1; k < found.motion.size(); ++k)
     require(found.motion[k].time_s > found.motion[k - 1].time_s, "times that ascend");
@@ -125,7 +146,7 @@ void read_packet(const Input& input) {
   // Any payload that is too short is padded: the reader takes those of the right size alone.
   std::string payload(bytes);
   payload.resize(decoder.sensor().payload_bytes());
-  if (decoder.objection(payload)) return;
+  if (decoder.objection(payload) || decoder.contradiction(payload)) return;
   const std::vector<MeasuredColumn> columns = decoder.columns(payload);
   PacketPoints points;
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -346,21 +346,83 @@ FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
   return facts;
 }
 
+/// The sources of packets in a capture or recording, and what is understood of it as a drive.
+FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
+                       const std::optional<LabelScheme>& scheme, const LoadOptions& options,
+                       Session& session) {
+  FileFacts facts;
+  try {
+    facts = sequence_facts(open_packet_drive(drive_of(survey.path, options), survey,
+                                             session.executor, session.progress),
+                           kind, scheme, options, session);
+  } catch (const Error& error) {
+    facts = {};
+    facts.kind = kind;
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+  }
+  if (survey.decoder) {
+    facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
+    facts.json["packets_of"] = survey.decoder->sensor().model.name;
+  }
+  facts.json["sources"] = nlohmann::ordered_json::array();
+  for (const auto& [name, source] : survey.sources) {
+    std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
+                       " packets of the sensor" +
+                       (source.dual_packets == 0 ? ""
+                        : source.dual_packets == source.packets
+                            ? " with two returns a firing"
+                            : ", " + grouped(source.dual_packets) + " with two returns a firing") +
+                       ", " + grouped(source.revolutions.size()) + " revolutions";
+    if (source.lost_columns > 0)
+      text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
+              " gaps";
+    if (source.packets > 0)
+      text += "; captured " + fixed(1e-9 * static_cast<double>(source.ahead_ns), 6) +
+              " s after its own times";
+    for (const std::string& fault : {source.objection, source.contradiction})
+      if (!fault.empty()) text += "; some " + fault;
+    facts.rows.emplace_back("from " + name, text);
+    facts.json["sources"].push_back({{"name", name},
+                                     {"datagrams", source.datagrams},
+                                     {"packets", source.packets},
+                                     {"dual_packets", source.dual_packets},
+                                     {"revolutions", source.revolutions.size()},
+                                     {"lost_columns", source.lost_columns},
+                                     {"gaps", source.gaps},
+                                     {"objection", source.objection},
+                                     {"contradiction", source.contradiction}});
+  }
+  return facts;
+}
+
+/// What is understood of the clouds of a recording as a drive.
+FileFacts cloud_topic_facts(const RecordingSurvey& survey, const std::optional<LabelScheme>& scheme,
+                            const LoadOptions& options, Session& session) {
+  try {
+    return sequence_facts(open_recording_drive(drive_of(survey.recording->path(), options), survey,
+                                               session.executor, session.progress),
+                          "recording", scheme, options, session);
+  } catch (const Error& error) {
+    // The list of topics shows what to select.
+    FileFacts facts;
+    facts.kind = "recording";
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+    return facts;
+  }
+}
+
 /// The topics of a recording, and what is understood of it as a drive.
 FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                           const LoadOptions& options, Session& session) {
   const RecordingSurvey survey = survey_recording(input, session.progress);
   FileFacts facts;
-  try {
-    facts = sequence_facts(
-        open_recording_drive(drive_of(input, options), survey, session.executor, session.progress),
-        "recording", scheme, options, session);
-  } catch (const Error& error) {
-    // The list of topics shows what to select.
-    facts = {};
-    facts.kind = "recording";
-    facts.rows.emplace_back("no drive", error.what());
-    facts.json["no_drive"] = error.what();
+  if (is_read_by_packets(survey, options)) {
+    facts = packet_facts(survey_packets(survey, options, session.progress), "recording", scheme,
+                         options, session);
+  } else {
+    facts = cloud_topic_facts(survey, scheme, options, session);
   }
   facts.json["topics"] = nlohmann::ordered_json::array();
   for (const auto& [name, topic] : survey.topics) {
@@ -384,47 +446,7 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
                         const LoadOptions& options, Session& session) {
   const PacketSurvey survey =
       survey_packets(input, decoder_of_capture(input, options.packets_of), session.progress);
-  FileFacts facts;
-  try {
-    facts = sequence_facts(
-        open_packet_drive(drive_of(input, options), survey, session.executor, session.progress),
-        "capture", scheme, options, session);
-  } catch (const Error& error) {
-    facts = {};
-    facts.kind = "capture";
-    facts.rows.emplace_back("no drive", error.what());
-    facts.json["no_drive"] = error.what();
-  }
-  if (survey.decoder) {
-    facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
-    facts.json["packets_of"] = survey.decoder->sensor().model.name;
-  }
-  facts.json["sources"] = nlohmann::ordered_json::array();
-  for (const auto& [name, source] : survey.sources) {
-    std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
-                       " packets of the sensor" +
-                       (source.dual_packets == 0 ? ""
-                        : source.dual_packets == source.packets
-                            ? " with two returns a firing"
-                            : ", " + grouped(source.dual_packets) + " with two returns a firing") +
-                       ", " + grouped(source.revolutions.size()) + " revolutions";
-    if (source.lost_columns > 0)
-      text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
-              " gaps";
-    if (source.packets > 0)
-      text += "; captured " + fixed(1e-9 * static_cast<double>(source.ahead_ns), 6) +
-              " s after its own times";
-    if (!source.objection.empty()) text += "; some " + source.objection;
-    facts.rows.emplace_back("from " + name, text);
-    facts.json["sources"].push_back({{"name", name},
-                                     {"datagrams", source.datagrams},
-                                     {"packets", source.packets},
-                                     {"dual_packets", source.dual_packets},
-                                     {"revolutions", source.revolutions.size()},
-                                     {"lost_columns", source.lost_columns},
-                                     {"gaps", source.gaps},
-                                     {"objection", source.objection}});
-  }
+  FileFacts facts = packet_facts(survey, "capture", scheme, options, session);
   const DatagramCounts& counts = survey.counts;
   facts.rows.emplace_back("frames", grouped(counts.frames) + ", " + grouped(counts.others) +
                                         " of other protocols than UDP, " + grouped(counts.cut) +

@@ -131,6 +131,7 @@ void LidarFile::clear_pattern() {
   model.packets.reset();
   model.window_begin = 0;
   model.window_end = 1;
+  model.packet_profile.clear();
   model.free_pattern.clear();
   model.pattern_s = 0;
   model.rosette.reset();
@@ -245,6 +246,12 @@ LidarModel hdl_32_paper() { return library_model("hdl-32-paper"); }
 
 LidarModel load_lidar_model(const std::string& name_or_path) {
   return finished_model(read_lidar(name_or_path, 0));
+}
+
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name) {
+  LidarModel model = finished_model(read_ouster_json(metadata, name));
+  model.name = name;
+  return model;
 }
 
 }  // namespace adasplats

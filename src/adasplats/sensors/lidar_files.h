@@ -50,6 +50,8 @@ LidarFile read_lidar_toml(std::string_view text, const std::filesystem::path& pa
 LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& path);
 LidarFile read_hesai_csv(std::string_view text, const std::filesystem::path& path);
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path);
+/// "LEGACY, RNG15_RFL8_NIR8, ...": the supported profiles of an Ouster's packets.
+std::string ouster_profiles();
 LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path);
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path);
 

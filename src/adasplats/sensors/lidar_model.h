@@ -85,6 +85,8 @@ struct LidarModel {
   std::optional<VehicleBody> body;
   /// Layout of its UDP packets, if it is supported.
   std::optional<PacketLayout> packets;
+  /// The profile of an Ouster's packets if it is not supported; else empty.
+  std::string packet_profile;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   /// Beams fire from this share of a revolution to that one; the first can be larger: the window
@@ -145,6 +147,10 @@ LidarModel hdl_32_paper();
 /// Errors: usage (unknown name, with the nearest one), no_input, config (TOML: unknown key, with
 /// line), data (errors in other formats).
 LidarModel load_lidar_model(const std::string& name_or_path);
+
+/// The sensor of an Ouster's metadata that are no file; `name` is its name, and begins messages.
+/// Errors: data.
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name);
 
 /// Names of the sensors in the library.
 std::vector<std::string> lidar_model_names();

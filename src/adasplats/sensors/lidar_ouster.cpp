@@ -155,23 +155,51 @@ void read_frames(const Metadata& metadata, LidarModel& model) {
   model.beam_origins_m.assign(model.elevations_rad.size(), origin);
 }
 
-/// The packets of the metadata's profile; none if the profile is not supported. Older metadata have
-/// no profile and mean LEGACY. Ranges in packets start at the axis.
-std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarModel& model) {
-  const std::string profile = metadata.text("udp_profile_lidar");
-  PacketLayout layout;
-  if (profile.empty() || profile == "LEGACY") {
-    layout.format = PacketFormat::ouster_legacy;
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16") {
-    layout.format = PacketFormat::ouster_single;
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16_DUAL") {
-    layout.format = PacketFormat::ouster_dual;
-  } else {
-    return std::nullopt;
+/// Profiles with the same bytes up to the reflectivity are one format.
+constexpr std::pair<std::string_view, PacketFormat> kProfiles[] = {
+    {"LEGACY", PacketFormat::ouster_legacy},
+    {"RNG19_RFL8_SIG16_NIR16", PacketFormat::ouster_single},
+    {"RNG19_RFL8_SIG16_NIR16_DUAL", PacketFormat::ouster_dual},
+    {"RNG15_RFL8_NIR8", PacketFormat::ouster_low},
+    {"RNG15_RFL8_NIR8_DUAL", PacketFormat::ouster_low_dual},
+    {"FUSA_RNG15_RFL8_NIR8_DUAL", PacketFormat::ouster_low_dual},
+    {"RNG15_RFL8_WIN8", PacketFormat::ouster_low},
+    {"RNG19_RFL8_SIG16_NIR16_ZONE16", PacketFormat::ouster_single},
+    {"RNG19_RFL8_SIG16_ZONE16_DUAL", PacketFormat::ouster_dual}};
+
+/// A whole number from 1; 0 if the key is missing.
+std::uint64_t count_of(const Metadata& metadata, const char* key, std::uint64_t max) {
+  const Json* value = metadata.find(key);
+  if (value == nullptr) return 0;
+  if (!value->is_number_unsigned() || *value < 1 || *value > max)
+    throw metadata.fault(std::string(key) + " is " + value->dump() + ", expected 1 to " +
+                         std::to_string(max));
+  return value->get<std::uint64_t>();
+}
+
+/// The packets of the metadata's profile. Older metadata have no profile and mean LEGACY. Ranges in
+/// packets start at the axis.
+void read_packet_layout(const Metadata& metadata, LidarModel& model) {
+  constexpr std::uint64_t kMaxColumnsOfPacket = 64;
+  std::string profile = metadata.text("udp_profile_lidar");
+  if (profile.empty()) profile = "LEGACY";
+  const auto* const known =
+      std::ranges::find(kProfiles, profile, &std::pair<std::string_view, PacketFormat>::first);
+  if (known == std::end(kProfiles)) {
+    model.packet_profile = profile;
+    return;
   }
+  PacketLayout& layout = model.packets.emplace();
+  layout.format = known->second;
+  layout.columns = count_of(metadata, "columns_per_packet", kMaxColumnsOfPacket);
+  const std::string header = metadata.text("header_type");
+  layout.has_safety_head = header == "FUSA" || (header.empty() && profile.starts_with("FUSA"));
+  layout.serial = parse_number<std::uint64_t>(metadata.text("prod_sn")).value_or(0);
   const Vec3d along = beam_origin(metadata);
-  layout.range_offsets_m.assign(model.elevations_rad.size(), -std::hypot(along.x, along.z));
-  return layout;
+  const std::size_t beams = model.elevations_rad.size();
+  layout.range_offsets_m.assign(beams, -std::hypot(along.x, along.z));
+  for (std::size_t beam = 0; beam < beams; ++beam)
+    layout.laser_ids.push_back(static_cast<std::uint32_t>(beam));
 }
 
 /// The library's sensor with the same optics: ranges, noise, divergence.
@@ -267,13 +295,17 @@ LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& p
   if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.max_returns = 2;
   read_mode(metadata, model);
   read_frames(metadata, model);
-  model.packets = packets_of(metadata, model);
-  if (model.packets)
-    for (std::size_t beam = 0; beam < model.elevations_rad.size(); ++beam)
-      model.packets->laser_ids.push_back(static_cast<std::uint32_t>(beam));
+  read_packet_layout(metadata, model);
   drop_padding(metadata, line, model);
   read_window(metadata, model);
   return file;
+}
+
+std::string ouster_profiles() {
+  std::string list;
+  for (const auto& [profile, format] : kProfiles)
+    list += (list.empty() ? "" : ", ") + std::string(profile);
+  return list;
 }
 
 }  // namespace adasplats

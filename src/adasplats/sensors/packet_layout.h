@@ -21,6 +21,9 @@ enum class PacketFormat : std::uint8_t {
   ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns, 12 bytes per channel
   ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read only
   ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL: 16 bytes per channel; read only
+  ouster_low,     ///< Ouster, profile RNG15_RFL8_NIR8: 4 bytes per channel, in steps of 8 mm; read
+                  ///< only
+  ouster_low_dual,  ///< Ouster, profile RNG15_RFL8_NIR8_DUAL: 8 bytes per channel; read only
 };
 inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vlp-16", PacketFormat::vlp_16},
@@ -30,9 +33,13 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vls-128", PacketFormat::vls_128},
     {"ouster-legacy", PacketFormat::ouster_legacy},
     {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single},
-    {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual}};
+    {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual},
+    {"ouster-rng15-rfl8-nir8", PacketFormat::ouster_low},
+    {"ouster-rng15-rfl8-nir8-dual", PacketFormat::ouster_low_dual}};
 
-constexpr bool is_ouster(PacketFormat format) { return format >= PacketFormat::ouster_legacy; }
+constexpr bool is_ouster(PacketFormat format) {
+  return format >= PacketFormat::ouster_legacy && format <= PacketFormat::ouster_low_dual;
+}
 
 /// Positions of a sensor's beams in its packets.
 struct PacketLayout {
@@ -45,6 +52,10 @@ struct PacketLayout {
   /// Added to a packet's range, which then starts at the origin of the beam, m; one a beam, or
   /// empty for zero. Velodyne: dist_correction of the calibration.
   std::vector<double> range_offsets_m;
+  // Of the metadata of an Ouster:
+  std::size_t columns = 0;       ///< per packet; 0: as usual for the format
+  bool has_safety_head = false;  ///< header type FUSA: frames are numbered with 32 bits
+  std::uint64_t serial = 0;      ///< of the device, in every packet but LEGACY; 0: not given
 };
 
 }  // namespace adasplats

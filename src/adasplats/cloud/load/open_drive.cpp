@@ -179,9 +179,12 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
   if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
     throw Error(ErrorKind::usage,
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
-  if (is_recording(drive.folder))
-    return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
-                                progress);
+  if (is_recording(drive.folder)) {
+    const RecordingSurvey survey = survey_recording(drive.folder, progress);
+    if (!is_read_by_packets(survey, drive))
+      return open_recording_drive(drive, survey, executor, progress);
+    return open_packet_drive(drive, survey_packets(survey, drive, progress), executor, progress);
+  }
   if (const DataTree* const tree = data_tree_of(drive.folder))
     return open_data_tree(*tree, drive, executor, progress);
   if (is_capture(drive.folder))

@@ -47,6 +47,19 @@ void add_cloud(const RecordedMessage& message, const std::string& what, TopicSur
   topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.points, message.place});
 }
 
+void add_packets(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
+  if (topic.packets.empty())
+    topic.frame =
+        ros_packets(message.bytes, message.topic.type, message.topic.encoding, what).frame;
+  topic.packets.push_back({message.time_ns, message.place});
+}
+
+/// Ouster's drivers record the metadata as a text.
+void add_metadata(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
+  if (topic.metadata.empty() && topic.topic.name.ends_with("metadata"))
+    topic.metadata = ros_string(message.bytes, message.topic.encoding, what);
+}
+
 void add_pose(const RosPose& pose, bool is_static, const std::string& what, TopicSurvey& topic) {
   const auto [found, is_new] = topic.edges.try_emplace({pose.header.frame, pose.child_frame});
   FrameEdge& edge = found->second;
@@ -114,10 +127,12 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
         topic.messages == 0 ? message.time_ns : std::min(topic.first_ns, message.time_ns);
     topic.last_ns = std::max(topic.last_ns, message.time_ns);
     ++topic.messages;
-    const bool has_points = topic.holds_clouds(), has_poses = holds_poses(topic.topic.type);
-    if ((!has_points && !has_poses) || topic.topic.encoding == MessageEncoding::other) return;
+    if (topic.topic.encoding == MessageEncoding::other) return;
     const std::string what = name_of_message(*survey.recording, topic);
-    if (has_points) return add_cloud(message, what, topic);
+    if (topic.holds_clouds()) return add_cloud(message, what, topic);
+    if (holds_packets(topic.topic.type)) return add_packets(message, what, topic);
+    if (topic.topic.type == kRosString) return add_metadata(message, what, topic);
+    if (!holds_poses(topic.topic.type)) return;
     const bool is_static = topic.topic.name.ends_with("tf_static");
     for (const RosPose& pose :
          ros_poses(message.bytes, topic.topic.type, topic.topic.encoding, what))
