@@ -113,7 +113,9 @@ TEST_F(RecordedWays, PosesAFewNanosecondsApartStay) {
   ASSERT_EQ(poses.size(), 4U);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(poses[k].world_from_sensor.translation.x, static_cast<double>(k));
-    if (k > 0) EXPECT_GT(poses[k].time_s, poses[k - 1].time_s);
+    if (k > 0) {
+      EXPECT_GT(poses[k].time_s, poses[k - 1].time_s);
+    }
   }
 }
 
