@@ -163,6 +163,8 @@ TEST_F(OusterJson, AnglesThatAreNotThoseOfBeamsAreErrors) {
            azimuths + R"(], "lidar_mode": "1024x10"})";
   };
   expect_data_error(with("0, 0", "0, 0"), "all 2 beams have the elevation 0");
+  expect_data_error(with("0, 0, 0, 0, 0, 0, 0, 0", "0, 0, 0, 0, 0, 0, 0, 0"),
+                    "all 8 beams have the elevation 0");
   expect_data_error(with("0, 0", "1, 2"), "all 2 beams have the elevation 0");
   expect_data_error(with("1, 2, 1", "3, 3, 3"), "beams 0 and 2 (from 0) have the same angles");
   expect_data_error(with("0.35, 0.3, 0.2, 0.1, 0, -0.1, -0.2, -0.35", "0, 0, 0, 0, 0, 0, 0, 0"),
