@@ -59,6 +59,11 @@ constexpr RayUnit kRayUnits[] = {{"deg", 1, true},
                                  {"us", 1e-6, false},
                                  {"ns", 1e-9, false}};
 constexpr double kLivoxScans_hz = 10;
+/// Points a second of Livox's sensors (their user manuals), by words in file names.
+constexpr std::pair<Word, double> kLivoxRates_hz[] = {
+    {"mid40", 100e3}, {"mid-40", 100e3},  {"mid70", 100e3}, {"mid-70", 100e3},
+    {"avia", 240e3},  {"horizon", 240e3}, {"tele", 240e3},  {"hap", 452e3}};
+constexpr double kMid360Rate_hz = 200e3;
 
 /// Longer than any scan of a stationary scanner, and small enough for a float to resolve seconds.
 constexpr double kLongestScan_s = 86'400;
@@ -151,6 +156,7 @@ double elevation_deg(double angle, const Columns& columns, std::string_view text
 struct TimedRay {
   Firing firing;
   double azimuth_deg = 0, elevation_deg = 0, time_s = 0;
+  double time = 0;  ///< as written
 };
 
 TimedRay parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
@@ -170,10 +176,11 @@ TimedRay parse_ray(std::string_view line, const Columns& columns, std::uint32_t 
     return finite_number(text(field), kFields[field], place);
   };
   TimedRay ray;
-  ray.time_s = has(2) ? columns.factors[2] * number(2) : 0.0;
+  ray.time = has(2) ? number(2) : 0.0;
+  ray.time_s = columns.factors[2] * ray.time;
   if (!(ray.time_s >= 0))
     throw data_error(place, "time_s is negative, expected seconds since the start of the scan");
-  if (ray.time_s > kLongestScan_s)
+  if (ray.time_s > kLongestScan_s && !columns.is_zenith)
     throw data_error(place, "time_s is " + shown(text(2)) +
                                 ", expected seconds since the start of the scan, at most a day");
   const std::uint16_t ring = has(3) ? parse_ring(text(3), place) : std::uint16_t{0};
@@ -231,12 +238,33 @@ double rotation_hz_of(const std::vector<Firing>& firings) {
   return 1.0 / (last_s + (last_s - static_cast<double>(times_s.front())) / gaps);
 }
 
+/// The times of Livox's tables, in order. In some of them the column of times numbers the rows:
+/// then the points a second of the sensor in the file's name, or of a Mid-360, give the times.
+void set_livox_times(bool are_row_numbers, const std::filesystem::path& path, LidarModel& model) {
+  std::vector<Firing>& firings = model.free_pattern;
+  if (are_row_numbers) {
+    const std::string name = lower_case(path.filename().string());
+    double rate_hz = kMid360Rate_hz;
+    for (const auto& [word, each_hz] : kLivoxRates_hz)
+      if (name.find(word) != std::string::npos) rate_hz = each_hz;
+    for (std::size_t i = 0; i < firings.size(); ++i)
+      firings[i].time_s = static_cast<float>(static_cast<double>(i) / rate_hz);
+    model.source += ", " + decimal_text(rate_hz) + " rows per second";
+  }
+  std::ranges::stable_sort(firings, {}, &Firing::time_s);
+  for (std::uint32_t i = 0; i < firings.size(); ++i) firings[i].column = i;
+  if (static_cast<double>(firings.back().time_s) > kLongestScan_s)
+    throw data_error({path, {}, {}}, "its times reach " +
+                                         exact_text(static_cast<double>(firings.back().time_s)) +
+                                         " s, expected at most a day");
+}
+
 /// Sets how long the pattern and a scan last.
-void set_scan_length(const Columns& columns, const std::filesystem::path& path, LidarModel& model) {
+void set_scan_length(const Columns& columns, bool are_row_numbers,
+                     const std::filesystem::path& path, LidarModel& model) {
   std::vector<Firing>& firings = model.free_pattern;
   const bool is_livox = columns.is_zenith && columns.of[2] >= 0;
-  if (is_livox) std::ranges::stable_sort(firings, {}, &Firing::time_s);
-  for (std::uint32_t i = 0; is_livox && i < firings.size(); ++i) firings[i].column = i;
+  if (is_livox) set_livox_times(are_row_numbers, path, model);
   model.rotation_hz = rotation_hz_of(firings);
   if (model.rotation_hz > kMaxScans_hz)
     throw data_error({path, {}, {}},
@@ -255,6 +283,8 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   std::vector<Firing>& firings = file.model.free_pattern;
   Columns columns;
   RayAngles angles;
+  double first_time = 0;
+  bool are_row_numbers = true;
   FilledLines lines(text, path);
   bool first = true;
   while (const auto line = lines.next()) {
@@ -273,11 +303,14 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
     const TimedRay ray =
         parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place());
     angles.add(ray, columns.is_zenith);
+    if (firings.empty()) first_time = ray.time;
+    are_row_numbers =
+        are_row_numbers && ray.time == first_time + static_cast<double>(firings.size());
     firings.push_back(ray.firing);
   }
   if (firings.empty()) throw data_error({path, {}, {}}, "no rays");
   if (const auto fault = angles.fault(columns)) throw data_error({path, {}, {}}, *fault);
-  set_scan_length(columns, path, file.model);
+  set_scan_length(columns, are_row_numbers, path, file.model);
   return file;
 }
 

@@ -183,7 +183,7 @@ std::optional<std::string> degrees_fault(const LidarModel& model) {
   constexpr std::size_t kMinBeams = 8;
   const auto [low, high] = std::ranges::minmax(model.elevations_rad);
   const double span_deg = (high - low) * (180 / std::numbers::pi);
-  if (model.elevations_rad.size() < kMinBeams || span_deg > 2) return std::nullopt;
+  if (model.elevations_rad.size() < kMinBeams || span_deg > 2 || high == low) return std::nullopt;
   return "the elevations of its " + std::to_string(model.elevations_rad.size()) +
          " beams span only " + exact_text(std::round(1000 * span_deg) / 1000) +
          " degrees; expected degrees, are they in radians?";

@@ -64,6 +64,13 @@ double angle_deg(std::string_view text, std::string_view field, double limit,
   return angle;
 }
 
+/// Newer files end with their SHA-256 digest.
+bool is_digest(const std::vector<std::string_view>& fields) {
+  constexpr std::size_t kDigits = 64;
+  return fields.size() == 1 && fields[0].size() == kDigits &&
+         fields[0].find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
+
 std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
   FilledLines lines(text, path);
   const std::string_view header = lines.next().value_or("");
@@ -73,6 +80,7 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
   std::vector<Channel> channels;
   while (const auto line = lines.next()) {
     const auto fields = fields_of(*line, ',');
+    if (is_digest(fields)) continue;
     if (fields.size() <= std::max(columns.elevation, columns.azimuth))
       throw data_error(lines.place(), std::to_string(fields.size()) +
                                           " values, expected Channel, Elevation, Azimuth");

@@ -85,6 +85,11 @@ TEST_F(HesaiCsv, WrongFilesAreRefusedWithTheLine) {
   expect_data_error(header + "1,2,1e300\n", "azimuth is '1e300'");
 }
 
+TEST_F(HesaiCsv, ADigestMayFollowTheAngles) {
+  EXPECT_EQ(load(std::string(kThree) + std::string(64, 'a') + "\r\n").rings(), 3U);
+  expect_data_error(std::string(kThree) + std::string(63, 'a') + "\n", "my_Angle.csv:5: 1 values");
+}
+
 TEST_F(HesaiCsv, AnglesThatAreNotThoseOfBeamsAreErrors) {
   const auto table = [](int channels, const auto& elevation_of) {
     std::string text = "Channel,Elevation,Azimuth\n";

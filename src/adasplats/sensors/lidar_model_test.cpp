@@ -562,6 +562,19 @@ TEST_F(LidarFiles, ALivoxTableContinuesFromScanToScan) {
   EXPECT_TRUE(repeats(brief));
 }
 
+// mid360.csv of livox_laser_simulation numbers its rows in the column Time/s; 4 s at 200 kHz.
+TEST_F(LidarFiles, ALivoxTableMayNumberItsRows) {
+  std::string text = "Time/s,Azimuth/deg,Zenith/deg\n";
+  for (int k = 1; k <= 90'000; ++k)
+    text += std::to_string(k) + "," + std::to_string(k % 360) + ",80\n";
+  const LidarModel mid = load_lidar_model(write("mid360.csv", text));
+  EXPECT_EQ(mid.rays_per_scan(), 20'000U);
+  EXPECT_NEAR(firings_of(mid)[200].time_s, 0.001, 1e-6);
+  EXPECT_NEAR(mid.pattern_s, 0.45, 1e-4);
+  EXPECT_EQ(load_lidar_model(write("avia.csv", text)).rays_per_scan(), 24'000U);
+  expect_contains(csv_failure("Time/s,Azimuth/deg,Zenith/deg\n0,0,90\n90000,0,91\n"), "a day");
+}
+
 // Oracle: half of the pattern, and then the other half.
 TEST_F(LidarFiles, AFasterScanHasAPartOfThePattern) {
   LidarModel model = load_lidar_model(write("t.csv", "0,0,0\n1,0,0.025\n2,0,0.05\n3,0,0.075\n"));

@@ -227,14 +227,20 @@ std::optional<std::size_t> beams_of_product(const std::string& line) {
       std::string_view(line).substr(dash + 1, line.find('-', dash + 1) - dash - 1));
 }
 
-/// Sensors of 16 and 32 beams have lists of 64 up to firmware 1.13, with angles 0 for beams that do
-/// not exist. Packets have all 64. Errors: data if the others are not those of the product.
+/// Sensors of 16 and 32 beams have lists of 64 up to firmware 1.13: every fourth or second entry is
+/// a beam, the others are 0, or up to firmware 1.12 angles of beams that do not exist. Packets have
+/// all 64. Errors: data if the others are not those of the product.
 void drop_padding(const Metadata& metadata, const std::string& line, LidarModel& model) {
   const std::size_t listed = model.elevations_rad.size();
   if (const auto fault = degrees_fault(model)) throw metadata.fault(*fault);
   std::vector<bool> kept(listed);
   for (std::size_t beam = 0; beam < listed; ++beam)
     kept[beam] = model.elevations_rad[beam] != 0 || model.azimuth_offsets_rad[beam] != 0;
+  constexpr std::size_t kPadded = 64;
+  const std::size_t stated = beams_of_product(line).value_or(listed);
+  if (listed == kPadded && (stated == 16 || stated == 32) && std::ranges::count(kept, false) == 0)
+    for (std::size_t beam = 0; beam < listed; ++beam)
+      kept[beam] = (beam + 1) % (kPadded / stated) == 0;
   const auto real = static_cast<std::size_t>(std::ranges::count(kept, true));
   const std::size_t product = beams_of_product(line).value_or(listed - real > 1 ? real : listed);
   const bool is_padded = listed - real > 1 && real > 0 && listed != product;

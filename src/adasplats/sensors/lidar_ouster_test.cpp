@@ -126,7 +126,7 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
 std::string padded(int listed, int beams, const std::string& product) {
   std::string altitudes, azimuths;
   for (int k = 0; k < listed; ++k) {
-    const bool is_used = k % (listed / beams) == listed / beams - 1;
+    const bool is_used = !has_zeros || k % (listed / beams) == listed / beams - 1;
     const std::string comma = k == 0 ? "" : ", ";
     altitudes += comma + (is_used ? std::to_string(15 - 0.5 * k) : "0");
     azimuths += comma + (is_used ? "-3.1" : "0");
@@ -147,6 +147,8 @@ TEST_F(OusterJson, PaddingIsNoBeam) {
     EXPECT_EQ(sensor.lasers(), 64U);
     EXPECT_EQ(sensor.laser_of_ring[1], 128 / beams - 1);
     EXPECT_EQ(sensor.ring_of_laser[0], kNoRing);
+    EXPECT_EQ(load(padded(64, beams, "OS-1-" + std::to_string(beams), false)).elevations_rad,
+              model.elevations_rad);
     EXPECT_EQ(load(calibration_file(sensor).text).elevations_rad.size(),
               model.elevations_rad.size());
   }
@@ -161,6 +163,8 @@ TEST_F(OusterJson, AnglesThatAreNotThoseOfBeamsAreErrors) {
            azimuths + R"(], "lidar_mode": "1024x10"})";
   };
   expect_data_error(with("0, 0", "0, 0"), "all 2 beams have the elevation 0");
+  expect_data_error(with("0, 0, 0, 0, 0, 0, 0, 0", "0, 0, 0, 0, 0, 0, 0, 0"),
+                    "all 8 beams have the elevation 0");
   expect_data_error(with("0, 0", "1, 2"), "all 2 beams have the elevation 0");
   expect_data_error(with("1, 2, 1", "3, 3, 3"), "beams 0 and 2 (from 0) have the same angles");
   expect_data_error(with("0.35, 0.3, 0.2, 0.1, 0, -0.1, -0.2, -0.35", "0, 0, 0, 0, 0, 0, 0, 0"),
