@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -14,13 +15,17 @@ namespace {
 
 constexpr std::size_t kMaxSamples = 4096, kMinSamples = 100;
 
-/// Up to kMaxSamples finite values, evenly spread over `count`.
+/// Up to kMaxSamples finite values, spread over `count` without a period that rows of a raster
+/// have.
 template <class Value>
 std::vector<double> sampled(std::size_t count, Value&& value) {
   std::vector<double> samples;
-  const std::size_t stride = std::max<std::size_t>(1, count / kMaxSamples);
-  for (std::size_t i = 0; i < count; i += stride)
-    if (const double v = value(i); std::isfinite(v)) samples.push_back(v);
+  constexpr std::uint64_t kSpread = 2654435761;  // a prime
+  for (std::size_t i = 0; i < std::min(count, kMaxSamples); ++i) {
+    const double v =
+        value(count <= kMaxSamples ? i : static_cast<std::size_t>(i * kSpread % count));
+    if (std::isfinite(v)) samples.push_back(v);
+  }
   return samples;
 }
 
