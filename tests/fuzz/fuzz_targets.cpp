@@ -36,7 +36,7 @@ constexpr FuzzTarget kTargets[] = {
     {"gzip", "", "io/pickle/gzip.cpp", &read_gzip},
     {"kitti-label", "a.label", "cloud/sequence/kitti_sequence.cpp", &read_label_file},
     // Recordings
-    {"mcap", "a.mcap", "io/bags", &read_recording, 4 * kKiB, kZstdWindow_mb},
+    {"mcap", "a.mcap", "io/bags io/mcap/mcap_file.cpp", &read_recording, 4 * kKiB, kZstdWindow_mb},
     {"bag", "a.bag", "io/bags", &read_recording},
     {"db3", "a.db3", "io/bags", &read_recording, 8 * kKiB},
     {"mcap-zstd", "a.mcap.zstd", "io/bags", &read_recording, 4 * kKiB, kZstdWindow_mb},

@@ -15,6 +15,7 @@
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/ros_values.h"
 #include "adasplats/io/bags/unpack.h"
+#include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/io/packets/datagram_reader.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/packet_decoder.h"
@@ -36,6 +37,7 @@ std::pair<std::uint8_t, std::string_view> chosen(std::string_view bytes) {
 }  // namespace
 
 void read_recording(const Input& input) {
+  read_mcap_metadata(input.file, kMcapMetadataName, kMcapLabelsKey);
   const Recording recording(input.file);
   constexpr std::size_t kAgain = 8;
   std::vector<std::pair<MessagePosition, std::string>> first;

@@ -125,33 +125,22 @@ void describe_las(const LasFacts& las, FileFacts& facts) {
                        {"offset", {las.offset.x, las.offset.y, las.offset.z}}};
 }
 
-/// Whether a file's classes are those of the specification of LAS, as far as that can be
-/// determined: ours have the ids of any scheme.
-bool has_las_classes(const LasFacts& las, const Table& table, const std::string& label_field) {
-  if (!label_field.empty() && label_field != "classification") return false;
-  return las.software != "adasplats" && table.find("label") == nullptr &&
-         table.find("class") == nullptr;
-}
-
-/// What a file says before its points are loaded; `scheme` becomes that of LAS where it is.
-void describe_file(const fs::path& input, const LoadOptions& options,
-                   std::optional<LabelScheme>& scheme, FileFacts& facts, Session& session) {
-  const Table table = read_points(input, {options.salvage, &session.executor, options.selection});
-  if (is_las(input)) {
-    const LasFacts las = read_las_facts(input);
-    describe_las(las, facts);
-    if (!scheme && has_las_classes(las, table, options.label_field)) scheme = asprs_labels();
-  }
+/// What a file says before its points are loaded.
+void describe_file(const fs::path& input, const LoadOptions& options, FileFacts& facts,
+                   Session& session) {
+  const Table table =
+      read_points(input, {options.salvage, &session.executor, options.selection, true});
+  if (is_las(input)) describe_las(read_las_facts(input), facts);
   const std::string fields = fields_of(table);
   facts.rows.emplace_back("fields", fields);
   facts.json["fields"] = fields;
 }
 
-FileFacts cloud_facts(const fs::path& input, std::optional<LabelScheme> scheme,
+FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                       const LoadOptions& options, Session& session) {
   FileFacts facts;
   facts.kind = "point cloud";
-  if (fs::is_regular_file(input)) describe_file(input, options, scheme, facts, session);
+  if (fs::is_regular_file(input)) describe_file(input, options, facts, session);
   const auto [cloud, report] =
       load_cloud(std::span(&input, 1), options, session.executor, session.progress);
   describe_crs(cloud.crs, facts);
@@ -468,17 +457,17 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   if (is_capture(input))
     return capture_facts(input, label_scheme_for(labels, {}), options, session);
   if (is_recording(input))
-    return recording_facts(input, label_scheme_for(labels, {}), options, session);
+    return recording_facts(input, label_scheme_for(labels, std::span(&input, 1)), options, session);
   const DataTree* const tree = data_tree_of(input);
   if (tree != nullptr || !options.trajectory.empty()) {
-    const auto scheme = label_scheme_for(labels, std::span(&input, tree == nullptr ? 0 : 1));
+    const auto scheme = label_scheme_for(labels, std::span(&input, 1));
     const auto drive = open_drive(drive_of(input, options), session.executor, session.progress);
     if (drive)
       return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name, scheme,
                             options, session);
   }
   const fs::path resolved = resolve_cloud_input(input);
-  const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
+  const auto scheme = label_scheme_for(labels, std::span(&resolved, 1), options.label_field);
   if (is_kitti_sequence(resolved)) {
     KittiSequence sequence = open_kitti_sequence(resolved);
     sequence.facts.unchecked = verify_poses(sequence, session.executor);

@@ -163,7 +163,7 @@ class ModelCommand final : public Command {
     const BuildReport& built = result.built;
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
-          " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
+          " of them removed by class" + text_of(built.removed_classes) + "\n" +
           (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
           "\n" + (built.consistent ? origins_text(built.consistent->origins) : "") +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));

@@ -231,8 +231,14 @@ class Loading {
   }
 
   void add_cloud(const fs::path& path) {
+    LoadOptions load = job_.load;
+    load.other_columns = KeptColumns::colors;
     const PointCloud cloud =
-        load_cloud(std::span(&path, 1), job_.load, session_.executor, session_.progress).first;
+        load_cloud(std::span(&path, 1), load, session_.executor, session_.progress).first;
+    if (!cloud.others.columns.empty())
+      session_.progress.warn(path.string() +
+                             ": the viewer does not show its colours (red, green, blue); 'render' "
+                             "does");
     if (cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
     crs_.add(path, cloud.crs);
     add_points(name_of(path), cloud, {});

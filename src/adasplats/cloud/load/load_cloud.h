@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -21,6 +22,9 @@
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
+
+/// Columns of files without an attribute of PointCloud: `colors` are red, green and blue.
+enum class KeptColumns : std::uint8_t { none, colors, all };
 
 /// How files become a point cloud. `trajectory` gives the sensor position of points without one:
 /// the pose at the point's time (TimedOrigins) if both have times, else the nearest pose in the
@@ -64,6 +68,9 @@ struct LoadOptions : DriveSettings {
   /// Also find the beams that returned nothing (find_empty_beams(), before points are removed) and
   /// add them to the cloud.
   bool empty_beams = false;
+  /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
+  /// orient points without a sensor position (OriginKind::guessed).
+  KeptColumns other_columns = KeptColumns::none;
 };
 
 /// Which points are dropped, and how many dropped points are an error.
@@ -260,16 +267,19 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, origin_kind (OriginKind; if not all are measured), intensity, label, instance,
-/// scan_index, if the cloud has them (the layout of Paris-CARLA-3D), and `more`, one value per
-/// point. Doubles if the origin is not zero. The coordinate system as crs_comments().
+/// scan_index, if the cloud has them (the layout of Paris-CARLA-3D), `more`, one value per point,
+/// and the other columns of the cloud: colours as bytes if that is exact, 64-bit integers as
+/// doubles. Doubles if the origin is not zero. The coordinate system as crs_comments(), the label
+/// scheme as kLabelsComment.
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 
-/// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, in millimetres
-/// from the cloud's origin; classification (the class; 0, never classified, for numbers above 255),
-/// intensity (0 to 1 becomes 0 to 65535; larger numbers are rounded). Extra bytes: the columns of
-/// the PLY, the intensity as `intensity_value`, and `more`. The coordinate system is included.
-/// Errors: those of write_las.
+/// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, 7 with colours, 8
+/// also with near infrared, in millimetres from the cloud's origin; classification (the class; 0,
+/// never classified, for numbers above 255), intensity (0 to 1 becomes 0 to 65535; larger numbers
+/// are rounded). Extra bytes: the columns of the PLY, the intensity as `intensity_value`, and
+/// `more`. Other columns go to the fields of LAS of their names, if these hold the values, else to
+/// extra bytes. Coordinate system and label scheme are included. Errors: those of write_las.
 void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 

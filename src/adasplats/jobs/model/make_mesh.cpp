@@ -172,7 +172,7 @@ std::pair<MeshModel, MeshResult> make_mesh(const MeshJob& job, Session& session)
   for (const auto& input : job.inputs) require_input(input);
   const Stopwatch total;
   MeshResult result;
-  MeshMaker maker(job, label_scheme_for(job.labels, job.inputs), session);
+  MeshMaker maker(job, label_scheme_for(job.labels, job.inputs, job.load.label_field), session);
   MeshModel model = maker.run(
       [&] {
         auto [loaded, report] =

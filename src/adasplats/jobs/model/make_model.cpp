@@ -38,14 +38,15 @@ class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;
 
-  /// `inputs`: what the points come from, where they come from files.
+  /// `inputs`, `label_field`: what the points come from, where they come from files.
   ModelMaker(const ModelOptions& options, std::span<const std::filesystem::path> inputs,
-             LoadPoints load_points, Session& session)
+             const std::string& label_field, LoadPoints load_points, Session& session)
       : options_(options),
         classifier_(classifier_for(options)),  // says what is wrong before anything is loaded
         load_points_(std::move(load_points)),
         session_(session) {
-    scheme_ = classifier_ ? semantickitti_labels() : label_scheme_for(options_.labels, inputs);
+    scheme_ = classifier_ ? semantickitti_labels()
+                          : label_scheme_for(options_.labels, inputs, label_field);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
                   "the method semantic needs labels: name their scheme with `labels` "
@@ -183,7 +184,7 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   };
   ModelOptions options = job;
   options.build.trust_origins |= job.load.trust_origins;
-  ModelMaker maker(options, job.inputs, load_points, session);
+  ModelMaker maker(options, job.inputs, job.load.label_field, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -216,7 +217,7 @@ std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>&
     result.loaded.points_read = cloud.size();
     return cloud;
   };
-  ModelMaker maker(options, {}, load_points, session);
+  ModelMaker maker(options, {}, {}, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};

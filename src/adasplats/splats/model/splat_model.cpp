@@ -265,7 +265,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
     columns.push_back({"intensity", ColumnType::f32, model.intensities.data(), sizeof(float)});
   std::vector<std::string> comments = {kFormatComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
-  if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  if (!model.label_scheme.empty())
+    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
   if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
   for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   add_response_comments(model.response, comments);
