@@ -672,6 +672,8 @@ TEST(OtherColumns, GoThroughFiles) {
   write_las(first, 2, columns, writing);
   PointCloud cloud = load({first}, all_columns()).first;
   cloud.label_scheme = "asprs";
+  cloud.intensities = {0.25F, 0.5F};
+  cloud.classes = {2, 300};
   for (const char* const name : {"b.las", "b.laz", "b.ply"}) {
     SCOPED_TRACE(name);
     const auto path = folder.path() / name;
@@ -687,6 +689,8 @@ TEST(OtherColumns, GoThroughFiles) {
     const bool is_ply = path.extension() == ".ply";
     EXPECT_EQ(other(again, is_ply ? "echo_width" : "echo width").as_double(1), 2);
     EXPECT_EQ(again.others.has_adjusted_times, !is_ply);
+    EXPECT_EQ(again.others.columns.size(), cloud.others.columns.size());
+    EXPECT_EQ(again.intensities, cloud.intensities);
     if (!is_ply) {
       EXPECT_EQ(read_las_facts(path).labels, "asprs");
     }

@@ -217,6 +217,18 @@ std::vector<Column> unpacked_colors(const Column& packed) {
   return columns;
 }
 
+/// Adds the fields of LAS that repeat our extra bytes `label` and `intensity_value`, as far as they
+/// fit (save_cloud_las()).
+void use_copies(const PointFile& file, const PointCloud& cloud, std::vector<const Column*>& used) {
+  if (file.find("intensity_value") != nullptr) used.push_back(file.find("intensity"));
+  const Column* const copy = file.find("classification");
+  if (copy == nullptr || cloud.classes.size() != copy->size()) return;
+  constexpr std::uint16_t kMost = 255;
+  for (std::size_t i = 0; i < copy->size(); ++i)
+    if (copy->as_double(i) != (cloud.classes[i] > kMost ? 0 : cloud.classes[i])) return;
+  used.push_back(copy);
+}
+
 /// The columns without an attribute, which are those in `used`; colours are named red, green and
 /// blue.
 void keep_others(const PointFile& file, std::span<const Column* const> used, KeptColumns kept,
@@ -356,6 +368,7 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   const bool has_origins =
       !part.world_sensors.empty() || options.viewpoint || !options.trajectory.empty();
   if (!has_origins && options.other_columns != KeptColumns::all) orient_by_normals(file, part);
+  use_copies(file, cloud, used);
   keep_others(file, used, options.other_columns, part);
   return part;
 }

@@ -31,7 +31,7 @@ std::vector<double> sampled(std::size_t count, Value&& value) {
 
 std::string text_of(double value) {
   std::array<char, 32> buffer;
-  const int length = std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
+  const int length = std::snprintf(buffer.data(), buffer.size(), "%.6g", value);
   return {buffer.data(), static_cast<std::size_t>(length)};
 }
 

@@ -41,8 +41,10 @@ constexpr Name kTimeNames[] = {"time",
                                "epochtime",
                                "acquisitiontime"};
 constexpr Name kIntensityNames[] = {
-    "intensity", "reflectance",    "remission",       "reflectivity",  "luma",      "intensities",
-    "i",         "laserintensity", "returnintensity", "echointensity", "amplitude", "signal"};
+    "intensityvalue",  // of our own LAS files
+    "intensity",      "reflectance", "remission",      "reflectivity",    "luma",
+    "intensities",    "i",           "laserintensity", "returnintensity", "echointensity",
+    "amplitude",      "signal"};
 constexpr Name kRingNames[] = {"ring",      "laser",   "ringid",      "ringnumber", "ringindex",
                                "laserring", "laserid", "lasernumber", "channel",    "channelid",
                                "beam",      "beamid",  "line",        "lineid"};
