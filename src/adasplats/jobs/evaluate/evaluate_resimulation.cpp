@@ -14,6 +14,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/packets/capture_reader.h"
 #include "adasplats/jobs/evaluate/evaluate_clouds.h"
 #include "adasplats/jobs/evaluate/json_values.h"
