@@ -46,6 +46,15 @@ std::string origins_text(const std::optional<OriginCheck>& check) {
          fixed(check->far_rise, 2) + " times as many surfaces\n";
 }
 
+/// Splats that are not on the surface; empty without any.
+std::string limited_text(const BuildReport& built) {
+  const std::size_t limited = built.consistent->splats_limited;
+  if (limited == 0) return {};
+  const double share = static_cast<double>(limited) / static_cast<double>(built.primitives);
+  return "; moved " + grouped(limited) + " splats (" + fixed(100 * share, 1) +
+         " %) by the maximum towards their surface";
+}
+
 /// The figures of the method.
 std::string figures_of(const BuildReport& built) {
   if (!built.consistent) {
@@ -55,13 +64,14 @@ std::string figures_of(const BuildReport& built) {
   }
   const ConsistentReport& report = *built.consistent;
   const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
-  if (!report.checked) return seeds + ", no visibility check (no measured rays)";
+  if (!report.checked)
+    return seeds + ", no visibility check (no measured rays)" + limited_text(built);
   const std::string empty_beams =
       report.empty_beams == 0 ? ""
                               : " and " + grouped(report.empty_beams) + " beams without return";
   return seeds + "; removed " + grouped(report.seeds_removed) + " seeds that contradict " +
          grouped(report.rays) + " measured rays" + empty_beams + ", restored " +
-         grouped(report.splats_filled) + " where rays missed all splats";
+         grouped(report.splats_filled) + " where rays missed all splats" + limited_text(built);
 }
 
 std::string segmentation_text(const SegmentReport& segmented) {

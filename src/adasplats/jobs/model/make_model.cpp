@@ -289,6 +289,9 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_used"] = built.points_used;
   json["primitives"] = built.primitives;
   if (built.consistent) {
+    json["scale"] = built.consistent->scale;
+    json["cell_m"] = built.consistent->cell_m;
+    json["sparse"] = built.consistent->sparse;
     json["cells"] = built.consistent->cells;
     json["seeds"] = built.consistent->seeds;
     json["rays"] = built.consistent->rays;
@@ -296,6 +299,11 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
     json["seeds_removed"] = built.consistent->seeds_removed;
     if (built.consistent->origins) json["origin_check"] = to_json(*built.consistent->origins);
     json["splats_filled"] = built.consistent->splats_filled;
+    json["splats_limited"] = built.consistent->splats_limited;
+    json["share_limited"] = built.primitives == 0
+                                ? 0.0
+                                : static_cast<double>(built.consistent->splats_limited) /
+                                      static_cast<double>(built.primitives);
   } else {
     json["radius_m"] = built.radius_m;
     json["error_m"] = built.error_m;
