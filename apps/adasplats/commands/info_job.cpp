@@ -141,8 +141,15 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   FileFacts facts;
   facts.kind = "point cloud";
   if (fs::is_regular_file(input)) describe_file(input, options, facts, session);
+  LoadOptions described = options;
+  described.accept_sensor_frame = true;
   const auto [cloud, report] =
-      load_cloud(std::span(&input, 1), options, session.executor, session.progress);
+      load_cloud(std::span(&input, 1), described, session.executor, session.progress);
+  if (!report.sensor_frames.empty()) {
+    const std::string frame = "sensor's frame (" + report.sensor_frames.front().second + ")";
+    facts.rows.emplace_back("points in the", frame);
+    facts.json["points_in"] = frame;
+  }
   describe_crs(cloud.crs, facts);
   Survey survey;
   for (std::size_t i = 0; i < cloud.size(); ++i) survey.add(cloud.world(i));

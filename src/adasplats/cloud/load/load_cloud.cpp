@@ -165,6 +165,29 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
   return {std::move(parts), crs.crs()};
 }
 
+/// Rejects a file that is one scan in the sensor frame of a known pose, and reports others.
+void check_frame(const std::filesystem::path& file, const CloudPart& part,
+                 const LoadOptions& options, LoadReport& report, ProgressSink& progress) {
+  if (options.viewpoint || !part.world_sensors.empty()) return;
+  const std::optional<std::filesystem::path> drive = drive_with_scan(file);
+  if (!drive && !part.sensor_frame) return;
+  const std::string because =
+      part.sensor_frame ? part.sensor_frame->because : drive->string() + " has its pose";
+  report.sensor_frames.emplace_back(file, because);
+  if (options.accept_sensor_frame) return;
+  const std::string what = file.string() + ": is one scan in the sensor frame (" + because + ")";
+  if (drive && std::filesystem::exists(*drive / "poses.csv"))
+    throw Error(ErrorKind::data, what + "; " + advice_for_scans(*drive, *drive / "poses.csv"));
+  if (drive)
+    throw Error(ErrorKind::data,
+                what + "; give its drive, " + drive->string() + ", which has the poses");
+  if (part.sensor_frame->has_pose)
+    throw Error(ErrorKind::data, what + ", at the pose in its VIEWPOINT; " +
+                                     advice_for_scans(file, "POSES.csv") +
+                                     ", with the pose in POSES.csv (time,x,y,z,qw,qx,qy,qz)");
+  progress.warn(what + " of unknown pose; the sensor frame is used as the world");
+}
+
 /// Measures the parts of loading.
 class LoadClock {
  public:
@@ -500,6 +523,9 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
     none.crs = std::move(crs);
     return {std::move(none), std::move(report)};
   }
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    if (!parts[p].is_sequence)
+      check_frame(sources[p].input.path, parts[p], options, report, progress);
   Gathered gathered{std::move(parts)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);

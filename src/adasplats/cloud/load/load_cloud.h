@@ -71,6 +71,8 @@ struct LoadOptions : DriveSettings {
   /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
   /// orient points without a sensor position (OriginKind::guessed).
   KeptColumns other_columns = KeptColumns::none;
+  /// Accept files that are one scan in the sensor frame of a known pose, to describe them.
+  bool accept_sensor_frame = false;
 };
 
 /// Which points are dropped, and how many dropped points are an error.
@@ -210,6 +212,8 @@ struct LoadReport {
   std::vector<std::string> beams;
   /// In the order of PointCloud::scan_poses.
   std::vector<LoadedDrive> drives;
+  /// Files that are one scan in the frame of its sensor, and why (sensor_frame_of()).
+  std::vector<std::pair<std::filesystem::path, std::string>> sensor_frames;
   /// Number of points per OriginKind.
   OriginCounts origins{};
   std::optional<TimedOrigins> timed;
@@ -240,6 +244,8 @@ struct LoadReport {
 /// not points. The cloud is in world coordinates; its origin depends on the extents alone.
 /// - Attributes: if only some inputs have one, it is dropped with a warning. Sensor positions are
 ///   kept; points without one get OriginKind::none.
+/// - A file that is one scan in the sensor frame (sensor_frame_of()) is an error if its pose is
+///   known, else a warning: the sensor frame is the world. `viewpoint` states that it is.
 /// - Scans are numbered from 0 over all sequences, which must not start at the same pose
 ///   (require_distinct_starts).
 /// - Coordinate system: that of the inputs. An input without one, or without one for heights, is

@@ -314,10 +314,12 @@ DeclaredClock declared_clock_of(const PointFile& file) {
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor) {
   require_points(path);
-  return part_of_table(path,
-                       read_points(path, {options.salvage, executor, options.selection,
-                                          options.other_columns == KeptColumns::all}),
-                       options, progress);
+  const Table table = read_points(path, {options.salvage, executor, options.selection,
+                                         options.other_columns == KeptColumns::all});
+  CloudPart part = part_of_table(path, table, options, progress);
+  if (part.world_sensors.empty())
+    part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
+  return part;
 }
 
 CloudPart part_of_table(const std::filesystem::path& path, const Table& table,

@@ -128,7 +128,11 @@ std::string scheme_reference(const std::string& labels, const LabelScheme& schem
 std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
   require_input(input);
   const std::vector<CloudInput> inputs = cloud_inputs(input, SensorScans::taken);
-  if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
+  // A folder of scans with poses stays one: its files alone are in the sensor frame.
+  std::error_code ignored;
+  if (!inputs.front().is_sequence &&
+      (inputs.size() > 1 || fs::exists(input / "poses.csv", ignored)))
+    return {input};
   std::vector<fs::path> paths;
   paths.reserve(inputs.size());
   for (const CloudInput& one : inputs) paths.push_back(one.path);
