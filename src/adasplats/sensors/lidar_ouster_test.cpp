@@ -122,8 +122,8 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
 }
 
 /// Metadata of firmware 1.13: lists of `listed` entries, of which every (listed / beams)-th is
-/// used.
-std::string padded(int listed, int beams, const std::string& product) {
+/// used; without zeros as up to 1.12.
+std::string padded(int listed, int beams, const std::string& product, bool has_zeros = true) {
   std::string altitudes, azimuths;
   for (int k = 0; k < listed; ++k) {
     const bool is_used = !has_zeros || k % (listed / beams) == listed / beams - 1;
