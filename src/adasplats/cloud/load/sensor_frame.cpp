@@ -16,6 +16,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -27,16 +28,14 @@ constexpr std::size_t kMinPoints = 10;
 constexpr double kMinShare = 0.9;
 
 constexpr std::array<std::string_view, 3> kRangeNames = {"range", "range_m", "ranges"};
-constexpr std::array<std::string_view, 6> kRingNames = {"ring",     "ring_id", "laser",
-                                                        "laser_id", "channel", "row"};
 
-/// A column by one of the names, in any case, with or without CloudCompare's prefix.
-const Column* column_of(const Table& table, std::span<const std::string_view> names) {
+/// A column of ranges, in any case, with or without CloudCompare's prefix.
+const Column* range_column(const Table& table) {
   constexpr std::string_view kPrefix = "scalar_";
   for (const Column& column : table.columns) {
     std::string name = lower_case(column.name);
     if (name.starts_with(kPrefix)) name.erase(0, kPrefix.size());
-    if (std::ranges::find(names, name) != names.end()) return &column;
+    if (std::ranges::find(kRangeNames, name) != kRangeNames.end()) return &column;
   }
   return nullptr;
 }
@@ -125,8 +124,8 @@ bool is_simulated(const fs::path& folder) {
 std::optional<SensorFrame> sensor_frame_of(const fs::path& file, const Table& table,
                                            std::span<const Vec3d> positions) {
   SensorFrame frame;
-  const Column* const ranges = column_of(table, kRangeNames);
-  const Column* const rings = column_of(table, kRingNames);
+  const Column* const ranges = range_column(table);
+  const Column* const rings = find_column(table, PointColumn::ring);
   if (ranges != nullptr &&
       (are_distances(*ranges, 1, positions) || are_distances(*ranges, 1e-3, positions)))
     frame.because = "its column '" + ranges->name + "' has the distances from the origin";
