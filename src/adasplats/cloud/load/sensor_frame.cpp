@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMinPoints = 10;
-constexpr double kMinShare = 0.9;
+constexpr std::size_t kMinPointsInFrame = 10;
+constexpr double kMinShareInFrame = 0.9;
 
 constexpr std::array<std::string_view, 3> kRangeNames = {"range", "range_m", "ranges"};
 
@@ -51,8 +51,8 @@ bool are_distances(const Column& ranges, double unit_m, std::span<const Vec3d> p
     ++points;
     if (std::fabs(unit_m * ranges.as_double(i) - distance_m) <= kTolerance_m) ++same;
   }
-  return points >= kMinPoints &&
-         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+  return points >= kMinPointsInFrame &&
+         static_cast<double>(same) >= kMinShareInFrame * static_cast<double>(points);
 }
 
 /// Whether the points of each ring have one elevation above the origin. Points near the sensor are
@@ -69,7 +69,7 @@ bool are_on_cones(const Column& rings, std::span<const Vec3d> positions) {
     ++points;
     if (elevations.size() > kMaxRings) return false;
   }
-  if (elevations.size() < kMinRings || points < kMinPoints * elevations.size()) return false;
+  if (elevations.size() < kMinRings || points < kMinPointsInFrame * elevations.size()) return false;
   std::size_t same = 0;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (auto& [ring, all] : elevations) {
@@ -80,7 +80,7 @@ bool are_on_cones(const Column& rings, std::span<const Vec3d> positions) {
         all, [&](double one) { return std::fabs(one - middle) <= kTolerance_rad; }));
   }
   return most - least >= kMinSpread_rad &&
-         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+         static_cast<double>(same) >= kMinShareInFrame * static_cast<double>(points);
 }
 
 /// Whether the origin is in the box of the points and none is farther than LiDARs measure.
@@ -95,7 +95,7 @@ bool are_around_origin(std::span<const Vec3d> positions) {
     high = points == 0 ? p : max(high, p);
     ++points;
   }
-  return points >= kMinPoints && low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
+  return points >= kMinPointsInFrame && low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
 }
 
 /// Whether a PCD states a pose of its sensor.
