@@ -45,7 +45,7 @@ std::optional<LabelScheme> stated_scheme(const std::string& scheme) {
 std::optional<LabelScheme> scheme_of_folder(fs::path folder) {
   constexpr int kLevels = 3;                                // OUTPUT/sequences/00
   constexpr const char* kFolderContent = "adasplats.json";  // as jobs/output has it
-  folder = fs::absolute(folder).lexically_normal();
+  folder = fs::absolute(folder / ".").lexically_normal();   // an empty path: the current folder
   if (!folder.has_filename()) folder = folder.parent_path();
   for (int level = 0; level < kLevels; ++level, folder = folder.parent_path()) {
     std::error_code ignored;
