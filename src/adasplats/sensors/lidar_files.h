@@ -43,6 +43,8 @@ LidarFile read_lidar_toml(std::string_view text, const std::filesystem::path& pa
 /// Rays, or Hesai's angle table, depending on the first line.
 LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& path);
 LidarFile read_hesai_csv(std::string_view text, const std::filesystem::path& path);
+/// The binary angle correction of an AT128.
+LidarFile read_hesai_dat(std::string_view text, const std::filesystem::path& path);
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path);
 LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path);
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path);

@@ -3,42 +3,21 @@
 #include "adasplats/sensors/packet_decoder.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <numbers>
 #include <utility>
 
 #include "adasplats/core/words.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/packet_bytes.h"
+#include "adasplats/sensors/packet_parser.h"
 
 namespace adasplats {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "packets are little-endian");
-
 constexpr std::size_t kVelodyneTail = kVelodyneBlocks * kBlockBytes;
-constexpr double kWholeTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kNanosecondsInOne_s = 1e9;
-
-template <class T>
-T value_at(std::string_view bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
 
 std::uint16_t azimuth_of_block(std::string_view payload, std::size_t block) {
   return value_at<std::uint16_t>(payload, block * kBlockBytes + 2);
-}
-
-std::string hexadecimal(unsigned value) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%02X", value);
-  return text.data();
 }
 
 /// The number of blocks per firing of all lasers; 1 if a block holds several firings.
@@ -85,37 +64,11 @@ PacketReturn velodyne_return(std::string_view payload, std::size_t block, std::s
   return {value_at<std::uint16_t>(payload, byte), value_at<std::uint8_t>(payload, byte + 2)};
 }
 
-/// Adds a return unless it is empty or equal to the first one.
-void add_return(LaserReturns& returns, PacketReturn found) {
-  if (found.counts == 0) return;
-  if (returns.count == 1 && returns.all[0].counts == found.counts) return;
-  returns.all[returns.count++] = found;
-  if (returns.count == 2 && returns.all[1].counts < returns.all[0].counts)
-    std::swap(returns.all[0], returns.all[1]);
-}
-
-}  // namespace
-
-/// The part of PacketDecoder that depends on the manufacturer; the functions are documented there.
-class PacketParser {
- public:
-  virtual std::uint32_t steps_per_turn(const PacketSensor& sensor) const = 0;
-  virtual std::optional<std::string> objection(const PacketSensor& sensor,
-                                               std::string_view payload) const = 0;
-  virtual bool is_dual(const PacketSensor& sensor, std::string_view payload) const = 0;
-  virtual std::vector<MeasuredColumn> columns(const PacketSensor& sensor,
-                                              std::string_view payload) const = 0;
-  virtual LaserReturns returns_at(const PacketSensor& sensor, std::string_view payload,
-                                  std::size_t k, std::size_t laser) const = 0;
-
- protected:
-  ~PacketParser() = default;
-};
-
-namespace {
-
 class VelodyneParser final : public PacketParser {
  public:
+  PacketTraits traits(const PacketSensor& sensor) const override {
+    return {.is_hourly = true, .has_cut = sensor.model.first_azimuth_rad != 0};
+  }
   std::uint32_t steps_per_turn(const PacketSensor& /*sensor*/) const override {
     return kAzimuthSteps;
   }
@@ -130,6 +83,9 @@ class VelodyneParser final : public PacketParser {
 
 class OusterParser final : public PacketParser {
  public:
+  PacketTraits traits(const PacketSensor& /*sensor*/) const override {
+    return {.has_frames = true, .has_cut = true};
+  }
   std::uint32_t steps_per_turn(const PacketSensor& sensor) const override {
     return sensor.model.columns;
   }
@@ -297,16 +253,43 @@ LaserReturns OusterParser::returns_at(const PacketSensor& sensor, std::string_vi
 const PacketParser& parser_of(PacketFormat format) {
   static constexpr VelodyneParser kVelodyne;
   static constexpr OusterParser kOuster;
+  if (is_hesai(format)) return hesai_parser();
   if (is_ouster(format)) return kOuster;
   return kVelodyne;
 }
 
 }  // namespace
 
+void add_return(LaserReturns& returns, PacketReturn found) {
+  if (found.counts == 0) return;
+  std::size_t at = returns.count;
+  for (std::size_t i = 0; i < returns.count; ++i)
+    if (returns.all[i].counts == found.counts) return;
+  for (; at > 0 && found.counts < returns.all[at - 1].counts; --at)
+    returns.all[at] = returns.all[at - 1];
+  returns.all[at] = found;
+  ++returns.count;
+}
+
+LaserShot PacketParser::shot_at(const PacketSensor& sensor, std::string_view /*payload*/,
+                                std::size_t /*k*/, const MeasuredColumn& column,
+                                std::size_t laser) const {
+  const LidarModel& model = sensor.model;
+  const std::size_t ring = sensor.ring_of_laser[laser];
+  const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
+  return {firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s), late_s};
+}
+
 PacketDecoder::PacketDecoder(PacketSensor sensor)
-    : sensor_(std::move(sensor)), parser_(&parser_of(sensor_.format)) {}
+    : sensor_(std::move(sensor)),
+      parser_(&parser_of(sensor_.format)),
+      traits_(parser_->traits(sensor_)) {}
 
 std::uint32_t PacketDecoder::steps_per_turn() const { return parser_->steps_per_turn(sensor_); }
+
+bool PacketDecoder::has_size(std::string_view payload) const {
+  return parser_->has_size(sensor_, payload);
+}
 
 std::optional<std::string> PacketDecoder::objection(std::string_view payload) const {
   return parser_->objection(sensor_, payload);
@@ -328,16 +311,14 @@ bool PacketDecoder::has_returns(std::string_view payload, std::size_t k) const {
 
 void PacketDecoder::add_points(std::string_view payload, std::size_t k,
                                const MeasuredColumn& column, PacketPoints& points) const {
-  const LidarModel& model = sensor_.model;
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser) {
     const LaserReturns returns = parser_->returns_at(sensor_, payload, k, laser);
     if (returns.count == 0) continue;
-    const std::size_t ring = sensor_.ring_of_laser[laser];
-    const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
-    const Firing firing = firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s);
+    const auto [firing, late_s] = parser_->shot_at(sensor_, payload, k, column, laser);
+    const double offset_m = sensor_.range_offsets_m[firing.ring];
     for (std::size_t number = 0; number < returns.count; ++number) {
       const PacketReturn& found = returns.all[number];
-      const double range_m = found.counts * sensor_.facts.quantum_m + sensor_.range_offsets_m[ring];
+      const double range_m = found.counts * sensor_.facts.quantum_m + offset_m;
       points.positions.push_back(vec_cast<double>(firing.origin) +
                                  range_m * vec_cast<double>(firing.direction));
       points.late_s.push_back(late_s);

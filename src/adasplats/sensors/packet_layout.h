@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -20,6 +21,15 @@ enum class PacketFormat : std::uint8_t {
   ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns, 12 bytes per channel
   ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read only
   ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL: 16 bytes per channel; read only
+  pandar_40p,     ///< Hesai, from here on: packet_hesai.cpp; read only
+  pandar_64,
+  pandar_qt,  ///< PandarQT, 64 channels
+  xt_16,
+  xt_32,
+  xt_32m,  ///< XT32M2X
+  qt_128,  ///< QT128C2X
+  ot_128,
+  at_128,  ///< AT128: angles depend on the mirror's azimuth (MirrorAngles)
 };
 inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vlp-16", PacketFormat::vlp_16},
@@ -29,9 +39,38 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vls-128", PacketFormat::vls_128},
     {"ouster-legacy", PacketFormat::ouster_legacy},
     {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single},
-    {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual}};
+    {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual},
+    {"pandar40p", PacketFormat::pandar_40p},
+    {"pandar64", PacketFormat::pandar_64},
+    {"pandarqt", PacketFormat::pandar_qt},
+    {"xt16", PacketFormat::xt_16},
+    {"xt32", PacketFormat::xt_32},
+    {"xt32m", PacketFormat::xt_32m},
+    {"qt128", PacketFormat::qt_128},
+    {"ot128", PacketFormat::ot_128},
+    {"at128", PacketFormat::at_128}};
 
-constexpr bool is_ouster(PacketFormat format) { return format >= PacketFormat::ouster_legacy; }
+constexpr bool is_hesai(PacketFormat format) { return format >= PacketFormat::pandar_40p; }
+constexpr bool is_ouster(PacketFormat format) {
+  return format >= PacketFormat::ouster_legacy && !is_hesai(format);
+}
+
+/// Angles of a sensor with a rotating mirror (Hesai AT128), degrees. While the encoder is between
+/// frame_starts[f] and frame_ends[f], facet f deflects the beams (manual, "Angle Correction").
+struct MirrorAngles {
+  std::vector<double> frame_starts, frame_ends;
+  std::vector<double> azimuths, elevations;  ///< one a laser
+  /// Corrections every 2 degrees of the encoder, 180 a laser.
+  std::vector<float> azimuth_adjustments, elevation_adjustments;
+
+  struct Angles {
+    double azimuth = 0;  ///< clockwise from the sensor's +y
+    double elevation = 0;
+  };
+  Angles at(std::size_t laser, std::size_t frame, double encoder) const;
+  /// The frame that contains an encoder angle; the number of frames if none does.
+  std::size_t frame_of(double encoder) const;
+};
 
 /// Positions of a sensor's beams in its packets.
 struct PacketLayout {
@@ -42,6 +81,7 @@ struct PacketLayout {
   /// Added to a packet's range, which then starts at the origin of the beam, m; one a beam, or
   /// empty for zero. Velodyne: dist_correction of the calibration.
   std::vector<double> range_offsets_m;
+  std::shared_ptr<const MirrorAngles> mirror;  ///< at_128 only
 };
 
 }  // namespace adasplats
