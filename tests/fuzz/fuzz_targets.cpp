@@ -47,7 +47,7 @@ constexpr FuzzTarget kTargets[] = {
     {"clouds", "a.mcap", "cloud/load/recording_drive.cpp cloud/load/recording_poses.cpp",
      &survey_clouds, 4 * kKiB, kZstdWindow_mb},
     {"pcap", "a.pcap", "io/packets", &read_capture},
-    {"packet", "", "sensors/packet_decoder.cpp", &read_packet, 26 * kKiB},
+    {"packet", "", "sensors/packet_decoder.cpp sensors/packet_hesai.cpp", &read_packet, 26 * kKiB},
     {"capture", "a.pcap", "cloud/load/packet_drive.cpp", &survey_capture, 8 * kKiB},
     // Places
     {"obj", "a.obj", "io/text/obj.cpp splats/model/mesh_model.cpp", &read_mesh},
@@ -92,6 +92,7 @@ constexpr FuzzTarget kTargets[] = {
     {"sensor-xml", "a.xml", "sensors/lidar_velodyne.cpp", &read_lidar_file},
     {"sensor-csv", "a_angle.csv a_firetime.csv", "sensors/lidar_csv.cpp sensors/lidar_hesai.cpp",
      &read_lidar_file},
+    {"sensor-dat", "a.dat", "sensors/lidar_hesai_mirror.cpp", &read_lidar_file, 48 * kKiB},
     {"ray-drop", "a.toml", "sensors/ray_drop_model.cpp", &read_ray_drop},
     {"labels", "a.toml", "cloud/labels/label_scheme_file.cpp", &read_labels},
     {"class-map", "a.txt", "jobs/segment/output_classes.cpp", &read_classes_of_network},

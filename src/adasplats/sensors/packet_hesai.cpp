@@ -259,8 +259,14 @@ std::optional<std::string> objection_to_model(const HesaiLayout& layout, std::st
   }
   const HesaiHead head(payload);
   if (head.major == layout.major && head.minor == layout.minor && head.lasers == layout.lasers &&
-      head.blocks == layout.blocks && layout.head != 0)
+      head.blocks == layout.blocks && layout.head != 0) {
+    // Hesai's SDK: models with protocol 1.4 differ in the version of their status.
+    constexpr std::uint8_t kFirstOfJt128 = 137;
+    if (layout.format == PacketFormat::ot_128 &&
+        value_at<std::uint8_t>(payload, 4) >= kFirstOfJt128)
+      return "are from Hesai model JT128, expected " + description_of(layout);
     return std::nullopt;
+  }
   for (const HesaiLayout& other : kLayouts)
     if (other.head != 0 && other.major == head.major && other.minor == head.minor &&
         other.lasers == head.lasers && other.blocks == head.blocks)

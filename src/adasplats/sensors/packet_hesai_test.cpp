@@ -394,6 +394,9 @@ TEST_F(HesaiPackets, OtherPacketsAreRejected) {
   const PacketDecoder ot(packet_sensor(load_lidar_model("hesai-ot128")));
   other = kMadeOt.bytes();
   EXPECT_EQ(why(ot, other), "");
+  other[4] = static_cast<char>(137);
+  EXPECT_TRUE(has(why(ot, other), "JT128"));
+  other[4] = 0;
   other[100] ^= 1;
   EXPECT_TRUE(has(why(ot, other), "wrong checksum of their blocks"));
   other = kMadeOt.bytes();

@@ -36,7 +36,7 @@ class RevolutionFinder {
   RevolutionFinder(const PacketDecoder& decoder, PacketSource& source)
       : decoder_(decoder),
         source_(source),
-        clock_(!is_ouster(decoder.sensor().format)),
+        clock_(decoder.traits().is_hourly),
         column_ns_(std::llround(decoder.column_s() * static_cast<double>(kSecond_ns))) {}
 
   void add(const Datagram& datagram, const std::string& what) {
@@ -46,21 +46,23 @@ class RevolutionFinder {
     if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
     if (source_.packets == 0)
       source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
-                         (is_ouster(decoder_.sensor().format) ? clock_.shift_ns() : 0);
+                         (decoder_.traits().is_hourly ? 0 : clock_.shift_ns());
     ++source_.packets;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!columns[k].is_valid) continue;
       const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
       const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
       if (begins_anew) cut_step_ = cut_before(columns[k]);
-      if (begins_anew || begins_revolution(columns[k])) {
+      const bool begins = begins_anew || begins_revolution(columns[k]);
+      if (begins) {
         source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
       }
-      count_gap(time_ns);
+      if (!begins || !decoder_.traits().has_pauses) count_gap(time_ns);
       Revolution& now = source_.revolutions.back();
       ++now.columns;
       now.share = share_of_turn(columns[k]);
+      if (columns[k].lasts_ns != 0) column_ns_ = columns[k].lasts_ns;
       now.end_ns = time_ns + column_ns_;
       now.has_points = now.has_points || decoder_.has_returns(datagram.payload, k);
       last_ = columns[k];
@@ -75,11 +77,10 @@ class RevolutionFinder {
   }
   /// The step at which revolutions begin, if this column is the first.
   std::uint32_t cut_before(const MeasuredColumn& column) const {
-    const LidarModel& model = decoder_.sensor().model;
-    if (is_ouster(decoder_.sensor().format) || model.first_azimuth_rad != 0) return 0;
+    if (decoder_.traits().has_cut) return 0;
     // A quarter of a column earlier: azimuths are rounded.
     const std::uint32_t turn = decoder_.steps_per_turn();
-    return (column.step + turn - turn / (4 * model.columns)) % turn;
+    return (column.step + turn - turn / (4 * decoder_.sensor().model.columns)) % turn;
   }
   std::uint32_t since_cut(const MeasuredColumn& column) const {
     const std::uint32_t turn = decoder_.steps_per_turn();
@@ -87,7 +88,7 @@ class RevolutionFinder {
   }
   /// The head passed the end of a turn, or went back (packets are missing).
   bool begins_revolution(const MeasuredColumn& column) const {
-    if (is_ouster(decoder_.sensor().format) && column.frame != last_.frame) return true;
+    if (decoder_.traits().has_frames && column.frame != last_.frame) return true;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
     return since_cut(column) + back < since_cut(last_);
   }
@@ -186,7 +187,9 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
-    if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")))
+    const bool is_hesais = name.starts_with("correction") || name.starts_with("angle");
+    if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")) ||
+        (is_hesais && (name.ends_with(".csv") || name.ends_with(".dat"))))
       found.push_back(entry->path().string());
   }
   std::ranges::sort(found);
@@ -410,6 +413,12 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
   const auto& [name, source] = source_of(survey, drive.topic);
   warn_of_packets(survey, name, source, progress);
   warn_of_partial_turns(survey, name, source, progress);
+  const LidarModel& model = survey.decoder->sensor().model;
+  if (is_hesai(survey.decoder->sensor().format) &&
+      std::ranges::count(lidar_model_names(), model.name) > 0)
+    progress.warn(survey.path.string() + ": " + model.name +
+                  " has the nominal angles of its model; the angle correction file of the device "
+                  "as `packet_sensor` is more accurate");
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;

@@ -269,5 +269,56 @@ TEST_F(OpenedCapture, BrokenPacketsEndInErrors) {
   EXPECT_EQ(opened + refused, 30U);
 }
 
+/// Two turns of an XT32 from azimuth 90 degrees, at 1,700,000,000 s since 1970.
+std::filesystem::path write_xt32(const TemporaryFolder& folder, bool with_pandar64) {
+  std::filesystem::path path = folder.path() / "hesai.pcap";
+  CaptureWriter writer(path);
+  const UdpEndpoint from{{}, {10, 0, 0, kSender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+  for (unsigned k = 0; k < 500; ++k) {
+    std::string packet("\xEE\xFF\6\1\0\0\x20\x8\0\4\1\0", 12);
+    packet.resize(12 + 8 * 130 + 24);
+    const auto put = [&](std::size_t at, auto value) {
+      std::memcpy(packet.data() + at, &value, sizeof value);
+    };
+    for (unsigned block = 0; block < 8; ++block) {
+      put(12 + 130 * block, static_cast<std::uint16_t>((9000 + 18 * (8 * k + block)) % 36000));
+      for (unsigned laser = 0; laser < 32; ++laser)
+        put(12 + 130 * block + 2 + 4 * laser, std::uint16_t{2500});
+    }
+    packet[1052 + 10] = 0x37;
+    put(1052 + 11, std::uint16_t{600});
+    packet.replace(1052 + 13, 6, "\x7B\x0B\x0E\x16\x0D\x14");
+    put(1052 + 19, std::uint32_t{400 * k});
+    writer.add(1'700'000'000'000'000 + 400 * k, from, to, packet);
+    if (with_pandar64)
+      writer.add(1'700'000'000'000'000 + 400 * k, from, to,
+                 std::string("\xEE\xFF\x40\6\0\4\0\0", 8) + std::string(1186, '\0'));
+  }
+  writer.finish();
+  return path;
+}
+
+TEST(PacketDrive, RevolutionsOfAHesai) {
+  const TemporaryFolder folder;
+  for (const bool with_pandar64 : {false, true}) {
+    ProgressSink quiet;
+    const PacketSurvey survey = survey_packets(write_xt32(folder, with_pandar64),
+                                               decoder_named("hesai-pandarxt-32"), quiet);
+    ASSERT_EQ(survey.sources.size(), 1U);
+    const PacketSource& source = survey.sources.begin()->second;
+    EXPECT_EQ(source.packets, 500U);
+    EXPECT_EQ(source.gaps, 0U);
+    EXPECT_EQ(source.objection.find("Pandar64") != std::string::npos, with_pandar64);
+    ASSERT_EQ(source.revolutions.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(source.revolutions[k].columns, 2000U);
+      EXPECT_NEAR(source.revolutions[k].share, 1, 1e-3);
+      // The last of 8 columns begins 5.632 us after the packet's time, its first shot 0.368 later.
+      EXPECT_EQ(source.revolutions[k].begin_ns,
+                1'700'000'000'000'000'000 + static_cast<std::int64_t>(k) * 100'000'000 - 344'000);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace adasplats
