@@ -36,6 +36,7 @@ NOT_FUZZED = {
     "jobs/output/output_folder.cpp": "manifests that our own runs wrote",
     "jobs/output/resumable_folder.cpp": "manifests that our own runs wrote",
     "jobs/output/unfinished_folder.cpp": "journals and notes that our own runs wrote",
+    "jobs/session/inputs.cpp": "manifests that our own runs wrote",
     "jobs/provenance/machine.cpp": "/proc and /sys",
     "jobs/provenance/provenance.cpp": "/proc",
     "jobs/city/city_addition.cpp": "manifests of finished cities that our own runs wrote",

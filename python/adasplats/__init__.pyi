@@ -279,7 +279,7 @@ def export(
     *,
     format: Literal["gaussian-3d", "gaussian-2d", "glb", "ply", "las", "laz", "mcap"] | None = None,
     labels: Path | None = None,
-    color: Literal["class", "intensity", "height"] | None = None,
+    color: Literal["class", "intensity", "height", "rgb"] | None = None,
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,

@@ -145,7 +145,7 @@ def segmentation(
     scan_count: int | None = None,
     scan_stride: int = 1,
     labels: Path = "semantickitti",
-    least_share: float = 0.0005,
+    min_share: float = 0.0005,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...

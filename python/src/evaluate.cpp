@@ -316,7 +316,7 @@ struct SegmentationArguments {
       R"(Compare predicted classes with the true ones by intersection over union.
 
 predicted, true: paths of sequences, folders, .label files or points with classes; or integer arrays
-(N,) with the class in the low 16 bits. least_share: minimum share of a class among the true points;
+(N,) with the class in the low 16 bits. min_share: minimum share of a class among the true points;
 rarer classes do not count in 'miou_present'. Raises TypeError, ValueError, OSError.)";
 
   SegmentationJob job;
@@ -325,7 +325,8 @@ rarer classes do not count in 'miou_present'. Raises TypeError, ValueError, OSEr
   void take(Keywords& keywords) {
     take_scan_range(keywords, job.scans);
     keywords.take("labels", job.labels);
-    keywords.take("least_share", job.options.min_share);
+    keywords.accept_old_name("least_share", "min_share");
+    keywords.take("min_share", job.options.min_share);
     work.take(keywords);
   }
 

@@ -53,7 +53,8 @@ const SemanticClass& class_of_name(const LabelScheme& scheme, const std::string&
   return *found;
 }
 
-using ClassFields = std::tuple<std::uint16_t, std::string, int, int, std::array<std::uint8_t, 3>>;
+using ClassFields =
+    std::tuple<std::uint16_t, std::string, int, int, std::array<std::uint8_t, 3>, bool>;
 constexpr const char* kPickled = "adasplats.LabelScheme";
 
 /// A scheme cannot be empty, so all fields are read before it is made.
@@ -61,7 +62,7 @@ py::object pickle_of(const LabelScheme& scheme) {
   std::vector<ClassFields> classes;
   for (const SemanticClass& c : scheme.classes())
     classes.emplace_back(c.id, c.name, static_cast<int>(c.group), static_cast<int>(c.mobility),
-                         c.rgb);
+                         c.rgb, c.is_noise);
   py::dict fields;
   fields["name"] = scheme.name();
   fields["classes"] = py::cast(classes);
@@ -73,10 +74,10 @@ std::shared_ptr<LabelScheme> scheme_of_pickle(const py::object& pickle) {
   if (!fields.contains("name") || !fields.contains("classes"))
     wrong_pickle(kPickled, "lacks a field");
   std::vector<SemanticClass> classes;
-  for (const auto& [id, name, group, mobility, rgb] :
+  for (const auto& [id, name, group, mobility, rgb, is_noise] :
        fields["classes"].cast<std::vector<ClassFields>>())
-    classes.push_back(
-        {id, name, static_cast<SemanticGroup>(group), static_cast<Mobility>(mobility), rgb});
+    classes.push_back({id, name, static_cast<SemanticGroup>(group), static_cast<Mobility>(mobility),
+                       rgb, is_noise});
   return std::make_shared<LabelScheme>(fields["name"].cast<std::string>(), std::move(classes));
 }
 

@@ -140,7 +140,11 @@ std::vector<ScanMotion> DriveArguments::scans_at(py::handle poses, const LidarMo
   const Trajectory moves = motion.is_none() ? at : trajectory_of(motion, "motion");
   if (moves.size() < 2)
     throw py::value_error("rolling_shutter needs at least two poses for the motion");
-  return moving_scans(at, moves, 1 / sensor.rotation_hz);
+  if (fires_at_once(sensor)) return still_scans(at);
+  const double duration_s = 1 / sensor.rotation_hz;
+  if (const std::string note = motion_ends_note(at, moves, duration_s); !note.empty())
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+  return moving_scans(at, moves, duration_s);
 }
 
 void add_simulation(SceneClass& type) {

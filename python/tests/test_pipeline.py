@@ -426,8 +426,8 @@ def test_segmentation_errors(street):
         segmentation(np.uint16([]), np.uint16([]))
     with pytest.raises(ValueError, match="for paths"):
         segmentation([40], [40], first_scan=1)
-    with pytest.raises(ValueError, match="least_share"):
-        segmentation([40], [40], least_share=2)
+    with pytest.raises(ValueError, match="min_share"):
+        segmentation([40], [40], min_share=2)
     with pytest.raises(TypeError, match="predicted: expected whole numbers"):
         segmentation([0.5], [40])
     with pytest.raises(TypeError, match="true: expected a path"):

@@ -68,6 +68,33 @@ class Export(ProgramTest):
         self.assertEqual(report["scans"], 2)
         self.run_bad(64, "export", scans, "-o", self.folder / "d.mcap", "--scans", "3:1")
 
+    def test_columns_of_the_file_are_kept_or_listed(self):
+        cloud = self.folder / "all.csv"
+        cloud.write_text("x,y,z,intensity,classification,gps_time,return_number,"
+                         "number_of_returns,user_data,red,green,blue,nx,ny,nz,echo\n" +
+                         "".join(f"{k},{k % 3},{k / 9},{k},{k % 2},{k / 7},1,2,{k},{k},2,3,0,0,1,"
+                                 f"{k / 3}\n" for k in range(20)))
+        for name, fields in [("a.ply", ["gps_time f64", "return_number f64", "red u8", "nx f64"]),
+                             ("a.las", ["gps_time f64", "return_number u8", "red u16", "nx f64"]),
+                             ("a.laz", ["user_data u8", "number_of_returns u8", "blue u16"])]:
+            path = self.export(cloud, name)
+            found = self.report("info", path)["files"][0]["fields"]
+            for field in fields + ["echo f64"]:
+                self.assertIn(field, found, name)
+            again = self.export(path, "b.ply")
+            self.assertIn("echo f64", self.report("info", again)["files"][0]["fields"])
+        said = self.run_warned("user_data", "export", cloud, "-o", self.folder / "a.glb").stderr
+        for name in ("gps_time", "return_number", "nx", "echo"):
+            self.assertIn(name, said)
+        self.assertNotIn("red", said)
+
+    def test_label_schemes_are_kept(self):
+        sequence = self.simulate(self.model()) / "sequences" / "00"
+        for name in ("s.ply", "s.las", "s.laz"):
+            self.assertIn("40 road", self.run_good("info", self.export(sequence, name)).stdout)
+        self.assertIn(b"semantickitti", self.export(sequence, "s.mcap").read_bytes())
+        self.assertIn("40 road", self.run_good("info", self.folder / "s.mcap").stdout)
+
     def test_simulate_writes_the_same_format(self):
         model = self.model()
         scans = self.simulate(model, "scans", "--format", "mcap")

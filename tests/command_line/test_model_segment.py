@@ -62,7 +62,7 @@ class ModelSegmentTest(ProgramTest):
         self.assertIn(sha256(self.network), self.run_good("info", self.out).stdout)
         said = self.run_good("model", self.bare, "-o", self.out, "--segment", "--network",
                              self.network).stdout
-        for word in ["dynamic and removed (car ", "network height.network",
+        for word in ["removed by class (car ", "network height.network",
                      sha256(self.network)[:12]]:
             self.assertIn(word, said)
         if DEFAULT_NETWORK.is_file():

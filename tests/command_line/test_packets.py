@@ -292,6 +292,34 @@ class Captures(ProgramTest):
                      "--packet-sensor", "velodyne-vlp-16", says=["alone.pcap", "cut off"])
         self.assertFalse(output.exists())
 
+    def test_one_of_several_sensors(self):
+        """Every command reads the sensor that --topic names."""
+        folder = self.drive("vlp", "velodyne-vlp-16", "--no-noise")
+        capture = folder / "drive.pcap"
+        data = capture.read_bytes()
+        both, place = [data[:24]], 24
+        while place < len(data):
+            end = place + 16 + struct.unpack_from("<I", data, place + 8)[0]
+            both.append(data[place:end])
+            address = place + 16 + 14 + 12  # of the sender
+            both.append(data[place:address] + bytes([10, 0, 0, 7]) + data[address + 4:end])
+            place = end
+        capture.write_bytes(b"".join(both))
+        poses = ["--trajectory", folder / "poses.csv"]
+        for command, name in (("model", "m.ply"), ("export", "e.ply"), ("calibrate", "c")):
+            chosen = [command, capture, *poses, "-o", self.folder / name]
+            self.run_bad(64, *chosen, says=["several sensors", "--topic", "10.0.0.7:2368"])
+            self.run_bad(64, *chosen, "--topic", "10.0.0.8:2368",
+                         says=["10.0.0.8:2368", "192.168.1.201:2368"])
+            result = run(*chosen, "--topic", "10.0.0.7:2368")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertTrue((self.folder / name).exists())
+        report = self.folder / "r.json"
+        result = run("evaluate", "resimulate", self.place, capture, *poses, "--topic",
+                     "192.168.1.201:2368", "--report", report)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertLess(json.loads(report.read_text())["range_error_m"]["median"], 0.002)
+
     def test_info(self):
         folder = self.drive("vlp", "velodyne-vlp-16")
         text = run("info", folder / "drive.pcap").stdout

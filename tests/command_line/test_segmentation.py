@@ -44,7 +44,7 @@ class Segmentation(ProgramTest):
         self.assertEqual({name: n for name, n in row.items() if n}, {"pole": 1, "unlabeled": 1})
         self.assertEqual(sum(map(sum, counts)), 8)
         # Rare classes are named and not in the mean.
-        report = self.evaluate(predicted, true, "--least-share", "0.2")
+        report = self.evaluate(predicted, true, "--min-share", "0.2")
         self.assertEqual(report["rare"], ["car"])
         self.assertAlmostEqual(report["miou_present"], (2 / 3 + 1 + 0.5) / 3)
         self.assertEqual(report["iou"]["car"], 0)
@@ -133,7 +133,7 @@ class Segmentation(ProgramTest):
         self.refuse(66, self.folder / "empty", true, says=["empty"])
         (self.folder / "bare" / "velodyne").mkdir(parents=True)
         self.refuse(65, self.folder / "bare", true, says=["bare", "no labels"])
-        self.refuse(64, true, true, "--least-share", "1.5", says=["--least-share"])
+        self.refuse(64, true, true, "--min-share", "1.5", says=["--min-share"])
         self.refuse(66, true, true, "--labels", "semantickity", says=["semantickitti"])
 
 

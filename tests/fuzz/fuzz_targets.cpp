@@ -36,7 +36,7 @@ constexpr FuzzTarget kTargets[] = {
     {"gzip", "", "io/pickle/gzip.cpp", &read_gzip},
     {"kitti-label", "a.label", "cloud/sequence/kitti_sequence.cpp", &read_label_file},
     // Recordings
-    {"mcap", "a.mcap", "io/bags", &read_recording, 4 * kKiB, kZstdWindow_mb},
+    {"mcap", "a.mcap", "io/bags io/mcap/mcap_file.cpp", &read_recording, 4 * kKiB, kZstdWindow_mb},
     {"bag", "a.bag", "io/bags", &read_recording},
     {"db3", "a.db3", "io/bags", &read_recording, 8 * kKiB},
     {"mcap-zstd", "a.mcap.zstd", "io/bags", &read_recording, 4 * kKiB, kZstdWindow_mb},
@@ -47,8 +47,12 @@ constexpr FuzzTarget kTargets[] = {
     {"clouds", "a.mcap", "cloud/load/recording_drive.cpp cloud/load/recording_poses.cpp",
      &survey_clouds, 4 * kKiB, kZstdWindow_mb},
     {"pcap", "a.pcap", "io/packets", &read_capture},
-    {"packet", "", "sensors/packet_decoder.cpp sensors/packet_hesai.cpp", &read_packet, 26 * kKiB},
-    {"capture", "a.pcap", "cloud/load/packet_drive.cpp", &survey_capture, 8 * kKiB},
+    {"packet", "",
+     "sensors/packet_decoder.cpp sensors/ouster_parser.cpp sensors/velodyne_parser.cpp "
+     "sensors/hesai_parser.cpp",
+     &read_packet, 26 * kKiB},
+    {"capture", "a.pcap", "cloud/load/packet_drive.cpp cloud/load/packet_file.cpp", &survey_capture,
+     8 * kKiB},
     // Places
     {"obj", "a.obj", "io/text/obj.cpp splats/model/mesh_model.cpp", &read_mesh},
     {"mesh-ply", "a.ply", "splats/model/mesh_model.cpp io/ply", &read_mesh},

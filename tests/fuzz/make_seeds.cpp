@@ -128,6 +128,13 @@ std::string bag_of_poses(bool cdr) {
   return bags_test::mcap_of(said);
 }
 
+/// A message of nebula_msgs/NebulaPackets.
+std::string packets_message(bool cdr) {
+  bags_test::MessageComposer message(cdr);
+  message.header(5, "lidar").put(std::uint32_t{1}).put(std::uint32_t{5}).put(std::uint32_t{7});
+  return message.raw("packet").get();
+}
+
 void add_recordings(Seeds& seeds) {
   const std::vector<Said> said = {{"/a", "pkg/msg/One", 5, "first"},
                                   {"/b", "pkg/msg/Two", 7, std::string(30, 'x')},
@@ -155,14 +162,17 @@ void add_recordings(Seeds& seeds) {
   words.points.assign(16, '\1');
   for (const bool cdr : {false, true}) {
     const auto choice = [&](int type) { return std::string(1, static_cast<char>(2 * type + cdr)); };
-    seeds.add("ros-message", {choice(0) + bags_test::transforms_message(5, "map", "car", pose, cdr),
-                              choice(1) + bags_test::odometry_message(5, "map", "car", pose, cdr),
-                              choice(2) + bags_test::pose_message(5, "map", pose, cdr),
-                              choice(4) + bags_test::cloud_message(words, cdr)});
+    seeds.add("ros-message",
+              {choice(0) + bags_test::transforms_message(5, "map", "car", pose, cdr),
+               choice(1) + bags_test::odometry_message(5, "map", "car", pose, cdr),
+               choice(2) + bags_test::pose_message(5, "map", pose, cdr),
+               choice(4) + bags_test::cloud_message(words, cdr), choice(6) + packets_message(cdr)});
   }
   seeds.add("unpack", {std::string(1, '\0') + zstd.bytes, "\1" + lz4.bytes, "\2" + bz2.bytes,
                        "\3" + zstd.bytes, "\4" + zstd.bytes});
-  seeds.add("clouds", {bag_of_poses(true)});
+  seeds.add("clouds",
+            {bag_of_poses(true), bags_test::mcap_of({{"/packets", "nebula_msgs/msg/NebulaPackets",
+                                                      5, packets_message(true)}})});
 }
 
 /// What a sensor sends of things 10 m away.
@@ -359,11 +369,11 @@ void add_settings(Seeds& seeds) {
       "sensor-json",
       {R"({"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],"lidar_mode":)"
        R"("512x20","lidar_origin_to_beam_origin_mm":15,"lidar_to_sensor_transform":)"
-       R"([-1,0,0,0,0,-1,0,0,0,0,1,36,0,0,0,1],"prod_line":"OS-0-128","prod_sn":"7"})",
+       R"([-1,0,0,0,0,-1,0,0,0,0,1,36,0,0,0,1],"prod_line":"OS-0-2","prod_sn":"7"})",
        R"({"beam_intrinsics":{"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],)"
        R"("beam_to_lidar_transform":[1,0,0,15,0,1,0,0,0,0,1,0,0,0,0,1]},"config_params":)"
        R"({"lidar_mode":"512x20","udp_profile_lidar":"RNG19_RFL8_SIG16_NIR16_DUAL"},)"
-       R"("sensor_info":{"prod_line":"OS-0-128"}})"});
+       R"("sensor_info":{"prod_line":"OS-0-2"}})"});
   seeds.add("sensor-yaml",
             {"# mine\nlasers:\n- {dist_correction: 1.5, laser_id: 0, rot_correction: 0.1,\n"
              "  vert_correction: -0.2, vert_offset_correction: 0.19}\n- laser_id: 1\n"

@@ -15,6 +15,7 @@
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/ros_values.h"
 #include "adasplats/io/bags/unpack.h"
+#include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/io/packets/datagram_reader.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/packet_decoder.h"
@@ -36,6 +37,7 @@ std::pair<std::uint8_t, std::string_view> chosen(std::string_view bytes) {
 }  // namespace
 
 void read_recording(const Input& input) {
+  read_mcap_metadata(input.file, kMcapMetadataName, kMcapLabelsKey);
   const Recording recording(input.file);
   constexpr std::size_t kAgain = 8;
   std::vector<std::pair<MessagePosition, std::string>> first;
@@ -62,6 +64,20 @@ void read_ros_message(const Input& input) {
   if (type < kTypes.size()) {
     require(ros_poses(bytes, kTypes[type], encoding, "m").size() <= bytes.size(),
             "no more poses than bytes");
+    return;
+  }
+  constexpr std::array<std::string_view, 6> kPacketTypes = {
+      "velodyne_msgs/VelodyneScan", "nebula_msgs/NebulaPackets", "pandar_msgs/PandarScan",
+      "hesai_ros_driver/UdpFrame",  "ouster_ros/PacketMsg",      kRosString};
+  const std::size_t after_cloud = type - kTypes.size() - 1;
+  if (type > kTypes.size() && after_cloud < kPacketTypes.size()) {
+    const std::string_view packets = kPacketTypes[after_cloud];
+    if (packets == kRosString)
+      require(ros_string(bytes, encoding, "m").size() <= bytes.size(),
+              "no text beyond the message");
+    else
+      for (const RosPacket& packet : ros_packets(bytes, packets, encoding, "m").packets)
+        require(packet.bytes.size() <= bytes.size(), "no packet beyond the message");
     return;
   }
   const RosCloudHead head = ros_cloud_head(bytes, encoding, "m");
@@ -91,8 +107,15 @@ void read_packed_bytes(const Input& input) {
 
 void survey_clouds(const Input& input) {
   ProgressSink quiet;
-  for (const auto& [name, topic] : survey_recording(input.file, quiet).topics)
+  const RecordingSurvey survey = survey_recording(input.file, quiet);
+  for (const auto& [name, topic] : survey.topics)
     require(topic.clouds.size() <= topic.messages, "no more clouds than messages");
+  DriveSettings settings;
+  if (is_read_by_packets(survey, settings)) {
+    settings.packets_of = "velodyne-vlp-16";
+    for (const auto& [name, source] : survey_packets(survey, settings, quiet).sources)
+      require(source.packets <= source.datagrams, "no more packets than datagrams");
+  }
   const RecordedTrajectory found = trajectory_of_recording(input.file, "", "", quiet);
   for (std::size_t k = 1; k < found.motion.size(); ++k)
     require(found.motion[k].time_s > found.motion[k - 1].time_s, "times that ascend");
@@ -130,7 +153,7 @@ void read_packet(const Input& input) {
   // Any payload that is too short is padded: the reader takes those of the right size alone.
   std::string payload(bytes);
   payload.resize(decoder.sensor().payload_bytes());
-  if (decoder.objection(payload)) return;
+  if (decoder.objection(payload) || decoder.contradiction(payload)) return;
   const std::vector<MeasuredColumn> columns = decoder.columns(payload);
   PacketPoints points;
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -32,7 +32,7 @@ std::string table_of(const DemoResult& result) {
 class DemoCommand final : public Command {
  public:
   explicit DemoCommand(CLI::App& program)
-      : Command(program, "demo", "Make a street, model it, simulate, measure and draw it",
+      : Command(program, "demo", "Run all steps on a synthetic street and write a report",
                 kDemoExamples) {
     OptionSet& app = options();
     writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create"));

@@ -473,9 +473,10 @@ class EvaluateSegmentationCommand final : public ResultCommand {
                "a TOML file")
         ->capture_default_str();
     add_scan_range(app, "--scans", job_.scans, "Scans of each true sequence to use");
-    app.add_option("--least-share", job_.options.min_share,
+    app.add_option("--min-share", job_.options.min_share,
                    "Minimum share of the true points of a class that counts in the mean")
         ->capture_default_str();
+    app.add_old_name("least-share", "min-share");
   }
 
  private:

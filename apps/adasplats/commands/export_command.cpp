@@ -38,7 +38,7 @@ class ExportCommand final : public Command {
     add_labels_option(app, job_.labels, "that of the model");
     add_choice<std::optional<ExportColor>>(
         app, "--color", job_.color, choices_of_optional(kExportColors),
-        "Meaning of the colours (default: the first available of these)");
+        "Meaning of the colours (default: rgb, else the first available of these)");
     add_load_options(app, job_.load);
   }
 

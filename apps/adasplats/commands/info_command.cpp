@@ -125,7 +125,7 @@ class InfoCommand final : public Command {
     if (kinds.empty() || kinds.contains("capture")) return;
     const std::string why = "on a " + *kinds.begin();
     if (!kinds.contains("city of splats")) reject({"--verify"}, why);
-    reject({"--packet-sensor"}, why);
+    if (!kinds.contains("recording")) reject({"--packet-sensor"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
         kinds.contains("nuScenes scene"))

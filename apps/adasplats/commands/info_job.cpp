@@ -17,6 +17,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
@@ -124,35 +125,31 @@ void describe_las(const LasFacts& las, FileFacts& facts) {
                        {"offset", {las.offset.x, las.offset.y, las.offset.z}}};
 }
 
-/// Whether a file's classes are those of the specification of LAS, as far as that can be
-/// determined: ours have the ids of any scheme.
-bool has_las_classes(const LasFacts& las, const Table& table, const std::string& label_field) {
-  if (!label_field.empty() && label_field != "classification") return false;
-  return las.software != "adasplats" && table.find("label") == nullptr &&
-         table.find("class") == nullptr;
-}
-
-/// What a file says before its points are loaded; `scheme` becomes that of LAS where it is.
-void describe_file(const fs::path& input, const LoadOptions& options,
-                   std::optional<LabelScheme>& scheme, FileFacts& facts, Session& session) {
-  const Table table = read_points(input, {options.salvage, &session.executor, options.selection});
-  if (is_las(input)) {
-    const LasFacts las = read_las_facts(input);
-    describe_las(las, facts);
-    if (!scheme && has_las_classes(las, table, options.label_field)) scheme = asprs_labels();
-  }
+/// What a file says before its points are loaded.
+void describe_file(const fs::path& input, const LoadOptions& options, FileFacts& facts,
+                   Session& session) {
+  const Table table =
+      read_points(input, {options.salvage, &session.executor, options.selection, true});
+  if (is_las(input)) describe_las(read_las_facts(input), facts);
   const std::string fields = fields_of(table);
   facts.rows.emplace_back("fields", fields);
   facts.json["fields"] = fields;
 }
 
-FileFacts cloud_facts(const fs::path& input, std::optional<LabelScheme> scheme,
+FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                       const LoadOptions& options, Session& session) {
   FileFacts facts;
   facts.kind = "point cloud";
-  if (fs::is_regular_file(input)) describe_file(input, options, scheme, facts, session);
+  if (fs::is_regular_file(input)) describe_file(input, options, facts, session);
+  LoadOptions described = options;
+  described.accept_sensor_frame = true;
   const auto [cloud, report] =
-      load_cloud(std::span(&input, 1), options, session.executor, session.progress);
+      load_cloud(std::span(&input, 1), described, session.executor, session.progress);
+  if (!report.sensor_frames.empty()) {
+    const std::string frame = "sensor's frame (" + report.sensor_frames.front().second + ")";
+    facts.rows.emplace_back("points in the", frame);
+    facts.json["points_in"] = frame;
+  }
   describe_crs(cloud.crs, facts);
   Survey survey;
   for (std::size_t i = 0; i < cloud.size(); ++i) survey.add(cloud.world(i));
@@ -194,7 +191,7 @@ FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) 
   if (!radii.empty()) {
     std::sort(radii.begin(), radii.end());
     const auto at = [&](std::size_t i) { return centimetres(static_cast<double>(radii[i])); };
-    facts.rows.emplace_back("radius: least, median, greatest",
+    facts.rows.emplace_back("radius: minimum, median, maximum",
                             at(0) + ", " + at(radii.size() / 2) + ", " + at(radii.size() - 1));
   }
   if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
@@ -258,8 +255,8 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
   const double last_s = sequence.trajectory.back().time_s;
   const double median_s = steps_s[steps_s.size() / 2];
   facts.rows.emplace_back("times", fixed(first_s, 3) + " .. " + fixed(last_s, 3) + " s, scans " +
-                                       fixed(median_s, 3) + " s apart, at most " +
-                                       fixed(steps_s.back(), 3) + " s");
+                                       fixed(median_s, 3) + " s apart (maximum " +
+                                       fixed(steps_s.back(), 3) + " s)");
   facts.json["times_s"] = {{"first", first_s},
                            {"last", last_s},
                            {"median_step", median_s},
@@ -270,7 +267,7 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
 void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   const auto add = [&facts](const char* name, const char* key, const std::string& text) {
     if (text.empty()) return;
-    facts.rows.emplace_back(name, text);
+    facts.rows.emplace_back(name, with_settings_as_options(text));
     facts.json[key] = text;
   };
   add("points in the", "points_in", drive.points_in);
@@ -278,20 +275,21 @@ void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   add("clocks", "clock", drive.clock);
   add("not checked", "unchecked", drive.unchecked);
   add("intensities", "intensities", drive.intensities);
-  add("left out", "left_out", drive.left_out);
+  add("skipped", "left_out", drive.left_out);
   if (!drive.crs.empty()) describe_crs(drive.crs, facts);
 }
 
-/// What the points are taken for: who measured them, and from where.
+/// The sensor, where its beams start, and its motion within a scan.
 void describe_beams(const ScanBeams& beams, const std::string& motion, FileFacts& facts) {
   const std::string sensor = beams.sensor.empty() ? "not recognised" : beams.sensor;
   facts.rows.emplace_back("sensor", sensor);
   facts.rows.emplace_back("beams from", beams.description());
   const std::string known = !motion.empty()              ? motion
-                            : !beams.sweeps_m.empty()    ? "taken out of the points"
-                            : !beams.raw_motions.empty() ? "in the points, as measured; taken out"
-                                                         : "not known: scans as if standing still";
-  facts.rows.emplace_back("motion of a scan", known);
+                            : !beams.sweeps_m.empty()    ? "already compensated in the points"
+                            : !beams.raw_motions.empty() ? "points as measured, compensated"
+                                                         : "unknown; the sensor is assumed to be "
+                                                           "at rest during a scan";
+  facts.rows.emplace_back("motion of a scan", with_settings_as_options(known));
   facts.json["motion"] = known;
   facts.json["sensor"] = beams.sensor;
   facts.json["beams"] = beams.description();
@@ -344,21 +342,83 @@ FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
   return facts;
 }
 
+/// The sources of packets in a capture or recording, and what is understood of it as a drive.
+FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
+                       const std::optional<LabelScheme>& scheme, const LoadOptions& options,
+                       Session& session) {
+  FileFacts facts;
+  try {
+    facts = sequence_facts(open_packet_drive(drive_of(survey.path, options), survey,
+                                             session.executor, session.progress),
+                           kind, scheme, options, session);
+  } catch (const Error& error) {
+    facts = {};
+    facts.kind = kind;
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+  }
+  if (survey.decoder) {
+    facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
+    facts.json["packets_of"] = survey.decoder->sensor().model.name;
+  }
+  facts.json["sources"] = nlohmann::ordered_json::array();
+  for (const auto& [name, source] : survey.sources) {
+    std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
+                       " packets of the sensor" +
+                       (source.dual_packets == 0 ? ""
+                        : source.dual_packets == source.packets
+                            ? " with two returns a firing"
+                            : ", " + grouped(source.dual_packets) + " with two returns a firing") +
+                       ", " + grouped(source.revolutions.size()) + " revolutions";
+    if (source.lost_columns > 0)
+      text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
+              " gaps";
+    if (source.packets > 0)
+      text += "; captured " + fixed(1e-9 * static_cast<double>(source.ahead_ns), 6) +
+              " s after its own times";
+    for (const std::string& fault : {source.objection, source.contradiction})
+      if (!fault.empty()) text += "; some " + fault;
+    facts.rows.emplace_back("from " + name, text);
+    facts.json["sources"].push_back({{"name", name},
+                                     {"datagrams", source.datagrams},
+                                     {"packets", source.packets},
+                                     {"dual_packets", source.dual_packets},
+                                     {"revolutions", source.revolutions.size()},
+                                     {"lost_columns", source.lost_columns},
+                                     {"gaps", source.gaps},
+                                     {"objection", source.objection},
+                                     {"contradiction", source.contradiction}});
+  }
+  return facts;
+}
+
+/// What is understood of the clouds of a recording as a drive.
+FileFacts cloud_topic_facts(const RecordingSurvey& survey, const std::optional<LabelScheme>& scheme,
+                            const LoadOptions& options, Session& session) {
+  try {
+    return sequence_facts(open_recording_drive(drive_of(survey.recording->path(), options), survey,
+                                               session.executor, session.progress),
+                          "recording", scheme, options, session);
+  } catch (const Error& error) {
+    // The list of topics shows what to select.
+    FileFacts facts;
+    facts.kind = "recording";
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+    return facts;
+  }
+}
+
 /// The topics of a recording, and what is understood of it as a drive.
 FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                           const LoadOptions& options, Session& session) {
   const RecordingSurvey survey = survey_recording(input, session.progress);
   FileFacts facts;
-  try {
-    facts = sequence_facts(
-        open_recording_drive(drive_of(input, options), survey, session.executor, session.progress),
-        "recording", scheme, options, session);
-  } catch (const Error& error) {
-    // Which topics there are is what the user needs to mend that.
-    facts = {};
-    facts.kind = "recording";
-    facts.rows.emplace_back("no drive", error.what());
-    facts.json["no_drive"] = error.what();
+  if (is_read_by_packets(survey, options)) {
+    facts = packet_facts(survey_packets(survey, options, session.progress), "recording", scheme,
+                         options, session);
+  } else {
+    facts = cloud_topic_facts(survey, scheme, options, session);
   }
   facts.json["topics"] = nlohmann::ordered_json::array();
   for (const auto& [name, topic] : survey.topics) {
@@ -382,47 +442,7 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
                         const LoadOptions& options, Session& session) {
   const PacketSurvey survey =
       survey_packets(input, decoder_of_capture(input, options.packets_of), session.progress);
-  FileFacts facts;
-  try {
-    facts = sequence_facts(
-        open_packet_drive(drive_of(input, options), survey, session.executor, session.progress),
-        "capture", scheme, options, session);
-  } catch (const Error& error) {
-    facts = {};
-    facts.kind = "capture";
-    facts.rows.emplace_back("no drive", error.what());
-    facts.json["no_drive"] = error.what();
-  }
-  if (survey.decoder) {
-    facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
-    facts.json["packets_of"] = survey.decoder->sensor().model.name;
-  }
-  facts.json["sources"] = nlohmann::ordered_json::array();
-  for (const auto& [name, source] : survey.sources) {
-    std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
-                       " packets of the sensor" +
-                       (source.dual_packets == 0 ? ""
-                        : source.dual_packets == source.packets
-                            ? " with two returns a firing"
-                            : ", " + grouped(source.dual_packets) + " with two returns a firing") +
-                       ", " + grouped(source.revolutions.size()) + " revolutions";
-    if (source.lost_columns > 0)
-      text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
-              " gaps";
-    if (source.packets > 0)
-      text += "; captured " + fixed(1e-9 * static_cast<double>(source.ahead_ns), 6) +
-              " s after its own times";
-    if (!source.objection.empty()) text += "; some " + source.objection;
-    facts.rows.emplace_back("from " + name, text);
-    facts.json["sources"].push_back({{"name", name},
-                                     {"datagrams", source.datagrams},
-                                     {"packets", source.packets},
-                                     {"dual_packets", source.dual_packets},
-                                     {"revolutions", source.revolutions.size()},
-                                     {"lost_columns", source.lost_columns},
-                                     {"gaps", source.gaps},
-                                     {"objection", source.objection}});
-  }
+  FileFacts facts = packet_facts(survey, "capture", scheme, options, session);
   const DatagramCounts& counts = survey.counts;
   facts.rows.emplace_back("frames", grouped(counts.frames) + ", " + grouped(counts.others) +
                                         " of other protocols than UDP, " + grouped(counts.cut) +
@@ -444,17 +464,17 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   if (is_capture(input))
     return capture_facts(input, label_scheme_for(labels, {}), options, session);
   if (is_recording(input))
-    return recording_facts(input, label_scheme_for(labels, {}), options, session);
+    return recording_facts(input, label_scheme_for(labels, std::span(&input, 1)), options, session);
   const DataTree* const tree = data_tree_of(input);
   if (tree != nullptr || !options.trajectory.empty()) {
-    const auto scheme = label_scheme_for(labels, std::span(&input, tree == nullptr ? 0 : 1));
+    const auto scheme = label_scheme_for(labels, std::span(&input, 1));
     const auto drive = open_drive(drive_of(input, options), session.executor, session.progress);
     if (drive)
       return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name, scheme,
                             options, session);
   }
   const fs::path resolved = resolve_cloud_input(input);
-  const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
+  const auto scheme = label_scheme_for(labels, std::span(&resolved, 1), options.label_field);
   if (is_kitti_sequence(resolved)) {
     KittiSequence sequence = open_kitti_sequence(resolved);
     sequence.facts.unchecked = verify_poses(sequence, session.executor);

@@ -50,7 +50,7 @@ class MeshCommand final : public Command {
     const std::string by = result.program.empty() ? "" : ", by " + result.program;
     print(table.text() + "\n" + output_.string() + ": " + grouped(result.primitives) +
           " triangles from " + grouped(result.points_in) + " points (" +
-          grouped(result.points_dynamic) + " dynamic removed" + text_of(result.removed_classes) +
+          grouped(result.points_dynamic) + " removed by class" + text_of(result.removed_classes) +
           ")" + by + "\n");
   }
 

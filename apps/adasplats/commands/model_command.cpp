@@ -40,9 +40,19 @@ constexpr const char* kModelExamples =
 /// How well the sensor positions explain the points; empty without evidence.
 std::string origins_text(const std::optional<OriginCheck>& check) {
   if (!check || check->near_rise == 0) return {};
-  return "Sensor positions are plausible: shifted ones make rays cross " +
-         fixed(check->near_rise, 2) + " and " + fixed(check->far_rise, 2) +
-         " times as many surfaces\n";
+  const bool is_plausible = origin_objection(*check).empty() && origin_doubt(*check).empty();
+  return std::string("Sensor positions are ") + (is_plausible ? "plausible" : "doubtful") +
+         ": shifted ones make rays cross " + fixed(check->near_rise, 2) + " and " +
+         fixed(check->far_rise, 2) + " times as many surfaces\n";
+}
+
+/// Splats that are not on the surface; empty without any.
+std::string limited_text(const BuildReport& built) {
+  const std::size_t limited = built.consistent->splats_limited;
+  if (limited == 0) return {};
+  const double share = static_cast<double>(limited) / static_cast<double>(built.primitives);
+  return "; moved " + grouped(limited) + " splats (" + fixed(100 * share, 1) +
+         " %) by the maximum towards their surface";
 }
 
 /// The figures of the method.
@@ -54,13 +64,14 @@ std::string figures_of(const BuildReport& built) {
   }
   const ConsistentReport& report = *built.consistent;
   const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
-  if (!report.checked) return seeds + ", no visibility check (no measured rays)";
+  if (!report.checked)
+    return seeds + ", no visibility check (no measured rays)" + limited_text(built);
   const std::string empty_beams =
       report.empty_beams == 0 ? ""
                               : " and " + grouped(report.empty_beams) + " beams without return";
   return seeds + "; removed " + grouped(report.seeds_removed) + " seeds that contradict " +
          grouped(report.rays) + " measured rays" + empty_beams + ", restored " +
-         grouped(report.splats_filled) + " where rays missed all splats";
+         grouped(report.splats_filled) + " where rays missed all splats" + limited_text(built);
 }
 
 std::string segmentation_text(const SegmentReport& segmented) {
@@ -162,7 +173,7 @@ class ModelCommand final : public Command {
     const BuildReport& built = result.built;
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
-          " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
+          " of them removed by class" + text_of(built.removed_classes) + "\n" +
           (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
           "\n" + (built.consistent ? origins_text(built.consistent->origins) : "") +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));

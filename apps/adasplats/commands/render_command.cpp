@@ -42,10 +42,11 @@ class RenderCommand final : public Command {
                                            {"normal", ImageColor::normal},
                                            {"intensity", ImageColor::intensity},
                                            {"range", ImageColor::range},
-                                           {"height", ImageColor::height}},
-                                          "Meaning of the colours (default: classes if most splats "
-                                          "or points have one, else intensity, "
-                                          "else height)")
+                                           {"height", ImageColor::height},
+                                           {"rgb", ImageColor::rgb}},
+                                          "Meaning of the colours (default: those in the file of "
+                                          "points, else classes if most splats or points have "
+                                          "one, else intensity, else height)")
         ->basic();
     app.add_option("--width", job_.view.width, "Width of the picture of one model, pixels")
         ->capture_default_str()

@@ -231,8 +231,14 @@ class Loading {
   }
 
   void add_cloud(const fs::path& path) {
+    LoadOptions load = job_.load;
+    load.other_columns = KeptColumns::colors;
     const PointCloud cloud =
-        load_cloud(std::span(&path, 1), job_.load, session_.executor, session_.progress).first;
+        load_cloud(std::span(&path, 1), load, session_.executor, session_.progress).first;
+    if (!cloud.others.columns.empty())
+      session_.progress.warn(path.string() +
+                             ": the viewer does not show its colours (red, green, blue); 'render' "
+                             "does");
     if (cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
     crs_.add(path, cloud.crs);
     add_points(name_of(path), cloud, {});
@@ -289,8 +295,9 @@ class Loading {
 LoadedView load_view(const ViewJob& job, Session& session) {
   const Sorted sorted = sorted_inputs(job);
   if (sorted.clouds.empty() && !job.cloud_option.empty()) {
-    throw Error(ErrorKind::usage,
-                job.cloud_option + " has no effect: no points are shown (--cloud)");
+    throw Error(ErrorKind::usage, job.cloud_option +
+                                      " has no effect: no points are shown (--cloud shows points, "
+                                      "--poses a trajectory)");
   }
   if (sorted.model.empty() && job.sensor_is_asked) {
     throw Error(ErrorKind::usage, "--sensor has no effect: the input has no model to simulate in");

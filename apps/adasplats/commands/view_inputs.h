@@ -43,7 +43,7 @@ struct ViewJob {
 /// The content of the page, and the model that it simulates in.
 struct LoadedView {
   std::unique_ptr<ModelScene> model;   ///< null: a city, or points alone
-  std::unique_ptr<CityScene> city;     ///< null: none whose tiles stay on disk
+  std::unique_ptr<CityScene> city;     ///< null: no city with tiles on disk
   std::unique_ptr<CityPicker> picker;  ///< null: no city
   ViewScene scene;                     ///< refers to these
 };

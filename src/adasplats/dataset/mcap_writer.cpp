@@ -19,12 +19,14 @@ McapChannel ros_channel(std::string topic, std::string_view type, std::string de
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& path, double later_s)
+McapWriter::McapWriter(const std::filesystem::path& path, double later_s, std::string_view labels)
     : file_(path, "ros2"),
       later_s_(later_s),
       transforms_(file_.add_channel(ros_channel("/tf", kTransformsType, transforms_definition()))),
       points_(
-          file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {}
+          file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {
+  if (!labels.empty()) file_.add_metadata(kMcapMetadataName, kMcapLabelsKey, labels);
+}
 
 std::vector<McapMessage> McapWriter::messages(const ScanView& scan) const {
   Trajectory poses = ros_poses_of(scan);

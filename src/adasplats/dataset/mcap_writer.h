@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "adasplats/io/mcap/mcap_file.h"
@@ -18,8 +19,11 @@ namespace adasplats {
 /// Atomic; memory: three times the largest scan.
 class McapWriter {
  public:
-  /// Adds `later_s` to all times. Errors: cannot_create, io.
-  explicit McapWriter(const std::filesystem::path& path, double later_s = 0);
+  /// Adds `later_s` to all times. `labels`: the scheme of the classes, in the metadata record
+  /// kMcapMetadataName;
+  /// empty: none. Errors: cannot_create, io.
+  explicit McapWriter(const std::filesystem::path& path, double later_s = 0,
+                      std::string_view labels = {});
 
   /// The messages of a scan. Thread-safe.
   /// Errors: data (a time that ROS cannot express: ros_time_ns).

@@ -82,10 +82,11 @@ class FileWriter final : public WriterWithPoses {
 /// Writes all scans as messages of one file.
 class MessageWriter final : public WriterWithPoses {
  public:
-  MessageWriter(std::filesystem::path folder, double later_s)
+  MessageWriter(std::filesystem::path folder, double later_s, const LabelScheme* labels)
       : WriterWithPoses(std::move(folder)),
         later_s_(later_s),
-        writer_(this->folder() / "scans.mcap", later_s) {}
+        writer_(this->folder() / "scans.mcap", later_s,
+                labels == nullptr ? std::string_view() : labels->name()) {}
 
   EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
     EncodedScan encoded;
@@ -135,7 +136,7 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
   if (format == ScanFormat::pcap) return make_packet_writer(folder, options);
   if (format == ScanFormat::mcap)
-    return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive));
+    return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive), options.labels);
   return std::make_unique<FileWriter>(folder, format, options);
 }
 

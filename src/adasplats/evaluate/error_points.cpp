@@ -15,6 +15,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/cloud_metrics.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
@@ -36,10 +37,6 @@ constexpr double kFarthest_m = 100e3;
 // In lower case, the most common first.
 const std::initializer_list<std::string_view> kErrorNames = {"error_m", "scalar_error_m",
                                                              "scalar_c2c_absolute_distances"};
-const std::initializer_list<std::string_view> kClassNames = {"label", "class", "scalar_label",
-                                                             "scalar_class"};
-const std::initializer_list<std::string_view> kIntensityNames = {"intensity", "scalar_intensity"};
-
 const std::initializer_list<std::string_view> kSplatNames = {"splat", "scalar_splat"};
 
 const Column* first_of(const Table& table, std::initializer_list<std::string_view> names) {
@@ -246,9 +243,9 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
     return std::isfinite(narrow) ? narrow : kNoError;
   };
   for (const std::uint32_t i : rows) points.errors_m.push_back(finite(errors.as_double(i)));
-  if (const Column* const classes = first_of(table, kClassNames))
+  if (const Column* const classes = find_column(table, PointColumn::classification))
     for (const std::uint32_t i : rows) points.cloud.classes.push_back(class_at(*classes, i, path));
-  if (const Column* const intensities = first_of(table, kIntensityNames))
+  if (const Column* const intensities = find_column(table, PointColumn::intensity))
     for (const std::uint32_t i : rows)
       points.cloud.intensities.push_back(finite(intensities->as_double(i)));
   if (const Column* const splats = first_of(table, kSplatNames))

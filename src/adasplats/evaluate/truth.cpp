@@ -22,11 +22,12 @@ namespace {
 constexpr float kBleedingMargin_m = 0.1F;
 
 std::vector<std::array<std::uint32_t, 4>> neighbors_on_rings(const LidarModel& sensor) {
-  std::vector<std::array<std::uint32_t, 4>> neighbors(sensor.free_pattern.size(),
+  const std::vector<Firing> firings = firings_of(sensor);
+  std::vector<std::array<std::uint32_t, 4>> neighbors(firings.size(),
                                                       {kNoBeam, kNoBeam, kNoBeam, kNoBeam});
   std::vector<std::uint32_t> last_of_ring(sensor.rings(), kNoBeam);
   for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
-    std::uint32_t& last = last_of_ring[sensor.free_pattern[i].ring];
+    std::uint32_t& last = last_of_ring[firings[i].ring];
     if (last != kNoBeam) {
       neighbors[i][0] = last;
       neighbors[last][1] = i;
@@ -226,7 +227,7 @@ TruthResult result_of(const std::vector<TruthBeam>& beams, const LabelScheme* la
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 4>> beam_neighbors(const LidarModel& sensor) {
-  if (!sensor.free_pattern.empty()) return neighbors_on_rings(sensor);
+  if (!sensor.free_pattern.empty() || sensor.has_window()) return neighbors_on_rings(sensor);
   const std::uint32_t columns = sensor.columns;
   const auto rings = static_cast<std::uint32_t>(sensor.rings());
   std::vector<std::array<std::uint32_t, 4>> neighbors;

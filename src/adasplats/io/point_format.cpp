@@ -108,6 +108,14 @@ void keep_rows_within(const Extent& extent, const Path& path, Table& table) {
   keep_rows(kept, table);
 }
 
+/// What converts a file of another program; empty: unknown.
+std::string conversion_of(const Path& path) {
+  if (lower_case(path.extension().string()) != ".osf") return "";
+  const std::string stem = path.stem().string();
+  return "; an Ouster recording: convert it to packets, ouster-cli source " + stem + ".osf save " +
+         stem + ".pcap";
+}
+
 }  // namespace
 
 std::span<const PointFormat> point_formats() { return kFormats; }
@@ -130,7 +138,8 @@ const PointFormat& format_of_file(const Path& path) {
   if (by_extension != nullptr) return *by_extension;
   if (by_bytes != nullptr) return *by_bytes;
   throw data_error({path, {}, {}}, "unknown format " + shown(path.extension().string()) +
-                                       ", supported are " + supported_extensions());
+                                       ", supported are " + supported_extensions() +
+                                       conversion_of(path));
 }
 
 std::string point_format_names() {

@@ -39,6 +39,8 @@ TEST(ReadPoints, ByFirstBytesWithoutAKnownExtension) {
   EXPECT_EQ(read_points(folder.file("cloud", kPcd)).rows, 1U);
   expect_error(ErrorKind::data, {"unknown format '.obj'", ".ply, .pcd, .las"},
                [&] { read_points(folder.file("a.obj", "v 1 2 3\n")); });
+  expect_error(ErrorKind::data, {"unknown format '.osf'", "ouster-cli source a.osf save a.pcap"},
+               [&] { read_points(folder.file("a.osf", "OSF")); });
 }
 
 TEST(ReadPoints, ExtensionAndFirstBytesMustAgree) {

@@ -127,6 +127,7 @@ std::vector<Rgb> colors_of(PointCloud& cloud, const LabelScheme* labels,
         throw Error(ErrorKind::usage, "color by intensity: the input has no intensities");
       return point_colors(cloud, labels, ImageColor::intensity, {});
     case ExportColor::height: return colors_by_height(cloud);
+    case ExportColor::rgb: return point_colors(cloud, labels, ImageColor::rgb, {});
   }
   return {};
 }
@@ -159,11 +160,36 @@ ExportResult export_model(const ExportJob& job, ExportFormat format, Session& se
   return {model.size(), "splats"};
 }
 
+/// Warns of the columns of a file that glTF has no field for.
+void warn_of_dropped(const fs::path& output, const PointCloud& cloud, ProgressSink& progress) {
+  std::vector<std::string> names;
+  const bool has_colors = !file_colors(cloud).empty();
+  for (const Column& column : cloud.others.columns) {
+    const bool is_color = column.name == "red" || column.name == "green" || column.name == "blue";
+    if (!has_colors || !is_color) names.push_back(column.name);
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  if (!list.empty())
+    progress.warn(output.string() + ": glTF has no fields for " + list +
+                  ", which are dropped (.ply, .las and .laz keep them)");
+}
+
 ExportResult export_cloud(const ExportJob& job, ExportFormat format, Session& session) {
   const std::span inputs(&job.input, 1);
-  const std::optional<LabelScheme> labels = label_scheme_for(job.labels, inputs);
-  auto [cloud, report] = load_cloud(inputs, job.load, session.executor, session.progress);
+  LoadOptions load = job.load;
+  load.other_columns = KeptColumns::all;
+  const std::optional<LabelScheme> labels =
+      label_scheme_for(job.labels, inputs, job.load.label_field);
+  auto [cloud, report] = load_cloud(inputs, load, session.executor, session.progress);
+  if (labels) cloud.label_scheme = scheme_reference(job.labels, *labels);
+  if (!report.drives.empty() && !report.timed && !is_kitti_sequence(job.input))
+    session.progress.warn(
+        job.input.string() +
+        ": of the points of a drive, positions, sensor positions, intensities, classes, instances, "
+        "lasers and scan numbers are exported; times and other fields are dropped");
   if (format == ExportFormat::glb) {
+    warn_of_dropped(job.output, cloud, session.progress);
     const std::vector<Rgb> colors = colors_of(cloud, labels ? &*labels : nullptr, job.color);
     save_cloud_glb(job.output, cloud, colors);
   } else {
@@ -195,7 +221,8 @@ ExportResult export_scans(const ExportJob& job, Session& session) {
       chosen_scans({job.load.first_scan, job.load.scan_count, job.load.scan_stride},
                    sequence.scans.size(), job.input);
   ExportResult result{0, "scans"};
-  McapWriter writer(job.output);
+  const std::optional<LabelScheme> labels = label_scheme_for({}, std::span(&job.input, 1));
+  McapWriter writer(job.output, 0, labels ? labels->name() : std::string());
   session.progress.begin_step("writing scans", chosen.size());
   for (const std::size_t index : chosen) {
     const std::size_t dropped_before = result.dropped;

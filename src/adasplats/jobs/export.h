@@ -26,11 +26,12 @@ inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"laz", ExportFormat::laz},
     {"mcap", ExportFormat::mcap}};
 /// What colours show.
-enum class ExportColor : std::uint8_t { semantic, intensity, height };
+enum class ExportColor : std::uint8_t { semantic, intensity, height, rgb };
 inline constexpr std::pair<std::string_view, ExportColor> kExportColors[] = {
     {"class", ExportColor::semantic},
     {"intensity", ExportColor::intensity},
-    {"height", ExportColor::height}};
+    {"height", ExportColor::height},
+    {"rgb", ExportColor::rgb}};
 
 /// A splat model, a point cloud or the scans of a sequence, for other programs.
 struct ExportJob {
@@ -38,7 +39,7 @@ struct ExportJob {
   /// Else that of the output's ending, where that is clear.
   std::optional<ExportFormat> format;
   std::string labels;  ///< scheme of the classes; empty: what the model says
-  /// Else by class where classes and their scheme are known, else by intensity, else by height.
+  /// Else default_color(): the colours of the file, else by class, intensity or height.
   std::optional<ExportColor> color;
   LoadOptions load;  ///< of clouds and sequences
   /// The setting that was given and is for these alone; empty: none.

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A sensor as a list of rays: azimuth_deg, elevation_deg[, time_s[, ring]].
+// A sensor as a list of rays: azimuth_deg, elevation_deg[, time_s[, ring]]; and the tables of
+// livox_laser_simulation: Time/s, Azimuth/deg, Zenith/deg.
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
@@ -16,8 +20,50 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_deg", "time_s",
-                                                     "ring"};
+using Word = std::string_view;
+
+enum class RayColumn : std::uint8_t { azimuth, elevation, time, ring };
+constexpr std::array<Word, 4> kFields = {"azimuth_deg", "elevation_deg", "time_s", "ring"};
+
+struct RayName {
+  Word word;
+  RayColumn column;
+  bool is_zenith = false;  ///< the angle from +z: 90 degrees minus the elevation
+};
+constexpr RayName kRayNames[] = {{"azimuth", RayColumn::azimuth},
+                                 {"elevation", RayColumn::elevation},
+                                 {"zenith", RayColumn::elevation, true},
+                                 {"time", RayColumn::time},
+                                 {"timestamp", RayColumn::time},
+                                 {"offset_time", RayColumn::time},
+                                 {"ring", RayColumn::ring},
+                                 {"line", RayColumn::ring},
+                                 {"laser", RayColumn::ring},
+                                 {"laser_id", RayColumn::ring}};
+constexpr double kRadian_deg = 180 / std::numbers::pi;
+/// The factor to degrees or seconds.
+struct RayUnit {
+  Word word;
+  double factor;
+  bool is_angle;
+};
+constexpr RayUnit kRayUnits[] = {{"deg", 1, true},
+                                 {"degree", 1, true},
+                                 {"degrees", 1, true},
+                                 {"rad", kRadian_deg, true},
+                                 {"radian", kRadian_deg, true},
+                                 {"radians", kRadian_deg, true},
+                                 {"s", 1, false},
+                                 {"sec", 1, false},
+                                 {"ms", 1e-3, false},
+                                 {"us", 1e-6, false},
+                                 {"ns", 1e-9, false}};
+constexpr double kLivoxScans_hz = 10;
+/// Points a second of Livox's sensors (their user manuals), by words in file names.
+constexpr std::pair<Word, double> kLivoxRates_hz[] = {
+    {"mid40", 100e3}, {"mid-40", 100e3},  {"mid70", 100e3}, {"mid-70", 100e3},
+    {"avia", 240e3},  {"horizon", 240e3}, {"tele", 240e3},  {"hap", 452e3}};
+constexpr double kMid360Rate_hz = 200e3;
 
 /// Longer than any scan of a stationary scanner, and small enough for a float to resolve seconds.
 constexpr double kLongestScan_s = 86'400;
@@ -30,8 +76,49 @@ std::uint16_t parse_ring(std::string_view text, const FilePosition& place) {
   return *ring;
 }
 
-/// The column of each of kFields; -1: none.
-using Columns = std::array<int, kFields.size()>;
+/// The columns of a table; an index of -1: none.
+struct Columns {
+  std::array<int, kFields.size()> of = {0, 1, 2, 3};
+  std::array<double, kFields.size()> factors = {1, 1, 1, 1};
+  bool is_zenith = false;
+  bool has_units = false;  ///< of the angles
+};
+
+/// "Zenith/deg", "zenith [deg]", "zenith_deg": a name, and the unit behind it.
+std::pair<std::string, std::string> split_ray_name(std::string_view field) {
+  std::string name = lower_case(field);
+  while (!name.empty() && (name.back() == ']' || name.back() == ')')) name.pop_back();
+  const std::size_t at = name.find_last_of("/[(_ ");
+  if (at == std::string::npos) return {name, ""};
+  const std::string unit = name.substr(at + 1);
+  if (std::ranges::find(kRayUnits, unit, &RayUnit::word) == std::end(kRayUnits)) return {name, ""};
+  name.resize(name.find_last_not_of("/[(_ ", at) + 1);
+  return {name, unit};
+}
+
+void take_name(std::string_view field, int index, const FilePosition& place, Columns& columns) {
+  const auto [word, unit_word] = split_ray_name(field);
+  const auto* const name = std::ranges::find(kRayNames, word, &RayName::word);
+  const auto* const unit = std::ranges::find(kRayUnits, unit_word, &RayUnit::word);
+  const bool has_unit = unit != std::end(kRayUnits);
+  const auto takes_unit = [](RayColumn column, bool is_angle) {
+    return column != RayColumn::ring && is_angle == (column != RayColumn::time);
+  };
+  if (name == std::end(kRayNames) || (has_unit && !takes_unit(name->column, unit->is_angle))) {
+    const auto nearest = nearest_word(lower_case(field), {kFields.begin(), kFields.end()});
+    throw data_error(place, "unknown column " + shown(field) +
+                                (nearest ? ", did you mean '" + *nearest + "'?"
+                                         : ", expected azimuth_deg, elevation_deg (or zenith_deg), "
+                                           "time_s, ring"));
+  }
+  const auto column = static_cast<std::size_t>(name->column);
+  if (columns.of[column] >= 0) throw data_error(place, "two columns " + shown(field));
+  columns.of[column] = index;
+  if (name->is_zenith) columns.is_zenith = true;
+  if (!has_unit) return;
+  columns.factors[column] = unit->factor;
+  if (unit->is_angle) columns.has_units = true;
+}
 
 /// Reads the names of the columns, in any order; nothing if the line is a ray.
 std::optional<Columns> read_header(std::string_view line, const FilePosition& place) {
@@ -43,53 +130,99 @@ std::optional<Columns> read_header(std::string_view line, const FilePosition& pl
   };
   if (!std::ranges::all_of(names, starts_with_letter)) return std::nullopt;
   Columns columns;
-  columns.fill(-1);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto field = std::ranges::find(kFields, lower_case(names[i]));
-    if (field == kFields.end()) {
-      const auto nearest = nearest_word(std::string(names[i]), {kFields.begin(), kFields.end()});
-      throw data_error(place,
-                       "unknown column " + shown(names[i]) +
-                           (nearest ? ", did you mean '" + *nearest + "'?"
-                                    : ", expected azimuth_deg, elevation_deg, time_s, ring"));
-    }
-    int& column = columns[static_cast<std::size_t>(field - kFields.begin())];
-    if (column >= 0) throw data_error(place, "two columns " + shown(names[i]));
-    column = static_cast<int>(i);
-  }
+  columns.of.fill(-1);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    take_name(names[i], static_cast<int>(i), place, columns);
   for (const std::size_t needed : {0, 1})
-    if (columns[needed] < 0)
+    if (columns.of[needed] < 0)
       throw data_error(place, "no column '" + std::string(kFields[needed]) + "'");
   return columns;
 }
 
-Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
-                 const FilePosition& place) {
+/// Elevation in degrees of an angle in the unit of its column.
+double elevation_deg(double angle, const Columns& columns, std::string_view text,
+                     const FilePosition& place) {
+  const double turned_deg = columns.factors[1] * angle;
+  const double elevation = columns.is_zenith ? 90 - turned_deg : turned_deg;
+  constexpr double kRounding_deg = 1e-3;
+  if (std::fabs(elevation) > 90 + kRounding_deg)
+    throw data_error(place, (columns.is_zenith ? "zenith is " : "elevation is ") + shown(text) +
+                                ", expected " + (columns.is_zenith ? "0 to 180" : "-90 to 90") +
+                                " degrees");
+  return elevation;
+}
+
+/// A ray, with the time in double precision.
+struct TimedRay {
+  Firing firing;
+  double azimuth_deg = 0, elevation_deg = 0, time_s = 0;
+  double time = 0;  ///< as written
+};
+
+TimedRay parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
+                   const FilePosition& place) {
   const std::vector<std::string_view> fields = fields_of(line, ',');
   const auto has = [&](std::size_t field) {
-    return columns[field] >= 0 && static_cast<std::size_t>(columns[field]) < fields.size();
+    return columns.of[field] >= 0 && static_cast<std::size_t>(columns.of[field]) < fields.size();
   };
-  const auto max_fields = static_cast<std::size_t>(*std::ranges::max_element(columns)) + 1;
+  const auto max_fields = static_cast<std::size_t>(*std::ranges::max_element(columns.of)) + 1;
   if (!has(0) || !has(1) || fields.size() > max_fields)
     throw data_error(place, std::to_string(fields.size()) +
                                 " values, expected azimuth_deg, elevation_deg[, time_s[, ring]]");
-  const auto number = [&](std::size_t field) {
-    return finite_number(fields[static_cast<std::size_t>(columns[field])], kFields[field], place);
+  const auto text = [&](std::size_t field) {
+    return fields[static_cast<std::size_t>(columns.of[field])];
   };
-  const double time_s = has(2) ? number(2) : 0.0;
-  if (!(time_s >= 0))
+  const auto number = [&](std::size_t field) {
+    return finite_number(text(field), kFields[field], place);
+  };
+  TimedRay ray;
+  ray.time = has(2) ? number(2) : 0.0;
+  ray.time_s = columns.factors[2] * ray.time;
+  if (!(ray.time_s >= 0))
     throw data_error(place, "time_s is negative, expected seconds since the start of the scan");
-  if (time_s > kLongestScan_s)
-    throw data_error(place, "time_s is " + shown(fields[static_cast<std::size_t>(columns[2])]) +
+  if (ray.time_s > kLongestScan_s && !columns.is_zenith)
+    throw data_error(place, "time_s is " + shown(text(2)) +
                                 ", expected seconds since the start of the scan, at most a day");
-  const std::uint16_t ring =
-      has(3) ? parse_ring(fields[static_cast<std::size_t>(columns[3])], place) : std::uint16_t{0};
-  return {direction_of(radians(number(0)), radians(number(1))),
-          ring,
-          index,
-          static_cast<float>(time_s),
-          {}};
+  const std::uint16_t ring = has(3) ? parse_ring(text(3), place) : std::uint16_t{0};
+  ray.azimuth_deg = columns.factors[0] * number(0);
+  ray.elevation_deg = elevation_deg(number(1), columns, text(1), place);
+  ray.firing = {direction_of(radians(ray.azimuth_deg), radians(ray.elevation_deg)),
+                ring,
+                index,
+                static_cast<float>(ray.time_s),
+                {}};
+  return ray;
 }
+
+/// Rejects tables whose angles were not filled in, or are in another unit.
+class RayAngles {
+ public:
+  void add(const TimedRay& ray, bool is_zenith) {
+    ++count_;
+    azimuth_ = std::max(azimuth_, std::fabs(ray.azimuth_deg));
+    const double up = is_zenith ? 90 - ray.elevation_deg : ray.elevation_deg;
+    elevation_ = std::max(elevation_, std::fabs(up));
+  }
+  /// Narrow patterns with a stated unit are possible, a sensor that looks only upwards is not.
+  std::optional<std::string> fault(const Columns& columns) const {
+    constexpr std::size_t kMinRays = 16;
+    constexpr double kTurn = 2 * std::numbers::pi + 1e-3;
+    if (count_ < kMinRays) return std::nullopt;
+    if (azimuth_ == 0 && elevation_ == 0) return "all angles are 0";
+    const bool in_degrees = columns.factors[0] == 1 && columns.factors[1] == 1;
+    const bool may_be_narrow = columns.has_units && !columns.is_zenith;
+    const double max_elevation = columns.is_zenith ? kTurn / 2 : kTurn / 4;
+    if (!in_degrees || may_be_narrow || azimuth_ > kTurn || elevation_ > max_elevation)
+      return std::nullopt;
+    return "its angles are at most " + exact_text(azimuth_) + " and " + exact_text(elevation_) +
+           " degrees, are they in radians? Name the columns azimuth_rad, elevation_rad (or "
+           "zenith_rad), or azimuth_deg, elevation_deg";
+  }
+
+ private:
+  std::size_t count_ = 0;
+  double azimuth_ = 0, elevation_ = 0;
+};
 
 /// Scans per second: a scan ends one mean interval after its last firing time. 10 if all rays have
 /// the same time.
@@ -105,6 +238,42 @@ double rotation_hz_of(const std::vector<Firing>& firings) {
   return 1.0 / (last_s + (last_s - static_cast<double>(times_s.front())) / gaps);
 }
 
+/// The times of Livox's tables, in order. In some of them the column of times numbers the rows:
+/// then the points a second of the sensor in the file's name, or of a Mid-360, give the times.
+void set_livox_times(bool are_row_numbers, const std::filesystem::path& path, LidarModel& model) {
+  std::vector<Firing>& firings = model.free_pattern;
+  if (are_row_numbers) {
+    const std::string name = lower_case(path.filename().string());
+    double rate_hz = kMid360Rate_hz;
+    for (const auto& [word, each_hz] : kLivoxRates_hz)
+      if (name.find(word) != std::string::npos) rate_hz = each_hz;
+    for (std::size_t i = 0; i < firings.size(); ++i)
+      firings[i].time_s = static_cast<float>(static_cast<double>(i) / rate_hz);
+    model.source += ", " + decimal_text(rate_hz) + " rows per second";
+  }
+  std::ranges::stable_sort(firings, {}, &Firing::time_s);
+  for (std::uint32_t i = 0; i < firings.size(); ++i) firings[i].column = i;
+  if (static_cast<double>(firings.back().time_s) > kLongestScan_s)
+    throw data_error({path, {}, {}}, "its times reach " +
+                                         exact_text(static_cast<double>(firings.back().time_s)) +
+                                         " s, expected at most a day");
+}
+
+/// Sets how long the pattern and a scan last.
+void set_scan_length(const Columns& columns, bool are_row_numbers,
+                     const std::filesystem::path& path, LidarModel& model) {
+  std::vector<Firing>& firings = model.free_pattern;
+  const bool is_livox = columns.is_zenith && columns.of[2] >= 0;
+  if (is_livox) set_livox_times(are_row_numbers, path, model);
+  model.rotation_hz = rotation_hz_of(firings);
+  if (model.rotation_hz > kMaxScans_hz)
+    throw data_error({path, {}, {}},
+                     "the times yield " + exact_text(model.rotation_hz) +
+                         " scans a second, expected at most a million: time_s is in seconds");
+  if (std::ranges::is_sorted(firings, {}, &Firing::time_s)) model.pattern_s = 1 / model.rotation_hz;
+  if (is_livox) model.rotation_hz = kLivoxScans_hz;
+}
+
 }  // namespace
 
 LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& path) {
@@ -112,7 +281,10 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   file.model.name = path.stem().string();
   file.model.source = path.filename().string();
   std::vector<Firing>& firings = file.model.free_pattern;
-  Columns columns = {0, 1, 2, 3};
+  Columns columns;
+  RayAngles angles;
+  double first_time = 0;
+  bool are_row_numbers = true;
   FilledLines lines(text, path);
   bool first = true;
   while (const auto line = lines.next()) {
@@ -129,15 +301,17 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
     }
     if (firings.size() >= std::numeric_limits<std::uint32_t>::max())
       throw data_error(lines.place(), "more than 2^32 - 1 rays");
-    firings.push_back(
-        parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place()));
+    const TimedRay ray =
+        parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place());
+    angles.add(ray, columns.is_zenith);
+    if (firings.empty()) first_time = ray.time;
+    are_row_numbers =
+        are_row_numbers && ray.time == first_time + static_cast<double>(firings.size());
+    firings.push_back(ray.firing);
   }
   if (firings.empty()) throw data_error({path, {}, {}}, "no rays");
-  file.model.rotation_hz = rotation_hz_of(firings);
-  if (file.model.rotation_hz > kMaxScans_hz)
-    throw data_error({path, {}, {}},
-                     "the times yield " + exact_text(file.model.rotation_hz) +
-                         " scans a second, expected at most a million: time_s is in seconds");
+  if (const auto fault = angles.fault(columns)) throw data_error({path, {}, {}}, *fault);
+  set_scan_length(columns, are_row_numbers, path, file.model);
   return file;
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
+#include <map>
+#include <numbers>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +15,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/lidar_library.h"
 
@@ -63,7 +66,7 @@ void list_firings(LidarFile& file) {
   for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring) {
     const std::uint32_t phase = file.column_phases.empty() ? 0 : file.column_phases[ring];
     for (std::uint32_t column = phase; column < model.columns; column += file.column_steps[ring])
-      model.free_pattern.push_back(turned_firing(model, ring, column));
+      if (model.fires_in(column)) model.free_pattern.push_back(turned_firing(model, ring, column));
   }
 }
 
@@ -127,7 +130,11 @@ void LidarFile::clear_pattern() {
   model.drop.reset();
   model.body.reset();
   model.packets.reset();
+  model.window_begin = 0;
+  model.window_end = 1;
+  model.packet_profile.clear();
   model.free_pattern.clear();
+  model.pattern_s = 0;
   model.rosette.reset();
   column_steps.clear();
   column_phases.clear();
@@ -152,6 +159,35 @@ LidarModel finished_model(LidarFile file) {
   sort_beams(file);
   list_firings(file);
   return std::move(file.model);
+}
+
+std::optional<std::string> angle_fault(const LidarModel& model) {
+  const std::vector<double>& elevations_rad = model.elevations_rad;
+  const std::vector<double>& azimuths_rad = model.azimuth_offsets_rad;
+  const std::size_t beams = elevations_rad.size();
+  if (beams < 2) return std::nullopt;
+  const auto is_zero = [](double angle_rad) { return angle_rad == 0; };
+  if (std::ranges::all_of(elevations_rad, is_zero))
+    return "all " + std::to_string(beams) +
+           " beams have the elevation 0; expected the angles of the sensor";
+  std::map<std::pair<double, double>, std::size_t> seen;
+  for (std::size_t beam = 0; beam < beams; ++beam) {
+    const auto [first, is_new] = seen.try_emplace({elevations_rad[beam], azimuths_rad[beam]}, beam);
+    if (!is_new)
+      return "beams " + std::to_string(first->second) + " and " + std::to_string(beam) +
+             " (from 0) have the same angles; expected one direction a beam";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> degrees_fault(const LidarModel& model) {
+  constexpr std::size_t kMinBeams = 8;
+  const auto [low, high] = std::ranges::minmax(model.elevations_rad);
+  const double span_deg = (high - low) * (180 / std::numbers::pi);
+  if (model.elevations_rad.size() < kMinBeams || span_deg > 2 || high == low) return std::nullopt;
+  return "the elevations of its " + std::to_string(model.elevations_rad.size()) +
+         " beams span only " + exact_text(std::round(1000 * span_deg) / 1000) +
+         " degrees; expected degrees, are they in radians?";
 }
 
 LidarFile default_rotating_lidar() {
@@ -212,6 +248,12 @@ LidarModel hdl_32_paper() { return library_model("hdl-32-paper"); }
 
 LidarModel load_lidar_model(const std::string& name_or_path) {
   return finished_model(read_lidar(name_or_path, 0));
+}
+
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name) {
+  LidarModel model = finished_model(read_ouster_json(metadata, name));
+  model.name = name;
+  return model;
 }
 
 }  // namespace adasplats

@@ -30,6 +30,12 @@ struct LidarFile {
 /// The error text if beams fire after the end of their column: "leave 27 us a column, but...".
 std::optional<std::string> column_fault(const LidarModel& model);
 
+/// The error text if all elevations of a manufacturer's file are 0, or two beams have the same
+/// ones. Both lists of angles have a value a beam, in the order of the file.
+std::optional<std::string> angle_fault(const LidarModel& model);
+/// The error text if angles from a file in degrees seem to be radians.
+std::optional<std::string> degrees_fault(const LidarModel& model);
+
 /// The model of a file: beams topmost first; beams that skip columns become a free pattern.
 LidarModel finished_model(LidarFile file);
 
@@ -46,6 +52,8 @@ LidarFile read_hesai_csv(std::string_view text, const std::filesystem::path& pat
 /// The binary angle correction of an AT128.
 LidarFile read_hesai_dat(std::string_view text, const std::filesystem::path& path);
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path);
+/// "LEGACY, RNG15_RFL8_NIR8, ...": the supported profiles of an Ouster's packets.
+std::string ouster_profiles();
 LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path);
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path);
 

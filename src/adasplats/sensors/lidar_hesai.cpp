@@ -23,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kSha256Digits = 64;
-
 struct Channel {
   int number = 0;
   double elevation_deg = 0;
@@ -69,6 +67,12 @@ double angle_deg(std::string_view text, std::string_view field, double limit,
   return angle;
 }
 
+/// Newer files end with their SHA-256 digest.
+bool is_digest(const std::vector<std::string_view>& fields) {
+  constexpr std::size_t kDigits = 64;
+  return fields.size() == 1 && fields[0].size() == kDigits &&
+         fields[0].find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
 bool is_hesai_start(std::string_view line) { return lower_case(line).starts_with("eeff"); }
 
 std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
@@ -81,7 +85,7 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
   std::vector<Channel> channels;
   while (const auto line = lines.next()) {
     const auto fields = fields_of(*line, ',');
-    if (fields[0].size() == kSha256Digits && !channels.empty()) break;
+    if (is_digest(fields)) continue;
     if (fields.size() <= std::max(columns.elevation, columns.azimuth))
       throw data_error(lines.place(), std::to_string(fields.size()) +
                                           " values, expected Channel, Elevation, Azimuth");
@@ -93,6 +97,11 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
                         angle_deg(fields[columns.azimuth], "azimuth", 360, lines.place())});
   }
   if (channels.empty()) throw data_error({path, {}, {}}, "the table has no channels");
+  const int last = std::ranges::max(channels, {}, &Channel::number).number;
+  if (static_cast<std::size_t>(last) != channels.size())
+    throw data_error({path, {}, {}}, "the table has " + std::to_string(channels.size()) +
+                                         " channels, but their numbers go up to " +
+                                         std::to_string(last) + "; expected 1, 2, 3, ...");
   return channels;
 }
 
@@ -266,6 +275,8 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
     model.elevations_rad.push_back(radians(channel.elevation_deg));
     model.azimuth_offsets_rad.push_back(-radians(channel.azimuth_deg));
   }
+  for (const auto& fault : {angle_fault(model), degrees_fault(model)})
+    if (fault) throw data_error({path, {}, {}}, *fault);
   if (format) {
     model.packets.emplace().format = *format;
     for (const Channel& channel : channels)

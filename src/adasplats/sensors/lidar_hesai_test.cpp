@@ -85,6 +85,25 @@ TEST_F(HesaiCsv, WrongFilesAreRefusedWithTheLine) {
   expect_data_error(header + "1,2,1e300\n", "azimuth is '1e300'");
 }
 
+TEST_F(HesaiCsv, ADigestMayFollowTheAngles) {
+  EXPECT_EQ(load(std::string(kThree) + std::string(64, 'a') + "\r\n").rings(), 3U);
+  expect_data_error(std::string(kThree) + std::string(63, 'a') + "\n", "my_Angle.csv:5: 1 values");
+}
+
+TEST_F(HesaiCsv, AnglesThatAreNotThoseOfBeamsAreErrors) {
+  const auto table = [](int channels, const auto& elevation_of) {
+    std::string text = "Channel,Elevation,Azimuth\n";
+    for (int k = 0; k < channels; ++k)
+      text += std::to_string(k + 1) + "," + std::to_string(elevation_of(k)) + ",0\n";
+    return text;
+  };
+  expect_data_error(table(16, [](int) { return 0.0; }), "all 16 beams have the elevation 0");
+  expect_data_error(table(16, [](int k) { return k / 2 + 1.0; }), "beams 0 and 1 (from 0)");
+  expect_data_error(table(16, [](int k) { return 0.26 - 0.035 * k; }), "are they in radians?");
+  expect_data_error("Channel,Elevation,Azimuth\n1,5,0\n3,4,0\n",
+                    "has 2 channels, but their numbers go up to 3");
+}
+
 TEST_F(HesaiCsv, WrongFiringTimesAreRefusedWithTheLine) {
   const auto reject = [&](const std::string& times, const std::string& says) {
     folder_.write("my_firetime.csv", times);

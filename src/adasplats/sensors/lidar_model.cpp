@@ -26,6 +26,33 @@ void check(const LidarModel& model) {
   if (!(model.rotation_hz > 0)) throw std::logic_error("a LiDAR model needs rotation_hz > 0");
 }
 
+/// Whether the free pattern lasts longer than a scan.
+bool continues(const LidarModel& model) {
+  constexpr double kRounding = 1e-6;
+  return !model.free_pattern.empty() && model.pattern_s * model.rotation_hz > 1 + kRounding;
+}
+
+/// The part of a pattern that belongs to a scan. Scans have equal numbers of rays, so no ray is
+/// skipped or repeated between two scans.
+std::vector<Firing> continued_firings(const LidarModel& model, std::uint64_t scan_index) {
+  const std::vector<Firing>& pattern = model.free_pattern;
+  const std::size_t count = model.rays_per_scan();
+  const std::size_t first = static_cast<std::size_t>(scan_index % pattern.size()) *
+                            (count % pattern.size()) % pattern.size();
+  const auto begin_s = static_cast<double>(pattern[first].time_s);
+  std::vector<Firing> firings;
+  firings.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = first + i;
+    Firing firing = pattern[place % pattern.size()];
+    const double round_s = model.pattern_s * static_cast<double>(place / pattern.size());
+    firing.column = static_cast<std::uint32_t>(i);
+    firing.time_s = static_cast<float>(static_cast<double>(firing.time_s) + round_s - begin_s);
+    firings.push_back(firing);
+  }
+  return firings;
+}
+
 }  // namespace
 
 double full_e2_angle_rad(double stated_rad, DivergenceKind kind) {
@@ -84,9 +111,27 @@ Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t co
   return firing;
 }
 
+bool LidarModel::fires_in(std::uint32_t column) const {
+  const double share = static_cast<double>(column) / columns;
+  if (window_begin <= window_end) return share >= window_begin && share < window_end;
+  return share >= window_begin || share < window_end;
+}
+
 std::size_t LidarModel::rays_per_scan() const {
   if (rosette) return rosette_rays_per_scan(*this);
-  return free_pattern.empty() ? elevations_rad.size() * columns : free_pattern.size();
+  if (continues(*this)) {
+    const double share = 1 / (rotation_hz * pattern_s);
+    return std::max<std::size_t>(
+        1,
+        static_cast<std::size_t>(std::llround(share * static_cast<double>(free_pattern.size()))));
+  }
+  if (!free_pattern.empty()) return free_pattern.size();
+  std::size_t fired = columns;
+  if (has_window()) {
+    fired = 0;
+    for (std::uint32_t column = 0; column < columns; ++column) fired += fires_in(column) ? 1 : 0;
+  }
+  return elevations_rad.size() * fired;
 }
 
 std::size_t LidarModel::rings() const {
@@ -99,16 +144,29 @@ std::size_t LidarModel::rings() const {
 
 std::vector<Firing> firings_of(const LidarModel& model, std::uint64_t scan_index) {
   if (model.rosette) return rosette_firings(model, scan_index);
+  if (continues(model)) return continued_firings(model, scan_index);
   if (!model.free_pattern.empty()) return model.free_pattern;
   check(model);
   std::vector<Firing> firings;
   firings.reserve(model.rays_per_scan());
   for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring)
     for (std::uint32_t column = 0; column < model.columns; ++column)
-      firings.push_back(turned_firing(model, ring, column));
+      if (model.fires_in(column)) firings.push_back(turned_firing(model, ring, column));
   return firings;
 }
 
-bool repeats(const LidarModel& model) { return !model.rosette; }
+bool repeats(const LidarModel& model) { return !model.rosette && !continues(model); }
+
+bool fires_at_once(const LidarModel& model) {
+  if (!repeats(model)) return false;
+  const auto are_equal = [](const auto& values, const auto& time_of) {
+    return std::ranges::all_of(
+        values, [&](const auto& value) { return time_of(value) == time_of(values.front()); });
+  };
+  if (!model.free_pattern.empty())
+    return are_equal(model.free_pattern, [](const Firing& firing) { return firing.time_s; });
+  return model.columns == 1 &&
+         are_equal(model.firing_times_s, [](double time_s) { return time_s; });
+}
 
 }  // namespace adasplats

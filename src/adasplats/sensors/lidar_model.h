@@ -85,9 +85,14 @@ struct LidarModel {
   std::optional<VehicleBody> body;
   /// Layout of its UDP packets, if it is supported.
   std::optional<PacketLayout> packets;
+  /// The profile of an Ouster's packets if it is not supported; else empty.
+  std::string packet_profile;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
-  double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second
+  /// Beams fire from this share of a revolution to that one; the first can be larger: the window
+  /// contains the end of the revolution.
+  double window_begin = 0, window_end = 1;
+  double rotation_hz = 10.0;  ///< revolutions, or scans of a free pattern, a second
   double min_range_m = 0.0;
   double max_range_m = 120.0;
   double range_noise_m = 0.0;       ///< standard deviation of white noise on the range
@@ -99,12 +104,17 @@ struct LidarModel {
   DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< of the value in the source
   int max_returns = 1;                                       ///< reported echoes per firing
   bool clockwise = false;                                    ///< seen from above
-  std::vector<Firing> free_pattern;       ///< replaces beams x columns if not empty
+  std::vector<Firing> free_pattern;  ///< replaces beams x columns if not empty
+  /// Duration of the free pattern, s. If it exceeds a scan, each scan continues it where the one
+  /// before ended. 0: every scan has all its rays.
+  double pattern_s = 0;
   std::optional<RosettePattern> rosette;  ///< replaces both
   std::string source;                     ///< of the numbers: manual and page, or file
 
   std::size_t rays_per_scan() const;
   std::size_t rings() const;
+  bool has_window() const { return window_begin != 0 || window_end != 1; }
+  bool fires_in(std::uint32_t column) const;
 };
 
 /// The rays of one revolution ring by ring in the order of azimuth, or the free pattern unchanged.
@@ -114,6 +124,9 @@ std::vector<Firing> firings_of(const LidarModel& model, std::uint64_t scan_index
 
 /// Whether every scan has the same firings.
 bool repeats(const LidarModel& model);
+
+/// Whether all rays fire at the same time (a flash), so that motion does not distort a scan.
+bool fires_at_once(const LidarModel& model);
 
 /// Velodyne HDL-64 as in paper section "Velodyne HDL-64": 64 beams from +2.0 to -24.8 degrees, both
 /// included, 2250 columns, 120 m.
@@ -128,11 +141,16 @@ LidarModel hdl_32_paper();
 /// - JSON: the metadata that an Ouster sensor writes;
 /// - YAML or XML: a Velodyne calibration; CSV: Hesai's angles, with firing times from the file next
 ///   to them; the model with such beams supplies the rest; DAT: Hesai's angles of an AT128;
-/// - CSV of rays: azimuth_deg, elevation_deg[, time_s[, ring]].
+/// - CSV of rays: azimuth_deg, elevation_deg[, time_s[, ring]]; or Livox's tables, 10 scans a
+///   second: Time/s, Azimuth/deg, Zenith/deg.
 /// Beams are sorted, topmost first; beams that skip columns become a free pattern.
 /// Errors: usage (unknown name, with the nearest one), no_input, config (TOML: unknown key, with
 /// line), data (errors in other formats).
 LidarModel load_lidar_model(const std::string& name_or_path);
+
+/// The sensor of an Ouster's metadata that are no file; `name` is its name, and begins messages.
+/// Errors: data.
+LidarModel ouster_lidar_model(std::string_view metadata, const std::string& name);
 
 /// Names of the sensors in the library.
 std::vector<std::string> lidar_model_names();

@@ -357,7 +357,9 @@ TEST_F(LidarFiles, WrongLikenessIsRefusedWithItsLine) {
                   "at most 1446 columns");
   expect_contains(toml_failure("like = \"livox-mid-40\"\ncolumns = 4\n"), "does not fit");
   write("rays.csv", "0,0,0\n1,0,0.1\n");
-  expect_contains(toml_failure("like = \"rays.csv\"\nrotation_hz = 20\n"), "before the last ray");
+  const LidarModel half =
+      load_lidar_model(write("half.toml", "like = \"rays.csv\"\nrotation_hz = 10\n"));
+  EXPECT_EQ(half.rays_per_scan(), 1U);  // the pattern goes on in the next scan
   expect_contains(toml_failure("like = \"rays.csv\"\nclockwise = true\n"), "does not fit");
 }
 
@@ -526,6 +528,92 @@ TEST_F(LidarFiles, TheTimesOfACsvAreThoseOfAScan) {
   EXPECT_DOUBLE_EQ(load_lidar_model(write("t.csv", "0,0,0\n1,0,86400\n")).rotation_hz,
                    1.0 / (2 * 86'400));
   expect_contains(csv_failure("0,0,0\n0,1,1e-44\n"), "scans a second, expected at most a million");
+}
+
+// Oracle: the table; zenith counts from +z. livox_laser_simulation has this header.
+TEST_F(LidarFiles, ALivoxTableContinuesFromScanToScan) {
+  std::string text = "Time/s,Azimuth/deg,Zenith/deg\r\n";
+  constexpr int kRays = 250;  // of 0.25 s
+  for (int k = 0; k < kRays; ++k)
+    text += std::to_string(0.001 * k) + "," + std::to_string(k) + "," +
+            std::to_string(90 - 0.1 * k) + "\r\n";
+  const LidarModel model = load_lidar_model(write("avia.csv", text));
+  EXPECT_EQ(model.rotation_hz, 10);
+  EXPECT_EQ(model.rays_per_scan(), 100U);
+  EXPECT_FALSE(repeats(model));
+  EXPECT_FALSE(fires_at_once(model));
+  for (const std::uint64_t scan : {0U, 1U, 2U, 3U, 1000U}) {
+    const auto firings = firings_of(model, scan);
+    ASSERT_EQ(firings.size(), 100U);
+    for (std::size_t i = 0; i < firings.size(); ++i) {
+      const auto k = static_cast<double>((100 * scan + i) % kRays);
+      EXPECT_NEAR(elevation_deg(firings[i].direction), 0.1 * k, 1e-4);
+      EXPECT_NEAR(firings[i].time_s, 0.001 * static_cast<double>(i), 1e-6);
+      EXPECT_EQ(firings[i].column, i);
+    }
+  }
+  expect_direction(firings_of(model)[90].direction, {0, static_cast<float>(std::cos(9 * kDegree)),
+                                                     static_cast<float>(std::sin(9 * kDegree))});
+  // A shorter table is one scan.
+  const LidarModel brief =
+      load_lidar_model(write("b.csv", "Time/s,Azimuth/deg,Zenith/deg\n0,0,90\n0.01,90,45\n"));
+  EXPECT_EQ(brief.rotation_hz, 10);
+  EXPECT_EQ(firings_of(brief, 7).size(), 2U);
+  EXPECT_TRUE(repeats(brief));
+}
+
+// mid360.csv of livox_laser_simulation numbers its rows in the column Time/s; 4 s at 200 kHz.
+TEST_F(LidarFiles, ALivoxTableMayNumberItsRows) {
+  std::string text = "Time/s,Azimuth/deg,Zenith/deg\n";
+  for (int k = 1; k <= 90'000; ++k)
+    text += std::to_string(k) + "," + std::to_string(k % 360) + ",80\n";
+  const LidarModel mid = load_lidar_model(write("mid360.csv", text));
+  EXPECT_EQ(mid.rays_per_scan(), 20'000U);
+  EXPECT_NEAR(firings_of(mid)[200].time_s, 0.001, 1e-6);
+  EXPECT_NEAR(mid.pattern_s, 0.45, 1e-4);
+  EXPECT_EQ(load_lidar_model(write("avia.csv", text)).rays_per_scan(), 24'000U);
+  expect_contains(csv_failure("Time/s,Azimuth/deg,Zenith/deg\n0,0,90\n90000,0,91\n"), "a day");
+}
+
+// Oracle: half of the pattern, and then the other half.
+TEST_F(LidarFiles, AFasterScanHasAPartOfThePattern) {
+  LidarModel model = load_lidar_model(write("t.csv", "0,0,0\n1,0,0.025\n2,0,0.05\n3,0,0.075\n"));
+  EXPECT_EQ(firings_of(model, 1).size(), 4U);
+  model.rotation_hz = 20;
+  const auto second = firings_of(model, 1);
+  ASSERT_EQ(second.size(), 2U);
+  EXPECT_NEAR(second[1].time_s, 0.025, 1e-6);
+  EXPECT_NEAR(std::atan2(second[1].direction.y, second[1].direction.x), 3 * kDegree, 1e-6);
+}
+
+TEST_F(LidarFiles, RaysOfAFlashFireAtOnce) {
+  EXPECT_TRUE(fires_at_once(load_lidar_model(write("f.csv", "0,0\n1,0\n2,0\n"))));
+  EXPECT_TRUE(fires_at_once(load_lidar_model(write("f.csv", "0,0,0.5\n1,0,0.5\n"))));
+  EXPECT_FALSE(fires_at_once(load_lidar_model(write("f.csv", "0,0,0\n1,0,0.01\n"))));
+  EXPECT_FALSE(fires_at_once(hdl_64_paper()));
+  EXPECT_FALSE(fires_at_once(load_lidar_model("livox-mid-40")));
+}
+
+TEST_F(LidarFiles, AnglesOfACsvInOtherUnits) {
+  const auto first = [&](const std::string& text) {
+    return firings_of(load_lidar_model(write("u.csv", text)))[0].direction;
+  };
+  expect_direction(first("azimuth_rad,elevation_rad\n1.5707963,0\n"), {0, 1, 0});
+  expect_direction(first("Azimuth [deg],Elevation [deg],Time [us],Line\n90,0,5,1\n"), {0, 1, 0});
+  expect_direction(first("zenith/rad,azimuth/rad\n0,0\n"), {0, 0, 1});
+  std::string rows, zeros;
+  for (int k = 0; k < 16; ++k) {
+    rows += std::to_string(0.3 * k) + ",1.2\n";
+    zeros += "0,0\n";
+  }
+  expect_contains(csv_failure(rows), "are they in radians?");
+  expect_contains(csv_failure("Azimuth/deg,Zenith/deg\n" + rows), "are they in radians?");
+  EXPECT_EQ(load_lidar_model(write("n.csv", "azimuth_deg,elevation_deg\n" + rows)).rays_per_scan(),
+            16U);
+  expect_contains(csv_failure(zeros), "all angles are 0");
+  expect_contains(csv_failure("azimuth_deg,elevation_deg\n0,91\n"), "bad.csv:2: elevation is '91'");
+  expect_contains(csv_failure("azimuth_deg,zenith_deg\n0,181\n"), "zenith is '181'");
+  expect_contains(csv_failure("azimuth_s,elevation_deg\n0,1\n"), "unknown column 'azimuth_s'");
 }
 
 // Random changes, the same in each run: nothing but Error may escape.

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
@@ -153,23 +155,51 @@ void read_frames(const Metadata& metadata, LidarModel& model) {
   model.beam_origins_m.assign(model.elevations_rad.size(), origin);
 }
 
-/// The packets of the metadata's profile; none if the profile is not supported. Older metadata have
-/// no profile and mean LEGACY. Ranges in packets start at the axis.
-std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarModel& model) {
-  const std::string profile = metadata.text("udp_profile_lidar");
-  PacketLayout layout;
-  if (profile.empty() || profile == "LEGACY") {
-    layout.format = PacketFormat::ouster_legacy;
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16") {
-    layout.format = PacketFormat::ouster_single;
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16_DUAL") {
-    layout.format = PacketFormat::ouster_dual;
-  } else {
-    return std::nullopt;
+/// Profiles with the same bytes up to the reflectivity are one format.
+constexpr std::pair<std::string_view, PacketFormat> kProfiles[] = {
+    {"LEGACY", PacketFormat::ouster_legacy},
+    {"RNG19_RFL8_SIG16_NIR16", PacketFormat::ouster_single},
+    {"RNG19_RFL8_SIG16_NIR16_DUAL", PacketFormat::ouster_dual},
+    {"RNG15_RFL8_NIR8", PacketFormat::ouster_low},
+    {"RNG15_RFL8_NIR8_DUAL", PacketFormat::ouster_low_dual},
+    {"FUSA_RNG15_RFL8_NIR8_DUAL", PacketFormat::ouster_low_dual},
+    {"RNG15_RFL8_WIN8", PacketFormat::ouster_low},
+    {"RNG19_RFL8_SIG16_NIR16_ZONE16", PacketFormat::ouster_single},
+    {"RNG19_RFL8_SIG16_ZONE16_DUAL", PacketFormat::ouster_dual}};
+
+/// A whole number from 1; 0 if the key is missing.
+std::uint64_t count_of(const Metadata& metadata, const char* key, std::uint64_t max) {
+  const Json* value = metadata.find(key);
+  if (value == nullptr) return 0;
+  if (!value->is_number_unsigned() || *value < 1 || *value > max)
+    throw metadata.fault(std::string(key) + " is " + value->dump() + ", expected 1 to " +
+                         std::to_string(max));
+  return value->get<std::uint64_t>();
+}
+
+/// The packets of the metadata's profile. Older metadata have no profile and mean LEGACY. Ranges in
+/// packets start at the axis.
+void read_packet_layout(const Metadata& metadata, LidarModel& model) {
+  constexpr std::uint64_t kMaxColumnsOfPacket = 64;
+  std::string profile = metadata.text("udp_profile_lidar");
+  if (profile.empty()) profile = "LEGACY";
+  const auto* const known =
+      std::ranges::find(kProfiles, profile, &std::pair<std::string_view, PacketFormat>::first);
+  if (known == std::end(kProfiles)) {
+    model.packet_profile = profile;
+    return;
   }
+  PacketLayout& layout = model.packets.emplace();
+  layout.format = known->second;
+  layout.columns = count_of(metadata, "columns_per_packet", kMaxColumnsOfPacket);
+  const std::string header = metadata.text("header_type");
+  layout.has_safety_head = header == "FUSA" || (header.empty() && profile.starts_with("FUSA"));
+  layout.serial = parse_number<std::uint64_t>(metadata.text("prod_sn")).value_or(0);
   const Vec3d along = beam_origin(metadata);
-  layout.range_offsets_m.assign(model.elevations_rad.size(), -std::hypot(along.x, along.z));
-  return layout;
+  const std::size_t beams = model.elevations_rad.size();
+  layout.range_offsets_m.assign(beams, -std::hypot(along.x, along.z));
+  for (std::size_t beam = 0; beam < beams; ++beam)
+    layout.laser_ids.push_back(static_cast<std::uint32_t>(beam));
 }
 
 /// The library's sensor with the same optics: ranges, noise, divergence.
@@ -179,6 +209,73 @@ LidarFile base_of(const std::string& product_line, std::size_t beams) {
   if (product_line.starts_with("OS-1"))
     return *read_library_lidar(beams == 128 ? "ouster-os1-128" : "ouster-os1-64");
   return default_rotating_lidar();
+}
+
+/// Removes the entries of `values` that are not kept.
+template <class T>
+void keep_beams(std::vector<T>& values, const std::vector<bool>& kept) {
+  std::size_t beam = 0;
+  std::erase_if(values, [&](const T&) { return !kept[beam++]; });
+}
+
+/// The number of beams in the product line: 16 of "OS-1-16-A0"; nothing if it has none.
+std::optional<std::size_t> beams_of_product(const std::string& line) {
+  if (!line.starts_with("OS-")) return std::nullopt;
+  const std::size_t dash = line.find('-', 3);
+  if (dash == std::string::npos) return std::nullopt;
+  return parse_number<std::size_t>(
+      std::string_view(line).substr(dash + 1, line.find('-', dash + 1) - dash - 1));
+}
+
+/// Sensors of 16 and 32 beams have lists of 64 up to firmware 1.13: every fourth or second entry is
+/// a beam, the others are 0, or up to firmware 1.12 angles of beams that do not exist. Packets have
+/// all 64. Errors: data if the others are not those of the product.
+void drop_padding(const Metadata& metadata, const std::string& line, LidarModel& model) {
+  const std::size_t listed = model.elevations_rad.size();
+  if (const auto fault = degrees_fault(model)) throw metadata.fault(*fault);
+  std::vector<bool> kept(listed);
+  for (std::size_t beam = 0; beam < listed; ++beam)
+    kept[beam] = model.elevations_rad[beam] != 0 || model.azimuth_offsets_rad[beam] != 0;
+  constexpr std::size_t kPadded = 64;
+  const std::size_t stated = beams_of_product(line).value_or(listed);
+  if (listed == kPadded && (stated == 16 || stated == 32) && std::ranges::count(kept, false) == 0)
+    for (std::size_t beam = 0; beam < listed; ++beam)
+      kept[beam] = (beam + 1) % (kPadded / stated) == 0;
+  const auto real = static_cast<std::size_t>(std::ranges::count(kept, true));
+  const std::size_t product = beams_of_product(line).value_or(listed - real > 1 ? real : listed);
+  const bool is_padded = listed - real > 1 && real > 0 && listed != product;
+  const std::size_t found = is_padded ? real : listed;
+  if (found != product && real > 0)
+    throw metadata.fault("beam_altitude_angles and beam_azimuth_angles have " +
+                         std::to_string(found) + (is_padded ? " beams that are not 0" : " beams") +
+                         ", prod_line is " + shown(line));
+  if (is_padded) {
+    keep_beams(model.elevations_rad, kept);
+    keep_beams(model.azimuth_offsets_rad, kept);
+    keep_beams(model.beam_origins_m, kept);
+    if (model.packets) {
+      keep_beams(model.packets->laser_ids, kept);
+      keep_beams(model.packets->range_offsets_m, kept);
+      model.packets->lasers = listed;
+    }
+  }
+  if (const auto fault = angle_fault(model)) throw metadata.fault(*fault);
+}
+
+/// The columns that the sensor measures: [first, last] of column_window.
+void read_window(const Metadata& metadata, LidarModel& model) {
+  const std::vector<double> window = metadata.numbers("column_window");
+  if (window.empty()) return;
+  const auto is_column = [&](double column) {
+    return column >= 0 && column < model.columns && column == std::floor(column);
+  };
+  if (window.size() != 2 || !std::ranges::all_of(window, is_column))
+    throw metadata.fault("column_window is not [first, last] of " + std::to_string(model.columns) +
+                         " columns (lidar_mode)");
+  const double columns = model.columns;
+  if (std::fmod(window[1] + 1 - window[0] + columns, columns) == 0) return;  // all of them
+  model.window_begin = window[0] / columns;
+  model.window_end = (window[1] + 1) / columns;
 }
 
 }  // namespace
@@ -204,11 +301,17 @@ LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& p
   if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.max_returns = 2;
   read_mode(metadata, model);
   read_frames(metadata, model);
-  model.packets = packets_of(metadata, model);
-  if (model.packets)
-    for (std::size_t beam = 0; beam < model.elevations_rad.size(); ++beam)
-      model.packets->laser_ids.push_back(static_cast<std::uint32_t>(beam));
+  read_packet_layout(metadata, model);
+  drop_padding(metadata, line, model);
+  read_window(metadata, model);
   return file;
+}
+
+std::string ouster_profiles() {
+  std::string list;
+  for (const auto& [profile, format] : kProfiles)
+    list += (list.empty() ? "" : ", ") + std::string(profile);
+  return list;
 }
 
 }  // namespace adasplats

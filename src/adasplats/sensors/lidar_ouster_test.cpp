@@ -8,6 +8,7 @@
 
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/packet_sensor.h"
 
 namespace adasplats {
 namespace {
@@ -31,7 +32,7 @@ const std::string kFlat =
     R"({"beam_altitude_angles": [10, -10.5], "beam_azimuth_angles": [3, -1],
         "lidar_mode": "512x20", "lidar_origin_to_beam_origin_mm": 15,
         "lidar_to_sensor_transform": [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1],
-        "prod_line": "OS-0-128", "prod_sn": "7"})";
+        "prod_line": "OS-0-2", "prod_sn": "7"})";
 
 // Oracle: Ouster Sensor Documentation, "Lidar Range to XYZ" and "Sensor Coordinate Frame": with the
 // encoder's angle theta (counter-clockwise), range r from the axis, n to the beam's origin.
@@ -48,7 +49,7 @@ TEST_F(OusterJson, AReturnLiesWhereTheMakersFormulaPutsIt) {
   EXPECT_EQ(model.columns, 512U);
   EXPECT_EQ(model.rotation_hz, 20);
   EXPECT_EQ(model.max_range_m, 50);  // of the OS0 of the library
-  EXPECT_EQ(model.source, "mine.json, OS-0-128 7");
+  EXPECT_EQ(model.source, "mine.json, OS-0-2 7");
   const auto firings = firings_of(model);
   ASSERT_EQ(firings.size(), 1024U);
   for (const std::uint32_t column : {0U, 1U, 130U, 511U})
@@ -74,7 +75,7 @@ TEST_F(OusterJson, GroupedKeysAreTheSame) {
              "udp_profile_lidar": "RNG19_RFL8_SIG16_NIR16_DUAL"},
           "lidar_intrinsics": {"lidar_to_sensor_transform":
              [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1]},
-          "sensor_info": {"prod_line": "OS-0-128"}})");
+          "sensor_info": {"prod_line": "OS-0-2"}})");
   EXPECT_EQ(grouped.max_returns, 2);
   ASSERT_TRUE(grouped.packets.has_value());
   EXPECT_EQ(grouped.packets->format, PacketFormat::ouster_dual);
@@ -118,6 +119,83 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
   expect_data_error(with("0,0,1,36", "0,1,0,36"), "not a rotation about z");
   expect_data_error(with("0,0,1,36, ", ""), "not a rotation about z");
   expect_data_error(with("-1,0,0,0, 0", "-1,0,0,5, 0"), "moves the axis");
+}
+
+/// Metadata of firmware 1.13: lists of `listed` entries, of which every (listed / beams)-th is
+/// used; without zeros as up to 1.12.
+std::string padded(int listed, int beams, const std::string& product, bool has_zeros = true) {
+  std::string altitudes, azimuths;
+  for (int k = 0; k < listed; ++k) {
+    const bool is_used = !has_zeros || k % (listed / beams) == listed / beams - 1;
+    const std::string comma = k == 0 ? "" : ", ";
+    altitudes += comma + (is_used ? std::to_string(15 - 0.5 * k) : "0");
+    azimuths += comma + (is_used ? "-3.1" : "0");
+  }
+  return R"({"beam_altitude_angles": [)" + altitudes + R"(], "beam_azimuth_angles": [)" + azimuths +
+         R"(], "lidar_mode": "1024x10", "prod_line": ")" + product + R"("})";
+}
+
+// Oracle: the product's number of beams; packets have a place for each entry of the lists.
+TEST_F(OusterJson, PaddingIsNoBeam) {
+  for (const int beams : {16, 32}) {
+    const LidarModel model = load(padded(64, beams, "OS-1-" + std::to_string(beams) + "-A0"));
+    ASSERT_EQ(model.elevations_rad.size(), static_cast<std::size_t>(beams));
+    EXPECT_EQ(firings_of(model).size(), static_cast<std::size_t>(beams) * 1024);
+    const int first = 64 / beams - 1;
+    EXPECT_NEAR(model.elevations_rad[0], (15 - 0.5 * first) * kDegree, 1e-9);
+    const PacketSensor sensor = packet_sensor(model);
+    EXPECT_EQ(sensor.lasers(), 64U);
+    EXPECT_EQ(sensor.laser_of_ring[1], 128 / beams - 1);
+    EXPECT_EQ(sensor.ring_of_laser[0], kNoRing);
+    EXPECT_EQ(load(padded(64, beams, "OS-1-" + std::to_string(beams), false)).elevations_rad,
+              model.elevations_rad);
+    EXPECT_EQ(load(calibration_file(sensor).text).elevations_rad.size(),
+              model.elevations_rad.size());
+  }
+  EXPECT_EQ(load(padded(64, 16, "")).elevations_rad.size(), 16U);
+  expect_data_error(padded(64, 16, "OS-1-32"), "16 beams that are not 0, prod_line is 'OS-1-32'");
+  expect_data_error(padded(32, 32, "OS-1-64"), "have 32 beams, prod_line is 'OS-1-64'");
+}
+
+TEST_F(OusterJson, AnglesThatAreNotThoseOfBeamsAreErrors) {
+  const auto with = [&](const std::string& altitudes, const std::string& azimuths) {
+    return R"({"beam_altitude_angles": [)" + altitudes + R"(], "beam_azimuth_angles": [)" +
+           azimuths + R"(], "lidar_mode": "1024x10"})";
+  };
+  expect_data_error(with("0, 0", "0, 0"), "all 2 beams have the elevation 0");
+  expect_data_error(with("0, 0, 0, 0, 0, 0, 0, 0", "0, 0, 0, 0, 0, 0, 0, 0"),
+                    "all 8 beams have the elevation 0");
+  expect_data_error(with("0, 0", "1, 2"), "all 2 beams have the elevation 0");
+  expect_data_error(with("1, 2, 1", "3, 3, 3"), "beams 0 and 2 (from 0) have the same angles");
+  expect_data_error(with("0.35, 0.3, 0.2, 0.1, 0, -0.1, -0.2, -0.35", "0, 0, 0, 0, 0, 0, 0, 0"),
+                    "span only 0.7 degrees");
+  EXPECT_EQ(load(with("0", "0")).rings(), 1U);
+  EXPECT_EQ(load(with("1, 0", "0, 0")).rings(), 2U);
+}
+
+// Oracle: the columns of the window, which may contain the start of a revolution.
+TEST_F(OusterJson, OnlyColumnsOfTheWindowFire) {
+  const auto columns_of = [&](const std::string& window) {
+    std::string text = kFlat;
+    text.insert(1, R"("data_format": {"column_window": )" + window + "},");
+    const LidarModel model = load(text);
+    const auto firings = firings_of(model);
+    EXPECT_EQ(firings.size(), model.rays_per_scan());
+    std::vector<std::uint32_t> columns;
+    for (const Firing& firing : firings)
+      if (firing.ring == 1) columns.push_back(firing.column);
+    return columns;
+  };
+  EXPECT_EQ(columns_of("[0, 511]").size(), 512U);
+  EXPECT_EQ(columns_of("[256, 255]").size(), 512U);
+  EXPECT_EQ(columns_of("[7, 9]"), (std::vector<std::uint32_t>{7, 8, 9}));
+  EXPECT_EQ(columns_of("[511, 1]"), (std::vector<std::uint32_t>{0, 1, 511}));
+  EXPECT_EQ(columns_of("[510, 511]"), (std::vector<std::uint32_t>{510, 511}));
+  for (const char* wrong : {"[0]", "[0, 512]", "[-1, 3]", "[0.5, 3]"}) {
+    std::string text = kFlat;
+    text.insert(1, R"("column_window": )" + std::string(wrong) + ",");
+    expect_data_error(text, "column_window is not [first, last] of 512 columns");
+  }
 }
 
 TEST_F(OusterJson, HostileFilesAreErrorsNotCrashes) {

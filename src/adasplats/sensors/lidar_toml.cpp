@@ -353,7 +353,7 @@ void reject_beam_keys(const TomlTable& table, const LidarModel& model) {
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)
-    if (static_cast<double>(firing.time_s) * model.rotation_hz > 1.0 + 1e-6)
+    if (model.pattern_s == 0 && static_cast<double>(firing.time_s) * model.rotation_hz > 1.0 + 1e-6)
       throw table.error("rotation_hz", "ends a scan before the last ray, which fires at " +
                                            std::to_string(firing.time_s) + " s");
 }

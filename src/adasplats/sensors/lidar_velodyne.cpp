@@ -58,7 +58,7 @@ struct Laser {
     if (!(std::fabs(angle) <= limit))
       throw data_error(place, std::string(key) + " is " + std::to_string(angle) +
                                   ", expected radians from -" + std::to_string(limit) + " to " +
-                                  std::to_string(limit));
+                                  std::to_string(limit) + "; are the angles in degrees?");
     return angle;
   }
 };
@@ -302,9 +302,11 @@ LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesy
   model.name = path.stem().string();
   model.source = path.filename().string() + (family ? std::string(", like ") + family->name : "");
   for (const Laser& laser : calibration.lasers) add_laser(laser, model);
+  if (const auto fault = angle_fault(model)) throw data_error(place, *fault);
+  const std::vector<int> ids = laser_ids(calibration);
   if (family && packets) {
     model.packets = PacketLayout{packets->format, {}, {}};
-    for (const int id : laser_ids(calibration)) {
+    for (const int id : ids) {
       model.firing_times_s.push_back(1e-6 * family->firing_time_us(id));
       model.packets->laser_ids.push_back(static_cast<std::uint32_t>(id));
     }
@@ -327,7 +329,10 @@ LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path&
 }
 
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path) {
-  return lidar_of_calibration(xml_calibration(std::string(text), path), path);
+  LidarFile file = lidar_of_calibration(xml_calibration(std::string(text), path), path);
+  if (const auto fault = degrees_fault(file.model))
+    throw data_error({path, std::nullopt, std::nullopt}, *fault);
+  return file;
 }
 
 }  // namespace adasplats

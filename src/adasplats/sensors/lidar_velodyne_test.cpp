@@ -132,6 +132,23 @@ TEST_F(VelodyneYaml, WrongFilesAreRefusedWithTheLine) {
   expect_data_error(twice, "mine.yaml:9: laser_id");
 }
 
+TEST_F(VelodyneYaml, AnglesThatAreNotThoseOfBeamsAreErrors) {
+  std::string same = lasers(16, 0), zero = "lasers:\n";
+  same.replace(same.find("-0.003"), 6, "-0.002");
+  expect_data_error(same, "beams 2 and 3 (from 0) have the same angles");
+  for (int id = 0; id < 16; ++id) zero += "- {vert_correction: 0, rot_correction: 0}\n";
+  expect_data_error(zero, "all 16 beams have the elevation 0");
+  std::string gap = lasers(17, 0);
+  gap.replace(gap.find("laser_id: 7"), 11, "laser_id: 17");
+  expect_data_error(gap, "laser_id is not a unique whole number from 0 to 16");
+  std::string radians = "<b><DB><points_>";
+  for (int id = 0; id < 16; ++id)
+    radians += "<item><px><vertCorrection_>" + std::to_string(0.26 - 0.035 * id) +
+               "</vertCorrection_></px></item>";
+  expect_error(ErrorKind::data, {"db.xml", "are they in radians?"},
+               [&] { load(radians + "</points_></DB></b>", "db.xml"); });
+}
+
 TEST_F(VelodyneYaml, HostileFilesAreErrorsNotCrashes) {
   expect_data_error("lasers:\n" + std::string(100'000, '-'), "mine.yaml:2");
   expect_data_error("lasers:\n- " + std::string(100'000, '{'), "mine.yaml:2");

@@ -58,24 +58,49 @@ constexpr std::pair<std::size_t, std::size_t> dual_blocks(PacketFormat format, s
   return {first, first + 2};
 }
 
+/// One channel of an Ouster's column: a range in the low bits of the first word, a reflectivity,
+/// and in profiles with two returns the same again 4 bytes later.
+struct OusterChannel {
+  std::size_t bytes = 12;
+  std::size_t reflectivity = 4;  ///< its byte; 16 bits in profile LEGACY, else 8
+  bool is_dual = false;
+};
+/// Sources: Ouster "Firmware User Manual", lidar data profiles; Ouster SDK, parsing.cpp.
+constexpr OusterChannel ouster_channel(PacketFormat format) {
+  switch (format) {
+    case PacketFormat::ouster_dual: return {16, 3, true};
+    case PacketFormat::ouster_low: return {4, 2, false};
+    case PacketFormat::ouster_low_dual: return {8, 2, true};
+    default: return {};
+  }
+}
+
 /// Ouster: columns with a head (time in ns, measurement id; frame id and encoder count or status,
-/// depending on the profile), 12 or 16 bytes per channel and a foot.
+/// depending on the profile), the channels and a foot. Profiles but LEGACY begin with a head of the
+/// packet: its type, the frame id, the serial number.
 struct OusterBytes {
   std::size_t head = 0, column_head = 16, column_foot = 4, foot = 0;
-  std::size_t lasers = 0;
-  std::size_t channel = 12;
+  std::size_t lasers = 0, columns = 0;
+  OusterChannel channel;
+  std::size_t type_bytes = 2, frame = 2, frame_bytes = 2, serial = 7;
 
-  OusterBytes(PacketFormat format, std::size_t count) : lasers(count) {
+  OusterBytes(PacketFormat format, std::size_t laser_count, std::size_t column_count,
+              bool has_safety_head)
+      : lasers(laser_count), columns(column_count), channel(ouster_channel(format)) {
     if (format == PacketFormat::ouster_legacy) return;
-    if (format == PacketFormat::ouster_dual) channel = 16;
     head = foot = 32;
     column_head = 12;
     column_foot = 0;
+    if (!has_safety_head) return;
+    type_bytes = 1;
+    frame = frame_bytes = 4;
+    serial = 11;
   }
-  static constexpr std::size_t kColumns = 16;
-  std::size_t column() const { return column_head + channel * lasers + column_foot; }
-  std::size_t packet() const { return head + kColumns * column() + foot; }
+  std::size_t column() const { return column_head + channel.bytes * lasers + column_foot; }
+  std::size_t column_at(std::size_t k) const { return head + k * column(); }
+  std::size_t packet() const { return column_at(columns) + foot; }
 };
+inline constexpr std::size_t kOusterSerialBytes = 5;
 inline constexpr std::uint32_t kOusterValid = 0xFFFFFFFF;
 inline constexpr std::uint32_t kEncoderTicks = 90112;  ///< per revolution
 

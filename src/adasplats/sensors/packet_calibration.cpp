@@ -4,6 +4,7 @@
 // The calibration files that drivers need in addition to the packets.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -80,10 +81,20 @@ std::vector<int> pixel_shifts(const LidarModel& model, const std::vector<double>
 /// The SDK's name of the model: OS-1-64.
 std::string product_line(const PacketSensor& sensor) {
   const std::string& name = sensor.model.name;
+  const std::size_t beams = sensor.laser_of_ring.size();
   for (const char* kind : {"0", "1", "2"})
     if (name.find(std::string("os") + kind) != std::string::npos)
-      return std::string("OS-") + kind + "-" + std::to_string(sensor.lasers());
-  return "OS-1-" + std::to_string(sensor.lasers());
+      return std::string("OS-") + kind + "-" + std::to_string(beams);
+  return "OS-1-" + std::to_string(beams);
+}
+
+/// The first and the last column of the window in which the sensor fires.
+std::array<std::uint32_t, 2> column_window(const LidarModel& model) {
+  const auto column_at = [&](double share) {
+    return static_cast<std::uint32_t>(std::lround(share * model.columns));
+  };
+  return {column_at(model.window_begin),
+          (column_at(model.window_end) + model.columns - 1) % model.columns};
 }
 
 Error not_ouster(const LidarModel& model, const std::string& why) {
@@ -110,6 +121,11 @@ std::string ouster_json(const PacketSensor& sensor) {
   std::vector<double> altitudes_deg, azimuths_deg;
   for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
     const std::size_t ring = sensor.ring_of_laser[laser];
+    if (ring == kNoRing) {
+      altitudes_deg.push_back(0);
+      azimuths_deg.push_back(0);
+      continue;
+    }
     altitudes_deg.push_back(kDegreesPerRadian * model.elevations_rad[ring]);
     azimuths_deg.push_back(-kDegreesPerRadian * offset_of_beam(model, ring));
   }
@@ -135,7 +151,7 @@ std::string ouster_json(const PacketSensor& sensor) {
   json["data_format"] = {{"pixels_per_column", sensor.lasers()},
                          {"columns_per_packet", sensor.facts.columns},
                          {"columns_per_frame", model.columns},
-                         {"column_window", {0, model.columns - 1}},
+                         {"column_window", column_window(model)},
                          {"pixel_shift_by_row", pixel_shifts(model, azimuths_deg)},
                          {"udp_profile_lidar", "LEGACY"},
                          {"udp_profile_imu", "LEGACY"}};

@@ -17,8 +17,9 @@ namespace adasplats {
 
 /// Time and azimuth of the head for one firing of all lasers.
 struct MeasuredColumn {
-  std::int64_t time_ns = 0;   ///< Velodyne: since the full hour; else by the sensor's clock
-  double head_rad = 0;        ///< counter-clockwise from +x, when the first laser fires
+  std::int64_t time_ns =
+      0;                ///< by the sensor's clock, or since the full hour (PacketTraits::is_hourly)
+  double head_rad = 0;  ///< counter-clockwise from +x, when the first laser fires
   double turn_rad_s = 0;      ///< angular velocity of the head, counter-clockwise
   std::uint32_t step = 0;     ///< of steps_per_turn() since the start of the revolution
   std::uint32_t frame = 0;    ///< with PacketTraits::has_frames
@@ -61,7 +62,6 @@ class PacketDecoder {
   const PacketSensor& sensor() const { return sensor_; }
   std::uint32_t steps_per_turn() const;
   double column_s() const { return sensor_.column_s(); }
-
   const PacketTraits& traits() const { return traits_; }
 
   /// Whether a payload has the size of the sensor's packets (Hesai: begins like them).
@@ -69,6 +69,13 @@ class PacketDecoder {
   /// Why a payload of that size cannot be a packet of the sensor ("have an azimuth of ..."). The
   /// other functions require a payload without objection.
   std::optional<std::string> objection(std::string_view payload) const;
+  /// How a packet contradicts the sensor's file, which is then of another device or mode ("have the
+  /// serial number ...").
+  std::optional<std::string> contradiction(std::string_view payload) const;
+  /// Whether a payload is a packet of the sensor: size, no objection, no contradiction.
+  bool accepts(std::string_view payload) const {
+    return has_size(payload) && !objection(payload) && !contradiction(payload);
+  }
   /// Whether a packet has more than one return per firing.
   bool is_dual(std::string_view payload) const;
   /// The columns of a packet. A packet of a VLS-128 with two returns has only one; its head is

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/sensors/packet_encoder.h"
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <ctime>
@@ -13,8 +12,6 @@
 
 namespace adasplats {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "packets are little-endian");
 
 constexpr std::uint64_t kNanosecondsPerMicrosecond = 1000;
 constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
@@ -92,7 +89,7 @@ std::string velodyne_packet(const PacketSensor& sensor, std::span<const PacketCo
 }
 
 std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColumn> columns) {
-  const OusterBytes bytes(sensor.format, sensor.lasers());
+  const OusterBytes bytes(sensor.format, sensor.lasers(), sensor.facts.columns, false);
   std::string packet(bytes.packet(), '\0');
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const PacketColumn& column = columns[k];
@@ -102,7 +99,7 @@ std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColu
     put_at(packet, head + 10, column.frame);
     put_at(packet, head + 12, column.column * (kEncoderTicks / sensor.model.columns));
     for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
-      const std::size_t byte = head + bytes.column_head + laser * bytes.channel;
+      const std::size_t byte = head + bytes.column_head + laser * bytes.channel.bytes;
       const PacketReturn& found = column.returns[laser];
       put_at(packet, byte, found.counts);
       put_at(packet, byte + 4, static_cast<std::uint16_t>(std::lround(found.intensity / 257.0)));

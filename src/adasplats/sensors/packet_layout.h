@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -21,7 +22,10 @@ enum class PacketFormat : std::uint8_t {
   ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns, 12 bytes per channel
   ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read only
   ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL: 16 bytes per channel; read only
-  pandar_40p,     ///< Hesai, from here on: packet_hesai.cpp; read only
+  ouster_low,     ///< Ouster, profile RNG15_RFL8_NIR8: 4 bytes per channel, in steps of 8 mm; read
+                  ///< only
+  ouster_low_dual,  ///< Ouster, profile RNG15_RFL8_NIR8_DUAL: 8 bytes per channel; read only
+  pandar_40p,       ///< Hesai, from here on: hesai_parser.cpp; read only
   pandar_64,
   pandar_qt,  ///< PandarQT, 64 channels
   xt_16,
@@ -40,6 +44,8 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"ouster-legacy", PacketFormat::ouster_legacy},
     {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single},
     {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual},
+    {"ouster-rng15-rfl8-nir8", PacketFormat::ouster_low},
+    {"ouster-rng15-rfl8-nir8-dual", PacketFormat::ouster_low_dual},
     {"pandar40p", PacketFormat::pandar_40p},
     {"pandar64", PacketFormat::pandar_64},
     {"pandarqt", PacketFormat::pandar_qt},
@@ -50,10 +56,10 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"ot128", PacketFormat::ot_128},
     {"at128", PacketFormat::at_128}};
 
-constexpr bool is_hesai(PacketFormat format) { return format >= PacketFormat::pandar_40p; }
 constexpr bool is_ouster(PacketFormat format) {
-  return format >= PacketFormat::ouster_legacy && !is_hesai(format);
+  return format >= PacketFormat::ouster_legacy && format <= PacketFormat::ouster_low_dual;
 }
+constexpr bool is_hesai(PacketFormat format) { return format >= PacketFormat::pandar_40p; }
 
 /// Angles of a sensor with a rotating mirror (Hesai AT128), degrees. While the encoder is between
 /// frame_starts[f] and frame_ends[f], facet f deflects the beams (manual, "Angle Correction").
@@ -78,9 +84,15 @@ struct PacketLayout {
   /// The manufacturer's number of each beam, its position in a firing; one a beam, or empty: 0 is
   /// the topmost.
   std::vector<std::uint32_t> laser_ids;
+  /// Positions of a firing if they are more than the beams; else 0.
+  std::size_t lasers = 0;
   /// Added to a packet's range, which then starts at the origin of the beam, m; one a beam, or
   /// empty for zero. Velodyne: dist_correction of the calibration.
   std::vector<double> range_offsets_m;
+  // Of the metadata of an Ouster:
+  std::size_t columns = 0;       ///< per packet; 0: as usual for the format
+  bool has_safety_head = false;  ///< header type FUSA: frames are numbered with 32 bits
+  std::uint64_t serial = 0;      ///< of the device, in every packet but LEGACY; 0: not given
   std::shared_ptr<const MirrorAngles> mirror;  ///< at_128 only
 };
 

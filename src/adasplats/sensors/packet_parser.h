@@ -53,6 +53,10 @@ class PacketParser {
   }
   virtual std::optional<std::string> objection(const PacketSensor& sensor,
                                                std::string_view payload) const = 0;
+  virtual std::optional<std::string> contradiction(const PacketSensor& /*sensor*/,
+                                                   std::string_view /*payload*/) const {
+    return std::nullopt;
+  }
   virtual bool is_dual(const PacketSensor& sensor, std::string_view payload) const = 0;
   virtual std::vector<MeasuredColumn> columns(const PacketSensor& sensor,
                                               std::string_view payload) const = 0;
@@ -69,6 +73,9 @@ class PacketParser {
 /// Adds a return unless it is empty or equal to another one; the nearest comes first.
 void add_return(LaserReturns& returns, PacketReturn found);
 
+// Static objects; parser_of() in packet_decoder.cpp chooses.
+const PacketParser& velodyne_parser();
+const PacketParser& ouster_parser();
 const PacketParser& hesai_parser();
 /// Without optional fields.
 std::size_t hesai_payload_bytes(PacketFormat format);

@@ -7,6 +7,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
+#include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/packet_bytes.h"
 #include "adasplats/sensors/packet_parser.h"
 
@@ -30,10 +31,11 @@ Error not_packets(const LidarModel& model, const std::string& why) {
 }
 
 void check_beams(const LidarModel& model, PacketFormat format, std::size_t lasers) {
-  const std::size_t beams = model.elevations_rad.size();
+  const std::size_t beams = std::max(model.elevations_rad.size(), model.packets->lasers);
   const std::string name(word_of(format, kPacketFormats));
   // Lasers of some Hesai models skip columns.
-  if ((!model.free_pattern.empty() && !is_hesai(format)) || model.rosette || beams == 0)
+  if ((!model.free_pattern.empty() && !is_hesai(format)) || model.rosette ||
+      model.elevations_rad.empty())
     throw not_packets(
         model, "does not fire all its beams in every column, which packets " + name + " require");
   const bool fits = lasers != 0
@@ -66,6 +68,8 @@ PacketFacts facts_of_packets(PacketFormat format) {
     case PacketFormat::hdl_64e: return {64, 0.002, kSixteenBits, 6, kVelodynePort};
     case PacketFormat::vls_128: return {128, 0.004, kSixteenBits, 3, kVelodynePort};
     case PacketFormat::ouster_legacy: return {0, 0.001, (1U << 20) - 1, 16, kOusterPort};
+    case PacketFormat::ouster_low:
+    case PacketFormat::ouster_low_dual: return {0, 0.008, (1U << 15) - 1, 16, kOusterPort};
     default: break;
   }
   return {0, 0.001, (1U << 19) - 1, 16, kOusterPort};
@@ -74,17 +78,21 @@ PacketFacts facts_of_packets(PacketFormat format) {
 std::size_t PacketSensor::payload_bytes() const {
   if (is_hesai(format)) return hesai_payload_bytes(format);
   if (!is_ouster(format)) return kVelodyneBytes;
-  const OusterBytes bytes(format, lasers());
-  return bytes.packet();
+  return OusterBytes(format, lasers(), facts.columns, model.packets->has_safety_head).packet();
 }
 
 PacketSensor packet_sensor(const LidarModel& model) {
+  if (!model.packets && !model.packet_profile.empty())
+    throw Error(ErrorKind::usage, "sensor '" + model.name + "': its packets have the profile " +
+                                      model.packet_profile +
+                                      ", which is not supported; supported: " + ouster_profiles());
   if (!model.packets) throw not_packets(model, "its packet format is unknown");
   PacketSensor sensor{
       model.packets->format, facts_of_packets(model.packets->format), model, {}, {}, {}};
+  if (model.packets->columns != 0) sensor.facts.columns = model.packets->columns;
   check_beams(model, sensor.format, sensor.facts.lasers);
   const std::size_t beams = model.elevations_rad.size();
-  sensor.ring_of_laser.resize(beams);
+  sensor.ring_of_laser.resize(std::max(beams, model.packets->lasers), kNoRing);
   sensor.laser_of_ring.resize(beams);
   for (std::size_t ring = 0; ring < beams; ++ring) {
     const std::size_t laser =

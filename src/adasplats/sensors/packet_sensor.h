@@ -21,12 +21,15 @@ struct PacketFacts {
 };
 PacketFacts facts_of_packets(PacketFormat format);
 
+inline constexpr std::uint16_t kNoRing = 0xFFFF;
+
 /// A sensor with a supported packet format. Lasers are beams in the manufacturer's order, rings are
 /// beams from the topmost down.
 struct PacketSensor {
   PacketFormat format = PacketFormat::vlp_16;
   PacketFacts facts;
   LidarModel model;
+  /// ring_of_laser is kNoRing for positions without a beam.
   std::vector<std::uint16_t> ring_of_laser, laser_of_ring;
   /// One a ring, m; added to a packet's range, which then starts at the origin of the beam.
   std::vector<double> range_offsets_m;

@@ -111,6 +111,7 @@ TEST(Packets, OustersNewerProfileIsRead) {
   const auto put = [&](std::size_t place, auto value) {
     std::memcpy(packet.data() + place, &value, sizeof value);
   };
+  put(0, std::uint16_t{1});    // type
   put(2, std::uint16_t{513});  // frame
   for (std::size_t k = 0; k < 16; ++k) {
     const std::size_t head = 32 + k * (12 + 64 * 12);
@@ -139,7 +140,7 @@ TEST(Packets, OustersNewerProfileIsRead) {
       vec_cast<double>(firing.origin) + (20.012 - 0.012163) * vec_cast<double>(firing.direction);
   EXPECT_LT(length(points.positions[0] - expected), 1e-5);
   put(32 + 8, std::uint16_t{1024});
-  EXPECT_NE(decoder.objection(packet).value_or("").find("1024"), std::string::npos);
+  EXPECT_NE(decoder.contradiction(packet).value_or("").find("1024"), std::string::npos);
 }
 
 /// A packet of a Velodyne with two returns, put together after the manuals (packet_bytes.h) from
@@ -259,6 +260,13 @@ TEST(Packets, OtherSensorsAndUnknownModesAreRefused) {
   std::string other = sent.payload;
   other[1204] = 0x3a;
   EXPECT_NE(decoder.objection(other).value_or("").find("mode 0x3A of returns"), std::string::npos);
+  other = sent.payload;
+  other[1205] = 0x24;
+  EXPECT_NE(decoder.objection(other).value_or("").find("VLP-16 Hi-Res"), std::string::npos);
+  LidarModel hi_res = sent.sensor.model;
+  for (double& elevation_rad : hi_res.elevations_rad) elevation_rad *= 2.0 / 3;
+  EXPECT_EQ(PacketDecoder(packet_sensor(hi_res)).objection(other), std::nullopt);
+  EXPECT_NE(PacketDecoder(packet_sensor(hi_res)).objection(sent.payload), std::nullopt);
   other = sent.payload;
   other[1205] = 0x21;
   EXPECT_NE(decoder.objection(other).value_or("").find("hdl-32e"), std::string::npos);

@@ -214,6 +214,7 @@ void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud
   require_points(report.points_used);
   ConsistentOptions chosen = options;
   chosen.trust_origins = options.trust_origins || build.trust_origins || build.whole != nullptr;
+  chosen.fit_scale = build.whole == nullptr;
   report.consistent = consistent_disks(steps, has_rays, chosen, step);
   report.ray_checked = report.consistent->checked;
   put_splats(steps.take_splats(), model);
@@ -302,6 +303,10 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   }
   if (report.consistent && report.consistent->origins) {
     const std::string doubt = origin_doubt(*report.consistent->origins);
+    if (!doubt.empty()) progress.warn(doubt);
+  }
+  if (ours != nullptr && options.whole == nullptr) {
+    const std::string doubt = spacing_doubt(*report.consistent, *ours);
     if (!doubt.empty()) progress.warn(doubt);
   }
   report.primitives = model.size();

@@ -16,7 +16,7 @@
 
 namespace adasplats {
 
-struct AdaptivePlaneOptions {  // sources of the numbers: docs/fidelity.md
+struct AdaptivePlaneOptions {  // sources of the numbers: docs/research/consistent.md
   /// Neighbourhood sizes to try, ascending; the largest that is still a plane is used. Large ones
   /// average out noise and registration errors and never consist of a single scan ring.
   std::array<std::uint32_t, 5> scales = {10, 20, 40, 80, 160};
@@ -24,6 +24,9 @@ struct AdaptivePlaneOptions {  // sources of the numbers: docs/fidelity.md
   double trim_sigmas = 2.5;    ///< points farther from the plane are excluded from the last fits
   double min_sigma_m = 0.01;   ///< for the trimming
   double max_shift_m = 0.1;    ///< maximum shift of a cell's mean onto its plane
+  /// No shift where the plane is farther away or is no plane (max_sigma_m): the neighbours of
+  /// sparse points are other surfaces.
+  bool strict_shift = false;
 };
 
 /// The surface at a fused cell.
@@ -32,6 +35,7 @@ struct LocalPlane {
   Vec3f normal;            ///< unit; its sign is arbitrary
   float spacing_m;         ///< distance to the 7th nearest cell
   std::uint8_t scale = 0;  ///< index of the scale used
+  bool limited = false;    ///< shifted by the maximum: `center` is not on the plane
 };
 
 /// A plane relative to the cell's mean.
@@ -118,14 +122,19 @@ ADASPLATS_HD LocalPlane local_plane(Vec3f position, const Neighborhood& neighbor
   constexpr std::uint32_t kSpacingNeighbor = 7;
   const ScaledFit scaled = fit_at_best_scale(neighborhood, options);
   const PlaneFit fit = trimmed_fit(neighborhood, scaled, options);
-  const double shift_m = std::clamp(dot(vec_cast<double>(fit.shape.normal), fit.mean),
-                                    -options.max_shift_m, options.max_shift_m);
+  const double to_plane_m = dot(vec_cast<double>(fit.shape.normal), fit.mean);
+  const bool is_near = std::fabs(to_plane_m) <= options.max_shift_m;
+  const bool is_plane = std::sqrt(fit.shape.lambda[2]) <= options.max_sigma_m;
+  const double shift_m = options.strict_shift && !(is_near && is_plane)
+                             ? 0
+                             : std::clamp(to_plane_m, -options.max_shift_m, options.max_shift_m);
   LocalPlane plane;
   plane.normal = fit.shape.normal;
   plane.center = position + static_cast<float>(shift_m) * plane.normal;
   plane.spacing_m =
       length(neighborhood.offset(std::min(kSpacingNeighbor, neighborhood.size() - 1)));
   plane.scale = scaled.scale;
+  plane.limited = !is_near && !options.strict_shift;
   return plane;
 }
 

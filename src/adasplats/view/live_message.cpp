@@ -252,7 +252,8 @@ LiveSensor live_sensor(const std::string& name) {
 ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor) {
   const TimedPose reference = {pose.time_s, pose.world_from_sensor};
   const bool is_at_rest = length(pose.velocity_m_s) == 0 && pose.yaw_rate_rad_s == 0;
-  if (!sensor.rolling_shutter || is_at_rest) return {reference, {}};
+  if (!sensor.rolling_shutter || is_at_rest || fires_at_once(sensor.settings.sensor))
+    return {reference, {}};
   const double duration_s = 1 / sensor.settings.sensor.rotation_hz;
   const auto at = [&](double time_s) {
     const Mat3d turn = rotation_from_yaw_pitch_roll(pose.yaw_rate_rad_s * time_s, 0, 0);

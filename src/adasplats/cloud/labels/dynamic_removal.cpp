@@ -10,20 +10,29 @@
 namespace adasplats {
 namespace {
 
-bool can_remove(const LabelScheme& labels, DynamicRemoval removal) {
-  return std::ranges::any_of(labels.classes(),
-                             [removal](const SemanticClass& c) { return is_removed(c, removal); });
-}
-
-}  // namespace
-
-bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal) {
+bool is_dynamic(const SemanticClass& semantic_class, DynamicRemoval removal) {
   switch (removal) {
     case DynamicRemoval::none: return false;
     case DynamicRemoval::moving: return semantic_class.mobility == Mobility::moving;
     case DynamicRemoval::movable: return semantic_class.mobility != Mobility::fixed;
   }
   return false;
+}
+
+bool can_remove(const LabelScheme& labels, DynamicRemoval removal) {
+  return std::ranges::any_of(labels.classes(),
+                             [removal](const SemanticClass& c) { return is_dynamic(c, removal); });
+}
+
+}  // namespace
+
+bool has_noise(const LabelScheme& labels) {
+  return std::ranges::any_of(labels.classes(), &SemanticClass::is_noise);
+}
+
+bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal) {
+  return is_dynamic(semantic_class, removal) ||
+         (semantic_class.is_noise && removal != DynamicRemoval::none);
 }
 
 RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* labels,
@@ -45,7 +54,7 @@ RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* label
     removed.classes.push_back({known->name, counts[id]});
     removed.points += counts[id];
   }
-  if (!can_remove(*labels, removal)) removed.ids.clear();
+  if (!can_remove(*labels, removal) && !has_noise(*labels)) removed.ids.clear();
   return removed;
 }
 

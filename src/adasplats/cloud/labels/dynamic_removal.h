@@ -15,7 +15,8 @@
 
 namespace adasplats {
 
-/// Which points of moving things are removed before modelling, by their labels. The paper removes
+/// Which points of moving things are removed before modelling, by their labels, and noise
+/// (SemanticClass::is_noise) with them unless it is none. The paper removes
 /// all that is movable ("moving and parked cars, moving pedestrians, cyclists, etc.", section
 /// "Adaptive Splatting"); only its SimKITTI32 keeps parked cars.
 enum class DynamicRemoval : std::uint8_t { none, moving, movable };
@@ -29,6 +30,7 @@ inline std::string_view name_of(DynamicRemoval removal) {
 }
 
 bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal);
+bool has_noise(const LabelScheme& labels);
 
 /// What a removal takes out of a cloud.
 struct RemovedPoints {
@@ -47,8 +49,8 @@ struct RemovedPoints {
 RemovedPoints points_to_remove(const PointCloud& cloud, const LabelScheme* labels,
                                DynamicRemoval removal);
 
-/// Why a removal cannot take out a single point whatever the cloud holds, for the user; empty where
-/// it can, and for DynamicRemoval::none.
+/// Why a removal cannot take out a single moving or movable point whatever the cloud holds, for the
+/// user; empty where it can, and for DynamicRemoval::none.
 std::string removal_problem(const PointCloud& cloud, const LabelScheme* labels,
                             DynamicRemoval removal);
 

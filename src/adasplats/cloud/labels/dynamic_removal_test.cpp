@@ -39,6 +39,19 @@ TEST(DynamicRemoval, PaperRemovesParkedAndMovingThingsOfEveryScheme) {
             "pedestrian 1;vehicles 2;dynamic 1;");
 }
 
+// Oracle: ASPRS, "LAS specification 1.4 - R15", table 17: 7 and 18 are noise.
+TEST(DynamicRemoval, NoiseIsRemovedUnlessNothingIs) {
+  const PointCloud cloud = cloud_of({2, 7, 18, 18, 65});
+  for (const auto removal : {DynamicRemoval::moving, DynamicRemoval::movable}) {
+    const auto removed = points_to_remove(cloud, &asprs_labels(), removal);
+    EXPECT_EQ(text_of(removed), "low noise 1;high noise 2;");
+    EXPECT_FALSE(removed.ids.empty());
+  }
+  EXPECT_EQ(points_to_remove(cloud, &asprs_labels(), DynamicRemoval::none).points, 0U);
+  EXPECT_TRUE(has_noise(asprs_labels()));
+  EXPECT_FALSE(has_noise(semantickitti_labels()));
+}
+
 TEST(DynamicRemoval, NothingWithoutLabelsOrWhereNothingIsAsked) {
   const PointCloud bare = cloud_of({});
   const PointCloud labelled = cloud_of({10, 252});

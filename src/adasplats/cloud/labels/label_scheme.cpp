@@ -170,7 +170,7 @@ const LabelScheme& nuscenes_labels() {
   using enum SemanticGroup;
   using enum Mobility;
   static const LabelScheme scheme(
-      "nuscenes", {{0, "noise", non_surface, fixed, {0, 0, 0}},
+      "nuscenes", {{0, "noise", non_surface, fixed, {0, 0, 0}, true},
                    {1, "animal", non_surface, movable, {230, 60, 140}},
                    {2, "human.pedestrian.adult", non_surface, movable, {255, 30, 30}},
                    {3, "human.pedestrian.child", non_surface, movable, {255, 60, 60}},
@@ -206,33 +206,53 @@ const LabelScheme& nuscenes_labels() {
   return scheme;
 }
 
-const LabelScheme& asprs_labels() {
+namespace {
+
+std::vector<SemanticClass> asprs_classes() {
   using enum SemanticGroup;
   using enum Mobility;
-  static const LabelScheme scheme("asprs",
-                                  {{0, "never classified", surface, fixed, {0, 0, 0}},
-                                   {1, "unclassified", surface, fixed, {170, 170, 170}},
-                                   {2, "ground", ground, fixed, {150, 240, 80}},
-                                   {3, "low vegetation", non_surface, fixed, {0, 205, 0}},
-                                   {4, "medium vegetation", non_surface, fixed, {0, 175, 0}},
-                                   {5, "high vegetation", non_surface, fixed, {0, 135, 0}},
-                                   {6, "building", surface, fixed, {255, 200, 0}},
-                                   {7, "low noise", non_surface, fixed, {255, 0, 0}},
-                                   {8, "model key point", ground, fixed, {190, 240, 140}},
-                                   {9, "water", ground, fixed, {60, 140, 255}},
-                                   {10, "rail", ground, fixed, {175, 0, 75}},
-                                   {11, "road surface", ground, fixed, {255, 0, 255}},
-                                   {12, "overlap", surface, fixed, {120, 120, 150}},
-                                   {13, "wire guard", linear, fixed, {255, 220, 120}},
-                                   {14, "wire conductor", linear, fixed, {255, 240, 150}},
-                                   {15, "transmission tower", linear, fixed, {255, 150, 0}},
-                                   {16, "wire connector", linear, fixed, {255, 180, 90}},
-                                   {17, "bridge deck", ground, fixed, {255, 150, 255}},
-                                   {18, "high noise", non_surface, fixed, {200, 0, 0}},
-                                   {19, "overhead structure", surface, fixed, {220, 160, 90}},
-                                   {20, "ignored ground", ground, fixed, {130, 180, 90}},
-                                   {21, "snow", ground, fixed, {240, 240, 255}},
-                                   {22, "temporal exclusion", non_surface, fixed, {90, 90, 90}}});
+  std::vector<SemanticClass> classes = {
+      {0, "never classified", surface, fixed, {0, 0, 0}},
+      {1, "unclassified", surface, fixed, {170, 170, 170}},
+      {2, "ground", ground, fixed, {150, 240, 80}},
+      {3, "low vegetation", non_surface, fixed, {0, 205, 0}},
+      {4, "medium vegetation", non_surface, fixed, {0, 175, 0}},
+      {5, "high vegetation", non_surface, fixed, {0, 135, 0}},
+      {6, "building", surface, fixed, {255, 200, 0}},
+      {7, "low noise", non_surface, fixed, {255, 0, 0}, true},
+      {8, "model key point", ground, fixed, {190, 240, 140}},
+      {9, "water", ground, fixed, {60, 140, 255}},
+      {10, "rail", ground, fixed, {175, 0, 75}},
+      {11, "road surface", ground, fixed, {255, 0, 255}},
+      {12, "overlap", surface, fixed, {120, 120, 150}},
+      {13, "wire guard", linear, fixed, {255, 220, 120}},
+      {14, "wire conductor", linear, fixed, {255, 240, 150}},
+      {15, "transmission tower", linear, fixed, {255, 150, 0}},
+      {16, "wire connector", linear, fixed, {255, 180, 90}},
+      {17, "bridge deck", ground, fixed, {255, 150, 255}},
+      {18, "high noise", non_surface, fixed, {200, 0, 0}, true},
+      {19, "overhead structure", surface, fixed, {220, 160, 90}},
+      {20, "ignored ground", ground, fixed, {130, 180, 90}},
+      {21, "snow", ground, fixed, {240, 240, 255}},
+      {22, "temporal exclusion", non_surface, fixed, {90, 90, 90}}};
+  constexpr std::uint16_t kFirstOfUsers = 64, kLast = 255;
+  for (auto id = static_cast<std::uint16_t>(classes.size()); id <= kLast; ++id) {
+    const auto shade = [id](unsigned factor) {
+      return static_cast<std::uint8_t>(60 + id * factor % 180);
+    };
+    classes.push_back({id,
+                       (id < kFirstOfUsers ? "reserved " : "user class ") + std::to_string(id),
+                       surface,
+                       fixed,
+                       {shade(37), shade(73), shade(119)}});
+  }
+  return classes;
+}
+
+}  // namespace
+
+const LabelScheme& asprs_labels() {
+  static const LabelScheme scheme("asprs", asprs_classes());
   return scheme;
 }
 

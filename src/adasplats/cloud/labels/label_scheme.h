@@ -37,6 +37,7 @@ struct SemanticClass {
   SemanticGroup group;
   Mobility mobility;
   std::array<std::uint8_t, 3> rgb;
+  bool is_noise = false;  ///< points that no object reflected; never modelled
 };
 
 /// What the numbers in label files mean.
@@ -66,10 +67,14 @@ const LabelScheme& pandaset_labels();
 const LabelScheme& nuscenes_labels();
 inline constexpr std::uint16_t kNuscenesUnlabeled = 255;
 /// ASPRS, "LAS specification 1.4 - R15", table 17: the standard classes of point formats 6 to 10,
-/// which those of formats 0 to 5 are among. Ids that users define (from 64 on) are none of it.
+/// which those of formats 0 to 5 are among; 23 to 63 (reserved) and 64 to 255 (defined by users)
+/// count as surfaces.
 const LabelScheme& asprs_labels();
 /// All of these.
 std::span<const LabelScheme* const> known_label_schemes();
+
+/// The start of the comment that names the scheme of a PLY file of this program.
+inline constexpr std::string_view kLabelsComment = "adasplats.labels ";
 
 /// The name of one of known_label_schemes(), or the path of a TOML file:
 ///     name = "mine"

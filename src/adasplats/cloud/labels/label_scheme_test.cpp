@@ -57,12 +57,15 @@ TEST(LabelScheme, PandaSetAndNuscenesAsPublished) {
 
 // Oracle: ASPRS, "LAS specification 1.4 - R15", table 17.
 TEST(LabelScheme, ClassesOfLas) {
-  EXPECT_EQ(asprs_labels().classes().size(), 23U);
+  EXPECT_EQ(asprs_labels().classes().size(), 256U);
   EXPECT_EQ(asprs_labels().find(std::uint16_t{2})->name, "ground");
   EXPECT_EQ(asprs_labels().find("high vegetation")->id, 5);
   EXPECT_EQ(asprs_labels().find("bridge deck")->id, 17);
   EXPECT_EQ(asprs_labels().find("temporal exclusion")->id, 22);
-  EXPECT_EQ(asprs_labels().find(std::uint16_t{64}), nullptr);
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{63})->name, "reserved 63");
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{64})->name, "user class 64");
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{255})->group, SemanticGroup::surface);
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{256}), nullptr);
 }
 
 // Oracle: the examples of paper section "Adaptive Splatting" for each group.

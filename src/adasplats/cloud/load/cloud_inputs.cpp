@@ -9,9 +9,13 @@
 
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/sensor_frame.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/packets/capture_reader.h"
 
 namespace adasplats {
 
@@ -106,18 +110,93 @@ bool is_folder_of_scans(const Folder& folder) {
          folder.count(FileKind::mesh) == 0 && folder.count(FileKind::splat_model) == 0;
 }
 
+/// The drive in a folder of simulated scans that are not files of points; empty: none.
+fs::path drive_in(const fs::path& folder) {
+  constexpr int kMaxDepth = 1;  // KITTI's raw data: DATE/DRIVE
+  std::error_code ignored;
+  for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end;
+       entry.increment(ignored)) {
+    if (is_self_contained_drive(*entry) || is_kitti_raw_drive(*entry)) return entry->path();
+    if (entry.depth() >= kMaxDepth) entry.disable_recursion_pending();
+  }
+  return {};
+}
+
+std::string advice_without_points(const fs::path& folder) {
+  const fs::path drive = drive_in(folder);
+  if (is_capture(drive))
+    return "; give its capture, " + drive.string() +
+           ", to a command with `packet_sensor` and `trajectory`";
+  if (!drive.empty()) return "; give the drive in it, " + drive.string();
+  return ", but not in a point format; simulate with `format` semantickitti to use them as points";
+}
+
+/// The text after `"key":` in the JSON of a file, without quotes; empty: none.
+std::string json_word(const std::string& text, const std::string& key) {
+  std::size_t begin = text.find("\"" + key + "\"");
+  if (begin == std::string::npos) return {};
+  begin = text.find_first_not_of(" \t\r\n\":", begin + key.size() + 2);
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_first_of(" \t\r\n\",}", begin) - begin);
+}
+
+/// The tiles of an Entwine point tile folder: each point is in one of them. Errors: data (tiles
+/// that are not LAZ, or fewer points in them than ept.json states).
+std::vector<CloudInput> ept_tiles(const fs::path& folder) {
+  const std::string facts = read_file(folder / "ept.json");
+  const std::string type = json_word(facts, "dataType");
+  const std::string name = folder.string() + ": is an Entwine point tile (EPT) folder ";
+  if (type != "laszip")
+    throw Error(ErrorKind::data, name + "with tiles of type '" + type +
+                                     "', only laszip is read; convert it: 'pdal translate " +
+                                     (folder / "ept.json").string() + " points.laz'");
+  std::vector<CloudInput> tiles;
+  std::uint64_t points = 0;
+  for (const fs::path& tile : files_by_name(folder / "ept-data", ".laz")) {
+    tiles.push_back({tile, false});
+    points += read_las_facts(tile).points;
+  }
+  const auto stated = parse_number<std::uint64_t>(json_word(facts, "points"));
+  if (tiles.empty() || (stated && *stated != points))
+    throw Error(ErrorKind::data, name + "whose " + std::to_string(tiles.size()) + " tiles hold " +
+                                     std::to_string(points) + " points, but ept.json states " +
+                                     json_word(facts, "points") + "; copy the complete ept-data");
+  return tiles;
+}
+
+/// Throws data for folders of other programs that are not read, with what to do.
+void reject_foreign(const fs::path& folder) {
+  const auto has = [&folder](const char* name) {
+    std::error_code ignored;
+    return fs::exists(folder / name, ignored);
+  };
+  const auto reject = [&folder](const std::string& what) {
+    throw Error(ErrorKind::data, folder.string() + ": is " + what);
+  };
+  if (has("octree.bin") && has("metadata.json"))
+    reject(
+        "a Potree 2 octree, which is not read; give the LAS or LAZ files that it was made from, "
+        "or convert it to LAS or LAZ");
+  if (has("cloud.js"))
+    reject(
+        "a Potree 1 octree, which is not read; give the LAS or LAZ files that it was made from, "
+        "or convert it to LAS or LAZ");
+  if (has("city_SE3_egovehicle.feather") || has("sensors/lidar"))
+    reject(
+        "an Argoverse 2 log, whose Feather files are not read; convert each sweep of "
+        "sensors/lidar to PLY (in Python: pyarrow.feather.read_table) named by its stamp, and "
+        "city_SE3_egovehicle to CSV, and give the CSV as trajectory");
+}
+
 std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
   if (folder.has_poses && folder.count(FileKind::points) == 0)
-    throw Error(ErrorKind::data,
-                folder.path.string() +
-                    ": contains scans in the sensor frame (it has a poses.csv), but not in a point "
-                    "format; simulate with `format` semantickitti to use them as points");
+    throw Error(ErrorKind::data, folder.path.string() +
+                                     ": contains scans in the sensor frame (it has a poses.csv)" +
+                                     advice_without_points(folder.path));
   if (folder.has_poses && (scans == SensorScans::refused || !is_folder_of_scans(folder)))
-    throw Error(
-        ErrorKind::data,
-        folder.path.string() +
-            ": contains scans in the sensor frame (it has a poses.csv); give its poses.csv as "
-            "`trajectory`, or simulate with `format` semantickitti to use them as points");
+    throw Error(ErrorKind::data, folder.path.string() +
+                                     ": contains scans in the sensor frame (it has a poses.csv); " +
+                                     advice_for_scans(folder.path, folder.path / "poses.csv"));
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
@@ -134,9 +213,9 @@ std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
       lower_case(files.front().extension().string()) == ".bin")
     throw Error(ErrorKind::data,
                 folder.path.string() + ": contains " + std::to_string(files.size()) +
-                    " .bin files, which are scans in the frame of a moving sensor; give their "
-                    "poses as `trajectory`, or give the sequence folder that contains poses.txt "
-                    "and the folder 'velodyne'");
+                    " .bin files, which are scans in the frame of a moving sensor; give the "
+                    "sequence folder that contains poses.txt and the folder 'velodyne'; or, " +
+                    advice_for_scans(folder.path, "POSES"));
   std::vector<CloudInput> inputs;
   inputs.reserve(files.size());
   for (const fs::path& file : files) inputs.push_back({file, false});
@@ -161,6 +240,8 @@ std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // an unreadable path fails when it is opened as a file
   if (!fs::is_directory(path, ignored) || is_self_contained_drive(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
+  if (fs::exists(path / "ept.json", ignored)) return ept_tiles(path);
+  reject_foreign(path);
   const Folder folder = read_folder(path);
   if (folder.sequences.empty()) return files_of(folder, scans);
   if (folder.count(FileKind::points) != 0) throw ambiguous_folder(folder);

@@ -29,6 +29,7 @@ enum class SensorScans : std::uint8_t { refused, taken };
 /// - a sequence folder (with `velodyne`): that sequence;
 /// - a tree of sequences (FOLDER/sequences/NAME or FOLDER/NAME, each with `velodyne`): all of them
 ///   by name;
+/// - a folder of Entwine point tiles (ept.json): its LAZ tiles;
 /// - a folder with point files of one extension, such as LAS tiles: these by name. Files of other
 ///   extensions (.md, .json, .prj, ...) and text without points (readme.txt, a CSV index of the
 ///   tiles) are ignored. Errors: no_input (a folder without points, or that cannot be listed); data

@@ -178,6 +178,24 @@ TEST(CloudInputs, ScansOfASensorThatMovesHaveNoPlace) {
                [&] { cloud_inputs(folder.path() / "velodyne"); });
 }
 
+TEST(CloudInputs, FoldersOfOtherProgramsSayWhatToDo) {
+  const TemporaryFolder folder;
+  folder.write("ept/ept.json", "{\"dataType\": \"binary\", \"points\": 1}");
+  folder.write("ept/ept-data/0-0-0-0.bin", std::vector<float>{1, 2, 3, 0});
+  expect_error(ErrorKind::data, {"EPT", "'binary'", "pdal translate"},
+               [&] { cloud_inputs(folder.path() / "ept"); });
+  folder.write("lost/ept.json", "{\"dataType\": \"laszip\", \"points\": 5}");
+  expect_error(ErrorKind::data, {"0 tiles", "states 5"},
+               [&] { cloud_inputs(folder.path() / "lost"); });
+  folder.write("potree/metadata.json", "{}");
+  folder.write("potree/octree.bin", "x");
+  expect_error(ErrorKind::data, {"Potree 2", "LAZ"},
+               [&] { cloud_inputs(folder.path() / "potree"); });
+  folder.write("av2/city_SE3_egovehicle.feather", "ARROW1");
+  expect_error(ErrorKind::data, {"Argoverse 2", "pyarrow"},
+               [&] { cloud_inputs(folder.path() / "av2"); });
+}
+
 TEST(CloudInputs, WhatIsNoPoints) {
   const TemporaryFolder folder;
   require_points(folder.write("cloud.ply", kCloud));

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/sensor_frame.h"
 #include "adasplats/cloud/origins/clocks.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/scan_beams.h"
@@ -46,6 +48,8 @@ struct CloudPart {
   std::vector<Vec3d> world_sensors;    ///< of files that have them
   std::vector<double> times_s;         ///< of files that have them, in the file's clock
   DeclaredClock declared_clock = DeclaredClock::none;  ///< which is this, if the file declares it
+  /// Of files without sensor positions (read_file_part()): why they are one scan.
+  std::optional<SensorFrame> sensor_frame;
   std::vector<Vec3f> scan_origins;     ///< of sequences with an origin per point, sensor frames
   std::vector<std::uint8_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
   std::vector<PartRun> runs;

@@ -56,10 +56,11 @@ struct DriveSettings {
   PointsIn points_in = PointsIn::found;
   SweepPoints sweep_points = SweepPoints::found;
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
-  /// Topics of a recording with the scans and with the poses; empty: chosen automatically.
+  /// Topics of a recording with the scans and with the poses; empty: chosen automatically. For a
+  /// capture `topic` is the sensor, "192.168.1.201:2368".
   std::string topic, poses_topic;
   std::string scene;  ///< of a nuScenes data root; empty: its only scene
-  /// The sensor that sent the packets of a capture (load_lidar_model()).
+  /// The sensor that sent the packets of a capture or recording (load_lidar_model()).
   std::string packets_of;
   /// Start beams at the poses even if the sensor is recognised (ScanBeams).
   bool beams_from_poses = false;
@@ -116,7 +117,8 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                 .group = group},
         drive.scan_times);
   visit(Setting{.name = "topic",
-                .help = "MCAP, ROS bag: topic of the points (default: the only one)",
+                .help = "MCAP, ROS bag: topic of the points or packets; PCAP: sensor by "
+                        "ADDRESS:PORT (default: the only one)",
                 .value = "NAME",
                 .group = group},
         drive.topic);
@@ -132,8 +134,9 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                 .group = group},
         drive.scene);
   visit(Setting{.name = "packet_sensor",
-                .help = "PCAP: sensor that sent the packets, by name or manufacturer's file "
-                        "(default: metadata.json or calibration*.yaml next to the capture)",
+                .help = "PCAP, packets in bags: sensor that sent them, by name or "
+                        "manufacturer's file (default: Ouster metadata in the bag, metadata.json "
+                        "or calibration*.yaml next to the file)",
                 .value = "SENSOR",
                 .group = group,
                 .old_name = "packets_of"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "adasplats/core/error.h"
@@ -66,8 +67,30 @@ void report_own_body(const std::string& input, const LoadReport& report, const L
            : " belong to the recording vehicle and are removed (`own_body` 0 keeps them)"));
 }
 
+namespace {
+
+/// Throws data if the box can only be of geocentric coordinates: at the surface of the Earth around
+/// zero, and not within 10 km of the plane z = 0, where projected coordinates are.
+void require_no_geocentric(const std::string& input, Vec3d low, Vec3d high) {
+  constexpr double kMinRadius_m = 6.33e6, kMaxRadius_m = 6.42e6, kMaxHeight_m = 10e3;
+  const Vec3d middle = 0.5 * (low + high);
+  const double radius = length(middle);
+  if (!(radius > kMinRadius_m && radius < kMaxRadius_m && std::fabs(middle.z) > kMaxHeight_m))
+    return;
+  throw Error(ErrorKind::data,
+              input + ": the points are around " + short_text(middle.x, 8) + ", " +
+                  short_text(middle.y, 8) + ", " + short_text(middle.z, 8) + ", " +
+                  short_text(radius / 1000, 5) +
+                  " km from zero, so they are geocentric (ECEF), where z is not up; project them, "
+                  "for example to UTM with 'pdal translate IN OUT reprojection "
+                  "--filters.reprojection.in_srs=EPSG:4978 --filters.reprojection.out_srs=...'");
+}
+
+}  // namespace
+
 void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
                     ProgressSink& progress) {
+  require_no_geocentric(input, low, high);
   constexpr double kMaxLongitude = 180, kMaxLatitude = 90;
   constexpr double kCertainSteepness = 1000, kDoubtfulSteepness = 10, kDoubtfulWidth = 1;
   const bool in_range = low.x >= -kMaxLongitude && high.x <= kMaxLongitude &&

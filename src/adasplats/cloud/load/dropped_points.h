@@ -19,10 +19,10 @@ void report_dropped(const std::string& input, const LoadReport& report, const Lo
 void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
                      ProgressSink& progress);
 
-/// Throws data if the box of all points can only be in degrees: within 180 and 90 without (0, 0),
-/// and more than a thousand times as high as wide. (A degree is 111 km, so a scene whose heights
-/// vary by 1 % of its width looks like that.) Warns if it can be in degrees or a pole: less than 1
-/// wide, more than ten times as high, and without a coordinate system.
+/// Throws data if the box of all points can only be geocentric (ECEF), or in degrees: within 180
+/// and 90 without (0, 0), and more than a thousand times as high as wide. (A degree is 111 km, so a
+/// scene whose heights vary by 1 % of its width looks like that.) Warns if it can be in degrees or
+/// a pole: less than 1 wide, more than ten times as high, and without a coordinate system.
 void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
                     ProgressSink& progress);
 

@@ -8,9 +8,11 @@
 #include <limits>
 #include <set>
 
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
 
@@ -51,7 +53,8 @@ class FileSource final : public ScanSource {
 
 FileScan read_file_scan(const std::filesystem::path& file) {
   ProgressSink silent;
-  return scan_of_part(read_file_part(file, {}, silent));
+  require_points(file);
+  return scan_of_part(part_of_table(file, read_points(file), {}, silent));
 }
 
 FileScan scan_of_table(const std::filesystem::path& name, const Table& table) {
@@ -84,6 +87,31 @@ PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track
     times.unit_s = unit_s;
     times.fits = true;
     return times;
+  }
+  return times;
+}
+
+PointTimes meaning_of_times(TimeSpan only, const TimeSpan* track_s, double time_offset_s) {
+  const double length = only.last - only.first;
+  PointTimes times;
+  if (length == 0) return times;
+  times.fits = false;
+  for (const auto kind : {PointTimes::Kind::absolute, PointTimes::Kind::offsets}) {
+    times.kind = kind;
+    for (const double unit_s : kTimeUnits_s) {
+      if (!(unit_s * length >= kShortestSweep_s && unit_s * length <= kLongestSweep_s)) continue;
+      const bool covers = track_s != nullptr &&
+                          unit_s * only.first + time_offset_s >= track_s->first &&
+                          unit_s * only.last + time_offset_s <= track_s->last;
+      const bool fits = kind == PointTimes::Kind::absolute
+                            ? covers
+                            : std::fabs(unit_s * only.first) <= kLongestSweep_s;
+      if (!fits) continue;
+      times.unit_s = unit_s;
+      times.shift_s = time_offset_s;
+      times.fits = true;
+      return times;
+    }
   }
   return times;
 }

@@ -69,6 +69,10 @@ struct PointTimes {
 PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track_s,
                             double time_offset_s);
 
+/// The same for a single scan: times are absolute if `track_s` covers them, else offsets if they
+/// begin within a sweep of 0.
+PointTimes meaning_of_times(TimeSpan only, const TimeSpan* track_s, double time_offset_s);
+
 /// Scales the intensities of a drive to 0..1, as in KITTI, if they are bytes: all are whole numbers
 /// from 0 to 255, and one exceeds 1. Otherwise they stay.
 class IntensityScale {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,8 +15,9 @@ namespace adasplats {
 struct FrameEdge {
   std::string parent, child;
   bool is_static = false;
-  Trajectory parent_from_child;  ///< of a static one a single pose
-  std::string fault;             ///< why it cannot be used; thrown on use
+  Trajectory parent_from_child;              ///< of a static one a single pose
+  std::vector<std::int64_t> stamps_ns = {};  ///< of the poses while they are read
+  std::string fault;                         ///< why it cannot be used; thrown on use
 };
 
 /// The frames of a recording, named as in ROS transforms (tf2): each has at most one parent.

@@ -17,6 +17,7 @@
 #include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/cloud/load/point_origins.h"
 #include "adasplats/cloud/load/timed_points.h"
+#include "adasplats/cloud/load/value_checks.h"
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
@@ -69,12 +70,55 @@ void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute
                   " of " + std::to_string(filled) + " inputs have them");
 }
 
+/// Gives all clouds the same other columns, in one order: those that all of them have. Columns of
+/// several types become doubles.
+void unify_other_columns(std::vector<PointCloud>& clouds, ProgressSink& progress) {
+  std::vector<PointCloud*> filled;
+  for (PointCloud& cloud : clouds)
+    if (!cloud.empty()) filled.push_back(&cloud);
+  const auto find = [](PointCloud& cloud, const std::string& name) {
+    return std::ranges::find(cloud.others.columns, name, &Column::name);
+  };
+  std::vector<std::string> names;
+  for (PointCloud* const cloud : filled)
+    for (const Column& column : cloud->others.columns)
+      if (std::ranges::find(names, column.name) == names.end()) names.push_back(column.name);
+  std::vector<std::vector<Column>> unified(filled.size());
+  std::string dropped;
+  for (const std::string& name : names) {
+    bool have_all = true, are_alike = true;
+    for (PointCloud* const cloud : filled) {
+      const auto column = find(*cloud, name);
+      have_all = have_all && column != cloud->others.columns.end();
+      are_alike =
+          have_all && are_alike && column->values.index() == find(*filled[0], name)->values.index();
+    }
+    if (!have_all) {
+      dropped += (dropped.empty() ? "" : ", ") + name;
+      continue;
+    }
+    for (std::size_t k = 0; k < filled.size(); ++k) {
+      Column& column = *find(*filled[k], name);
+      if (!are_alike) {
+        std::vector<double> values(column.size());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = column.as_double(i);
+        column.values = std::move(values);
+      }
+      unified[k].push_back(std::move(column));
+    }
+  }
+  for (std::size_t k = 0; k < filled.size(); ++k) filled[k]->others.columns = std::move(unified[k]);
+  if (!dropped.empty())
+    progress.warn("columns that only some of the inputs have are dropped: " + dropped);
+}
+
 /// Joins the clouds; `scan_poses` are those of their scans. An attribute that only some inputs have
 /// is dropped with a warning; sensor positions are kept (load_cloud).
 PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,
                   ProgressSink& progress) {
   unify_origins(clouds);
   for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
+  unify_other_columns(clouds, progress);
   PointCloud all;
   all.origin = origin;
   for (PointCloud& cloud : clouds)
@@ -115,7 +159,33 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
                                        "load fewer inputs, or build a city (`tile`)");
   }
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
+  for (const CloudPart& part : parts)
+    if (!part.is_sequence) warn_of_steps(part.runs.front().file, part.world_positions, progress);
+  warn_of_intensity_scales(parts, progress);
   return {std::move(parts), crs.crs()};
+}
+
+/// Rejects a file that is one scan in the sensor frame of a known pose, and reports others.
+void check_frame(const std::filesystem::path& file, const CloudPart& part,
+                 const LoadOptions& options, LoadReport& report, ProgressSink& progress) {
+  if (options.viewpoint || !part.world_sensors.empty()) return;
+  const std::optional<std::filesystem::path> drive = drive_with_scan(file);
+  if (!drive && !part.sensor_frame) return;
+  const std::string because =
+      part.sensor_frame ? part.sensor_frame->because : drive->string() + " has its pose";
+  report.sensor_frames.emplace_back(file, because);
+  if (options.accept_sensor_frame) return;
+  const std::string what = file.string() + ": is one scan in the sensor frame (" + because + ")";
+  if (drive && std::filesystem::exists(*drive / "poses.csv"))
+    throw Error(ErrorKind::data, what + "; " + advice_for_scans(*drive, *drive / "poses.csv"));
+  if (drive)
+    throw Error(ErrorKind::data,
+                what + "; give its drive, " + drive->string() + ", which has the poses");
+  if (part.sensor_frame->has_pose)
+    throw Error(ErrorKind::data, what + ", at the pose in its VIEWPOINT; " +
+                                     advice_for_scans(file, "POSES.csv") +
+                                     ", with the pose in POSES.csv (time,x,y,z,qw,qx,qy,qz)");
+  progress.warn(what + " of unknown pose; the sensor frame is used as the world");
 }
 
 /// Measures the parts of loading.
@@ -302,6 +372,10 @@ void keep_only(PointCloud& cloud, const Kept& kept, const Executor& executor) {
     auto& values = attribute.of(cloud);
     tasks.emplace_back([&values, &kept] { keep_only(values, kept); });
   });
+  for (Column& column : cloud.others.columns)
+    tasks.emplace_back([&column, &kept] {
+      std::visit([&kept](auto& values) { keep_only(values, kept); }, column.values);
+    });
   executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
 }
 
@@ -449,6 +523,9 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
     none.crs = std::move(crs);
     return {std::move(none), std::move(report)};
   }
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    if (!parts[p].is_sequence)
+      check_frame(sources[p].input.path, parts[p], options, report, progress);
   Gathered gathered{std::move(parts)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -21,6 +22,9 @@
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
+
+/// Columns of files without an attribute of PointCloud: `colors` are red, green and blue.
+enum class KeptColumns : std::uint8_t { none, colors, all };
 
 /// How files become a point cloud. `trajectory` gives the sensor position of points without one:
 /// the pose at the point's time (TimedOrigins) if both have times, else the nearest pose in the
@@ -64,6 +68,11 @@ struct LoadOptions : DriveSettings {
   /// Also find the beams that returned nothing (find_empty_beams(), before points are removed) and
   /// add them to the cloud.
   bool empty_beams = false;
+  /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
+  /// orient points without a sensor position (OriginKind::guessed).
+  KeptColumns other_columns = KeptColumns::none;
+  /// Accept files that are one scan in the sensor frame of a known pose, to describe them.
+  bool accept_sensor_frame = false;
 };
 
 /// Which points are dropped, and how many dropped points are an error.
@@ -86,7 +95,7 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
-                .help = "Remove points closer to their sensor than this as the recording vehicle, "
+                .help = "Remove points closer to their sensor than this (the recording vehicle), "
                         "m; 0 keeps all (default: points that move with the sensor)",
                 .value = "M",
                 .key = "own_body_m",
@@ -103,8 +112,8 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
-                .help = "Trust the sensor positions of the file even if points are hidden behind "
-                        "others from there, as later returns are",
+                .help = "Accept the sensor positions even if other points hide some points from "
+                        "them, as with later returns",
                 .group = group},
         load.trust_origins);
   visit(
@@ -203,6 +212,8 @@ struct LoadReport {
   std::vector<std::string> beams;
   /// In the order of PointCloud::scan_poses.
   std::vector<LoadedDrive> drives;
+  /// Files that are one scan in the frame of its sensor, and why (sensor_frame_of()).
+  std::vector<std::pair<std::filesystem::path, std::string>> sensor_frames;
   /// Number of points per OriginKind.
   OriginCounts origins{};
   std::optional<TimedOrigins> timed;
@@ -233,6 +244,8 @@ struct LoadReport {
 /// not points. The cloud is in world coordinates; its origin depends on the extents alone.
 /// - Attributes: if only some inputs have one, it is dropped with a warning. Sensor positions are
 ///   kept; points without one get OriginKind::none.
+/// - A file that is one scan in the sensor frame (sensor_frame_of()) is an error if its pose is
+///   known, else a warning: the sensor frame is the world. `viewpoint` states that it is.
 /// - Scans are numbered from 0 over all sequences, which must not start at the same pose
 ///   (require_distinct_starts).
 /// - Coordinate system: that of the inputs. An input without one, or without one for heights, is
@@ -260,16 +273,19 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, origin_kind (OriginKind; if not all are measured), intensity, label, instance,
-/// scan_index, if the cloud has them (the layout of Paris-CARLA-3D), and `more`, one value per
-/// point. Doubles if the origin is not zero. The coordinate system as crs_comments().
+/// scan_index, if the cloud has them (the layout of Paris-CARLA-3D), `more`, one value per point,
+/// and the other columns of the cloud: colours as bytes if that is exact, 64-bit integers as
+/// doubles. Doubles if the origin is not zero. The coordinate system as crs_comments(), the label
+/// scheme as kLabelsComment.
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 
-/// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, in millimetres
-/// from the cloud's origin; classification (the class; 0, never classified, for numbers above 255),
-/// intensity (0 to 1 becomes 0 to 65535; larger numbers are rounded). Extra bytes: the columns of
-/// the PLY, the intensity as `intensity_value`, and `more`. The coordinate system is included.
-/// Errors: those of write_las.
+/// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, 7 with colours, 8
+/// also with near infrared, in millimetres from the cloud's origin; classification (the class; 0,
+/// never classified, for numbers above 255), intensity (0 to 1 becomes 0 to 65535; larger numbers
+/// are rounded). Extra bytes: the columns of the PLY, the intensity as `intensity_value`, and
+/// `more`. Other columns go to the fields of LAS of their names, if these hold the values, else to
+/// extra bytes. Coordinate system and label scheme are included. Errors: those of write_las.
 void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 

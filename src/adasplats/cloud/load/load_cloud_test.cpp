@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -407,6 +408,17 @@ TEST(LoadCloud, ColumnsOfFiles) {
   EXPECT_TRUE(cloud.scan_indices.empty());
 }
 
+TEST(LoadCloud, MisspeltColumnsAreWarnedAbout) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.csv", "x,y,z,intensty,other\n1,2,3,4,5\n");
+  Listener listener;
+  EXPECT_TRUE(load_cloud(std::span(&file, 1), {}, Executor(1), listener).first.intensities.empty());
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("a.csv: column 'intensty' is not read, did you mean "
+                                      "'intensity'?"),
+            std::string::npos);
+}
+
 TEST(LoadCloud, NamedColumns) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.csv", "x,y,z,label,kind,px,py,pz\n1,2,3,40,9,7,8,9\n");
@@ -616,6 +628,95 @@ TEST(LoadCloud, RealStreetFile) {
   EXPECT_EQ(cloud.size(), 170610U);  // its header says so
   EXPECT_EQ(report.points_read, 170610U);
   EXPECT_TRUE(cloud.classes.empty());
+}
+
+LoadOptions all_columns() {
+  LoadOptions options;
+  options.other_columns = KeptColumns::all;
+  return options;
+}
+
+const Column& other(const PointCloud& cloud, const std::string& name) {
+  for (const Column& column : cloud.others.columns)
+    if (column.name == name) return column;
+  throw std::logic_error("no column " + name);
+}
+
+// Oracle: the values that were written, after a second way through LAS, LAZ and PLY.
+TEST(OtherColumns, GoThroughFiles) {
+  const TemporaryFolder folder;
+  const std::vector<double> x = {500000.5, 500001.25, 500002}, time = {1.5, 2.5, 1e8};
+  const std::vector<std::uint16_t> red = {256, 512, 65280}, source = {7, 8, 9};
+  const std::vector<std::uint8_t> number = {1, 2, 0}, returns = {2, 2, 0}, user = {3, 0, 255},
+                                  overlap = {0, 1, 0};
+  const std::vector<std::int16_t> angle = {-1000, 0, 500};
+  const std::vector<std::uint64_t> big = {1, 2, std::uint64_t{1} << 40};
+  const ColumnView columns[] = {{"x", ColumnType::f64, x.data(), 8},
+                                {"y", ColumnType::f64, x.data(), 8},
+                                {"z", ColumnType::f64, time.data(), 8},
+                                {"gps_time", ColumnType::f64, time.data(), 8},
+                                {"red", ColumnType::u16, red.data(), 2},
+                                {"green", ColumnType::u16, red.data(), 2},
+                                {"blue", ColumnType::u16, red.data(), 2},
+                                {"point_source_id", ColumnType::u16, source.data(), 2},
+                                {"return_number", ColumnType::u8, number.data(), 1},
+                                {"number_of_returns", ColumnType::u8, returns.data(), 1},
+                                {"user_data", ColumnType::u8, user.data(), 1},
+                                {"overlap", ColumnType::u8, overlap.data(), 1},
+                                {"scan_angle", ColumnType::i16, angle.data(), 2},
+                                {"echo width", ColumnType::u64, big.data(), 8}};
+  const auto first = folder.path() / "a.las";
+  LasWriteOptions writing;
+  writing.offset_m = {500000, 500000, 0};
+  writing.has_adjusted_times = true;
+  write_las(first, 2, columns, writing);
+  PointCloud cloud = load({first}, all_columns()).first;
+  cloud.label_scheme = "asprs";
+  cloud.intensities = {0.25F, 0.5F};
+  cloud.classes = {2, 300};
+  for (const char* const name : {"b.las", "b.laz", "b.ply"}) {
+    SCOPED_TRACE(name);
+    const auto path = folder.path() / name;
+    (path.extension() == ".ply" ? save_cloud_ply : save_cloud_las)(path, cloud, {});
+    const PointCloud again = load({path}, all_columns()).first;
+    for (const char* const column : {"gps_time", "point_source_id", "return_number",
+                                     "number_of_returns", "user_data", "overlap"})
+      for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(other(again, column).as_double(i), other(cloud, column).as_double(i)) << column;
+    EXPECT_NEAR(other(again, "scan_angle").as_double(0), -6, 1e-4);
+    EXPECT_EQ(file_colors(again), file_colors(cloud));
+    EXPECT_EQ(file_colors(again)[1], (std::array<std::uint8_t, 3>{2, 2, 2}));
+    const bool is_ply = path.extension() == ".ply";
+    EXPECT_EQ(other(again, is_ply ? "echo_width" : "echo width").as_double(1), 2);
+    EXPECT_EQ(again.others.has_adjusted_times, !is_ply);
+    EXPECT_EQ(again.others.columns.size(), cloud.others.columns.size());
+    EXPECT_EQ(again.intensities, cloud.intensities);
+    if (!is_ply) {
+      EXPECT_EQ(read_las_facts(path).labels, "asprs");
+    }
+    // Only on request.
+    EXPECT_TRUE(load({path}).first.others.columns.empty());
+  }
+}
+
+TEST(OtherColumns, OfSeveralInputs) {
+  const TemporaryFolder folder;
+  const auto a = folder.write("a.csv", "x,y,z,rgb,echo\n1,2,3,255,5\nnan,1,1,7,6\n4,5,6,65536,7\n");
+  const auto b = folder.write("b.csv", "x,y,z,R,G,B\n1,2,9,1,2,3\n");
+  Listener listener;
+  const std::vector<std::filesystem::path> both = {a, b};
+  LoadOptions options = all_columns();
+  options.max_dropped = 1;
+  const PointCloud cloud = load_cloud(both, options, Executor(2), listener).first;
+  EXPECT_EQ(file_colors(cloud),
+            (std::vector<std::array<std::uint8_t, 3>>{{0, 0, 255}, {1, 0, 0}, {1, 2, 3}}));
+  EXPECT_EQ(cloud.others.columns.size(), 3U);
+  const auto lists_echo = [](const std::string& warning) {
+    return warning.ends_with("dropped: echo");
+  };
+  EXPECT_EQ(std::ranges::count_if(listener.warnings, lists_echo), 1);
+  options.other_columns = KeptColumns::colors;
+  EXPECT_EQ(load({a}, options).first.others.columns.size(), 3U);
 }
 
 }  // namespace

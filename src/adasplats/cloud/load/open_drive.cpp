@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 
+#include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/frame_evidence.h"
@@ -60,9 +62,13 @@ std::optional<SensorFrames> sensor_frames_of(const DriveInput& drive,
   std::optional<Track> track;
   if (has_times(drive.trajectory)) track = track_of(given);
   const TimeSpan covered = track ? track->covered_s() : TimeSpan{};
-  frames.times = meaning_of_times(read_file_scan(files.front()).time_span(),
-                                  read_file_scan(files.back()).time_span(),
-                                  track ? &covered : nullptr, drive.time_offset_s.value_or(0));
+  const TimeSpan* const covered_s = track ? &covered : nullptr;
+  const double offset_s = drive.time_offset_s.value_or(0);
+  const TimeSpan first_s = read_file_scan(files.front()).time_span();
+  frames.times = files.size() == 1
+                     ? meaning_of_times(first_s, covered_s, offset_s)
+                     : meaning_of_times(first_s, read_file_scan(files.back()).time_span(),
+                                        covered_s, offset_s);
   auto poses = poses_of_files(files, drive.trajectory, drive.scan_times, drive.time_offset_s);
   const bool is_absolute = frames.times.kind == PointTimes::Kind::absolute && frames.times.fits;
   if (!poses && !(is_absolute && track)) return std::nullopt;
@@ -112,7 +118,25 @@ Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& 
   return crs.crs();
 }
 
-/// Opens a folder of files, one per scan.
+/// Whether a file is small enough for one scan: half a million points of 64 bytes. Larger files
+/// are not read twice.
+bool can_be_scan(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 25;
+  std::error_code problem;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
+  return !problem && bytes <= kMaxBytes;
+}
+
+/// The frame of a single file: by its columns, else as find_frame().
+FrameVerdict frame_of_single(const SensorFrames& frames, const Executor& executor) {
+  ProgressSink silent;
+  const CloudPart part = read_file_part(frames.files.front(), {}, silent);
+  if (!part.world_sensors.empty()) return {PointsIn::world, "it has sensor positions"};
+  if (part.sensor_frame) return {PointsIn::sensor, part.sensor_frame->because};
+  return find_frame(frames, executor);
+}
+
+/// Opens a folder of files, one per scan, or a file that is one.
 std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor& executor,
                                         ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
@@ -128,7 +152,9 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
     if (sequence) sequence->facts.crs = crs_of_files(files, progress);
     return sequence;
   };
-  if (files.size() < 2 && drive.points_in != PointsIn::sensor) return std::nullopt;
+  const bool is_single = files.size() == 1 && drive.points_in == PointsIn::found;
+  if (is_single && !can_be_scan(files.front())) return std::nullopt;
+  if (files.size() < 2 && !is_single && drive.points_in != PointsIn::sensor) return std::nullopt;
   if (drive.points_in == PointsIn::world) {
     auto sequence = open_as_world();
     if (sequence) {
@@ -150,18 +176,23 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
               " poses in " + drive.trajectory.string() +
               ", and neither the file names nor times of points match them; give `scan_times`");
   } else {
+    if (is_single && !(frames && frames->times.fits)) return std::nullopt;
     if (!frames) return open_as_world();  // reports what is wrong with the times
     progress.begin_step("frame of the points", 0);
-    verdict = find_frame(*frames, executor);
+    verdict = is_single ? frame_of_single(*frames, executor) : find_frame(*frames, executor);
     progress.end_step();
   }
   if (verdict.points_in == PointsIn::sensor)
     return open_sensor_frames(drive, *frames, verdict.because, executor, progress);
+  // A file that is not shown to be a scan is a cloud in world coordinates.
+  if (is_single) return std::nullopt;
   if (verdict.points_in == PointsIn::found)
     throw Error(ErrorKind::data, drive.folder.string() +
                                      ": cannot determine whether its points are in the sensor "
                                      "frame or in world coordinates (" +
-                                     verdict.because + "); set `points_in` to sensor or world");
+                                     verdict.because +
+                                     "); check the units, axes and clock of the poses, or set "
+                                     "`points_in` to sensor or world");
   auto sequence = open_as_world();
   if (sequence) {
     sequence->facts.points_in = "world (" + verdict.because + ")";
@@ -177,9 +208,12 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
   if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
     throw Error(ErrorKind::usage,
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
-  if (is_recording(drive.folder))
-    return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
-                                progress);
+  if (is_recording(drive.folder)) {
+    const RecordingSurvey survey = survey_recording(drive.folder, progress);
+    if (!is_read_by_packets(survey, drive))
+      return open_recording_drive(drive, survey, executor, progress);
+    return open_packet_drive(drive, survey_packets(survey, drive, progress), executor, progress);
+  }
   if (const DataTree* const tree = data_tree_of(drive.folder))
     return open_data_tree(*tree, drive, executor, progress);
   if (is_capture(drive.folder))

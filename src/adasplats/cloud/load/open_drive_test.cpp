@@ -98,15 +98,25 @@ class Drive {
   TemporaryFolder folder_;
 };
 
+class Listener : public ProgressSink {
+ public:
+  void warn(std::string_view message) override { text += message; }
+  std::string text;
+};
+
 // Oracle: where the sensor was when each point was made.
 TEST(DriveInput, BeamsBeginWhereTheSensorWasAtTheirTime) {
   const Drive drive;
-  ProgressSink quiet;
+  Listener listener;
   LoadOptions options;
   options.trajectory = drive.poses();
   options.own_body_m = 0;
   const std::filesystem::path frames = drive.frames();
-  const auto [cloud, report] = load_cloud(std::span(&frames, 1), options, Executor(2), quiet);
+  const auto [cloud, report] = load_cloud(std::span(&frames, 1), options, Executor(2), listener);
+  EXPECT_NE(listener.text.find(": points in the world, beams from hesai-pandar64 at "),
+            std::string::npos)
+      << listener.text;
+  EXPECT_EQ(listener.text.find("cones"), std::string::npos) << listener.text;  // evidence: info
   ASSERT_EQ(cloud.scan_poses.size(), 6U);
   ASSERT_EQ(cloud.sensor_positions.size(), cloud.size());
   ASSERT_EQ(cloud.lasers.size(), cloud.size());
@@ -204,11 +214,7 @@ std::filesystem::path frames_of_nothing(const TemporaryFolder& folder) {
 TEST(DriveInput, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   const TemporaryFolder folder;
   const std::filesystem::path frames = frames_of_nothing(folder);
-  class Listener : public ProgressSink {
-   public:
-    void warn(std::string_view message) override { text += message; }
-    std::string text;
-  } listener;
+  Listener listener;
   LoadOptions options;
   options.trajectory = folder.path() / "poses.csv";
   // The frame is undetermined, and it is not guessed.

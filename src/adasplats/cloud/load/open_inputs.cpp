@@ -103,15 +103,19 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
         "sensor frame with a `trajectory`; no input is one");
   const bool any_recording = std::ranges::any_of(
       inputs, [](const OpenInput& input) { return is_recording(input.input.path); });
-  if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
-    throw usage("`topic` and `poses_topic` need a recording (MCAP, ROS bag); no input is one");
+  if (!options.poses_topic.empty() && !any_recording)
+    throw usage("`poses_topic` needs a recording (MCAP, ROS bag); no input is one");
   const bool any_tree = std::ranges::any_of(
       inputs, [](const OpenInput& input) { return data_tree_of(input.input.path) != nullptr; });
   if (!options.scene.empty() && !any_tree)
     throw usage("`scene` needs a nuScenes data root; no input is one");
-  const auto is_of_packets = [](const OpenInput& input) { return is_capture(input.input.path); };
-  if (!options.packets_of.empty() && std::ranges::none_of(inputs, is_of_packets))
-    throw usage("`packet_sensor` needs a packet capture (.pcap, .pcapng); no input is one");
+  const bool has_packets = any_recording || std::ranges::any_of(inputs, [](const OpenInput& input) {
+                             return is_capture(input.input.path);
+                           });
+  if (!options.topic.empty() && !has_packets)
+    throw usage("`topic` needs a recording or a packet capture; no input is one");
+  if (!options.packets_of.empty() && !has_packets)
+    throw usage("`packet_sensor` needs a packet capture or a recording; no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage(

@@ -39,23 +39,25 @@ class RevolutionFinder {
         clock_(decoder.traits().is_hourly),
         column_ns_(std::llround(decoder.column_s() * static_cast<double>(kSecond_ns))) {}
 
-  void add(const Datagram& datagram, const std::string& what) {
-    const std::vector<MeasuredColumn> columns = decoder_.columns(datagram.payload);
+  void add(const SensorPacket& packet, const std::string& what) {
+    const std::vector<MeasuredColumn> columns = decoder_.columns(packet.bytes);
     const std::int64_t first_ns = columns.front().time_ns;
-    const std::int64_t begin_ns = clock_.time_ns(first_ns, datagram.time_ns, what);
-    if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
+    const std::int64_t begin_ns = clock_.time_ns(first_ns, packet.time_ns, what);
+    if (decoder_.is_dual(packet.bytes)) ++source_.dual_packets;
     if (source_.packets == 0)
-      source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
+      source_.ahead_ns = static_cast<std::int64_t>(packet.time_ns) - begin_ns +
                          (decoder_.traits().is_hourly ? 0 : clock_.shift_ns());
     ++source_.packets;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!columns[k].is_valid) continue;
       const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
       const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
-      if (begins_anew) cut_step_ = cut_before(columns[k]);
       const bool begins = begins_anew || begins_revolution(columns[k]);
+      if (begins_anew || (begins && decoder_.traits().has_frames))
+        cut_step_ = cut_before(columns[k]);
       if (begins) {
-        source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
+        if (!begins_anew) check_turn(columns[k], time_ns);
+        source_.revolutions.push_back({packet.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
       }
       if (!begins || !decoder_.traits().has_pauses) count_gap(time_ns);
@@ -64,7 +66,7 @@ class RevolutionFinder {
       now.share = share_of_turn(columns[k]);
       if (columns[k].lasts_ns != 0) column_ns_ = columns[k].lasts_ns;
       now.end_ns = time_ns + column_ns_;
-      now.has_points = now.has_points || decoder_.has_returns(datagram.payload, k);
+      now.has_points = now.has_points || decoder_.has_returns(packet.bytes, k);
       last_ = columns[k];
       last_ns_ = time_ns;
     }
@@ -77,6 +79,7 @@ class RevolutionFinder {
   }
   /// The step at which revolutions begin, if this column is the first.
   std::uint32_t cut_before(const MeasuredColumn& column) const {
+    if (decoder_.traits().has_frames) return column.step;
     if (decoder_.traits().has_cut) return 0;
     // A quarter of a column earlier: azimuths are rounded.
     const std::uint32_t turn = decoder_.steps_per_turn();
@@ -88,9 +91,24 @@ class RevolutionFinder {
   }
   /// The head passed the end of a turn, or went back (packets are missing).
   bool begins_revolution(const MeasuredColumn& column) const {
-    if (decoder_.traits().has_frames && column.frame != last_.frame) return true;
+    if (decoder_.traits().has_frames) return column.frame != last_.frame;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
     return since_cut(column) + back < since_cut(last_);
+  }
+  /// Counts numbered revolutions whose end contradicts the columns per revolution: by the time
+  /// since the last column, another number of columns is missing up to this one.
+  void check_turn(const MeasuredColumn& column, std::int64_t time_ns) {
+    if (!decoder_.traits().has_frames || decoder_.traits().has_pauses) return;
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    const double missing = (column.step + turn - last_.step) % turn;
+    const double passed = static_cast<double>(time_ns - last_ns_) / static_cast<double>(column_ns_);
+    if (std::fabs(std::remainder(passed - missing, turn)) < turn / 8.0) return;
+    ++source_.odd_turns;
+    if (!source_.contradiction.empty()) return;
+    const LidarModel& model = decoder_.sensor().model;
+    source_.contradiction = "end revolutions after column " + std::to_string(last_.step) +
+                            ", but " + model.name + " has " + std::to_string(model.columns) +
+                            " columns per revolution";
   }
   double share_of_turn(const MeasuredColumn& last) const {
     const double turn = decoder_.steps_per_turn();
@@ -146,34 +164,96 @@ std::int64_t SensorClock::time_ns(std::int64_t sensor_ns, std::uint64_t captured
   return time_ns;
 }
 
-PacketSurvey survey_packets(const std::filesystem::path& path,
-                            std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress) {
-  PacketSurvey survey{path, std::move(decoder), {}, {}};
+namespace {
+
+PacketSurvey surveyed(PacketSurvey survey, ProgressSink& progress) {
   std::map<std::string, RevolutionFinder> finders;
-  DatagramReader reader(path);
-  progress.begin_step("read " + path.filename().string(), 0);
-  while (const auto datagram = reader.next()) {
-    progress.advance(reader.counts().datagrams);
-    const std::string name = address_text(datagram->from) + ":" + std::to_string(datagram->to_port);
+  std::uint64_t done = 0;
+  progress.begin_step("read " + survey.path.filename().string(), 0);
+  survey.counts = survey.file->for_each([&](const SensorPacket& packet) {
+    progress.advance(++done);
+    const std::string name(packet.source);
     PacketSource& source = survey.sources[name];
     if (survey.sources.size() > kMaxSources)
-      throw Error(ErrorKind::data, path.string() + ": datagrams from more than " +
+      throw Error(ErrorKind::data, survey.path.string() + ": datagrams from more than " +
                                        std::to_string(kMaxSources) +
                                        " sources; this is not the capture of a sensor");
     ++source.datagrams;
-    if (!survey.decoder || !survey.decoder->has_size(datagram->payload)) continue;
-    if (const auto objection = survey.decoder->objection(datagram->payload)) {
+    if (!survey.decoder || !survey.decoder->has_size(packet.bytes)) return;
+    if (const auto objection = survey.decoder->objection(packet.bytes)) {
       if (source.objection.empty()) source.objection = *objection;
-      continue;
+      return;
+    }
+    if (const auto contradiction = survey.decoder->contradiction(packet.bytes)) {
+      if (source.contradiction.empty()) source.contradiction = *contradiction;
+      ++source.contradictions;
+      return;
     }
     const auto [finder, is_new] =
         finders.try_emplace(name, RevolutionFinder(*survey.decoder, source));
-    finder->second.add(*datagram, path.string() + ": packet " + std::to_string(source.packets + 1) +
-                                      " of " + name);
-  }
+    finder->second.add(packet, survey.path.string() + ": packet " +
+                                   std::to_string(source.packets + 1) + " of " + name);
+  });
   progress.end_step();
-  survey.counts = reader.counts();
   return survey;
+}
+
+std::shared_ptr<const PacketDecoder> decoder_of(const LidarModel& model) {
+  return std::make_shared<const PacketDecoder>(packet_sensor(model));
+}
+
+/// "/ouster" of "/ouster/lidar_packets".
+std::string_view namespace_of(std::string_view topic) { return topic.substr(0, topic.rfind('/')); }
+
+/// The topic with the metadata of the packets of `stated`, or of the only ones; null: none.
+const TopicSurvey* topic_of_metadata(const RecordingSurvey& survey, const std::string& stated) {
+  const TopicSurvey* chosen = nullptr;
+  for (const auto& [name, topic] : survey.topics) {
+    if (topic.metadata.empty()) continue;
+    if (!stated.empty() && namespace_of(name) != namespace_of(stated)) continue;
+    if (chosen != nullptr)
+      throw Error(ErrorKind::usage, survey.recording->path().string() +
+                                        ": has the metadata of several sensors (" +
+                                        chosen->topic.name + ", " + name +
+                                        "); choose the topic of the packets with `topic`");
+    chosen = &topic;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+PacketSurvey survey_packets(const std::filesystem::path& path,
+                            std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress) {
+  return surveyed({path, packets_of_capture(path), nullptr, std::move(decoder), {}, {}}, progress);
+}
+
+PacketSurvey survey_packets(const RecordingSurvey& recording, const DriveSettings& settings,
+                            ProgressSink& progress) {
+  const auto shared = std::make_shared<const RecordingSurvey>(recording);
+  PacketSurvey survey{
+      recording.recording->path(), packets_of_recording(shared), shared, nullptr, {}, {}};
+  const TopicSurvey* const metadata =
+      settings.packets_of.empty() ? topic_of_metadata(recording, settings.topic) : nullptr;
+  if (metadata != nullptr)
+    survey.decoder = decoder_of(ouster_lidar_model(metadata->metadata, metadata->topic.name));
+  else
+    survey.decoder = decoder_of_capture(survey.path, settings.packets_of);
+  return surveyed(std::move(survey), progress);
+}
+
+bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings) {
+  bool has_clouds = false, has_packets = false;
+  for (const auto& [name, topic] : survey.topics) {
+    if (!settings.topic.empty() && name != settings.topic) continue;
+    has_clouds = has_clouds || topic.holds_clouds();
+    has_packets = has_packets || !topic.packets.empty();
+  }
+  if (!settings.packets_of.empty() && !has_packets)
+    throw Error(ErrorKind::usage,
+                survey.recording->path().string() + ": `packet_sensor` needs a topic of packets; " +
+                    (settings.topic.empty() ? "there is none" : settings.topic + " is none"));
+  return has_packets && (!has_clouds || !settings.packets_of.empty());
 }
 
 std::string sensor_of_capture(const std::filesystem::path& capture, const std::string& stated) {
@@ -216,26 +296,23 @@ double middle_of(const Revolution& turn) {
 /// Reads revolutions by generated names.
 class PacketScans final : public ScanSource {
  public:
-  PacketScans(fs::path capture, std::shared_ptr<const PacketDecoder> decoder, std::string source,
-              std::map<fs::path, Revolution> turns)
-      : capture_(std::move(capture)),
+  PacketScans(std::shared_ptr<const PacketFile> file, std::shared_ptr<const PacketDecoder> decoder,
+              std::string source, std::map<fs::path, Revolution> turns)
+      : file_(std::move(file)),
         decoder_(std::move(decoder)),
         source_(std::move(source)),
         turns_(std::move(turns)) {}
 
   FileScan read(const fs::path& name) const override {
     const Revolution& turn = turns_.at(name);
-    DatagramReader reader(capture_, turn.place);
     FileScan scan;
     std::size_t left = turn.columns, skip = turn.skipped;
     std::int64_t shift_ns = 0;
     std::int64_t last_ns = 0;
     bool is_first = true;
-    while (left > 0) {
-      const auto datagram = reader.next();
-      if (!datagram) throw Error(ErrorKind::io, capture_.string() + ": changed while it was read");
-      if (!is_of_source(*datagram)) continue;
-      const std::vector<MeasuredColumn> columns = decoder_->columns(datagram->payload);
+    file_->read_from(source_, turn.place, [&](const SensorPacket& packet) {
+      if (!decoder_->accepts(packet.bytes)) return true;
+      const std::vector<MeasuredColumn> columns = decoder_->columns(packet.bytes);
       for (std::size_t k = std::exchange(skip, 0); k < columns.size() && left > 0; ++k) {
         if (!columns[k].is_valid) continue;
         std::int64_t time_ns = columns[k].time_ns;
@@ -243,32 +320,28 @@ class PacketScans final : public ScanSource {
         // A revolution may pass the full hour.
         if (time_ns + shift_ns < last_ns - kFullHour_ns / 2) shift_ns += kFullHour_ns;
         last_ns = time_ns += shift_ns;
-        add_column(*datagram, k, columns[k], as_seconds(time_ns), scan);
+        add_column(packet.bytes, k, columns[k], as_seconds(time_ns), scan);
         --left;
       }
-    }
+      return left > 0;
+    });
     return scan;
   }
 
  private:
   static constexpr std::int64_t kFullHour_ns = 3'600'000'000'000;
 
-  bool is_of_source(const Datagram& datagram) const {
-    return decoder_->has_size(datagram.payload) &&
-           source_ == address_text(datagram.from) + ":" + std::to_string(datagram.to_port) &&
-           !decoder_->objection(datagram.payload);
-  }
-  void add_column(const Datagram& datagram, std::size_t k, const MeasuredColumn& column,
+  void add_column(std::string_view payload, std::size_t k, const MeasuredColumn& column,
                   double time_s, FileScan& scan) const {
     PacketPoints points;
-    decoder_->add_points(datagram.payload, k, column, points);
+    decoder_->add_points(payload, k, column, points);
     scan.positions.insert(scan.positions.end(), points.positions.begin(), points.positions.end());
     for (const double late_s : points.late_s) scan.times.push_back(time_s + late_s);
     scan.intensities.insert(scan.intensities.end(), points.intensities.begin(),
                             points.intensities.end());
   }
 
-  fs::path capture_;
+  std::shared_ptr<const PacketFile> file_;
   std::shared_ptr<const PacketDecoder> decoder_;
   std::string source_;
   std::map<fs::path, Revolution> turns_;
@@ -280,21 +353,40 @@ std::string list_of_sources(const PacketSurvey& survey) {
     list += (list.empty() ? "" : ", ") + name + " (" + std::to_string(source.datagrams) +
             " datagrams" +
             (source.packets > 0 ? ", " + std::to_string(source.packets) + " of the sensor" : "") +
-            (source.objection.empty() ? "" : "; some " + source.objection) + ")";
+            (source.objection.empty() ? "" : "; some " + source.objection) +
+            (source.contradiction.empty() ? "" : "; some " + source.contradiction) + ")";
   return list.empty() ? "none" : list;
+}
+
+/// Whether the sensor's file is of another device or mode than the packets, rather than single
+/// packets damaged.
+bool contradicts_file(const PacketSource& source) {
+  constexpr std::uint64_t kDamaged = 10;  // one in
+  return source.contradictions > source.packets / kDamaged ||
+         (source.odd_turns > 0 && 2 * source.odd_turns + 1 >= source.revolutions.size());
+}
+
+Error wrong_file(const PacketSurvey& survey, const std::string& name, const PacketSource& source) {
+  return {ErrorKind::data, survey.path.string() + ": packets of " + name + " " +
+                               source.contradiction +
+                               "; give the file of this sensor in this mode as `packet_sensor`"};
 }
 
 /// The given source, else the only one.
 const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& survey,
                                                             const std::string& stated) {
-  const std::pair<const std::string, PacketSource>* chosen = nullptr;
+  const std::pair<const std::string, PacketSource>*chosen = nullptr, *wrong = nullptr;
   std::size_t count = 0;
   for (const auto& entry : survey.sources) {
-    if (entry.second.packets == 0 || (!stated.empty() && entry.first != stated)) continue;
+    if (!stated.empty() && entry.first != stated) continue;
+    if (contradicts_file(entry.second)) wrong = &entry;
+    if (entry.second.packets == 0) continue;
     chosen = &entry;
     ++count;
   }
-  const std::string sources = "; UDP from: " + list_of_sources(survey);
+  const std::string sources = "; packets from: " + list_of_sources(survey);
+  if (wrong != nullptr && (count == 0 || chosen == wrong))
+    throw wrong_file(survey, wrong->first, wrong->second);
   if (count == 0)
     throw Error(stated.empty() ? ErrorKind::data : ErrorKind::usage,
                 survey.path.string() + ": has no packets of " +
@@ -319,9 +411,16 @@ void warn_of_packets(const PacketSurvey& survey, const std::string& name,
   warn(survey.counts.torn, "datagrams lack fragments and are skipped");
   warn(survey.counts.cut, "frames are truncated and are skipped");
   warn(survey.counts.timeless, "frames have no time and are skipped");
-  if (!source.objection.empty())
-    progress.warn(survey.path.string() + ": some packets of " + name + " " + source.objection +
-                  " and are skipped");
+  for (const std::string& fault : {source.objection, source.contradiction})
+    if (!fault.empty())
+      progress.warn(survey.path.string() + ": some packets of " + name + " " + fault +
+                    " and are skipped");
+  const PacketSensor& sensor = survey.decoder->sensor();
+  const std::uint64_t serial = sensor.model.packets->serial;
+  if (sensor.format == PacketFormat::ouster_legacy && serial != 0)
+    progress.warn(survey.path.string() +
+                  ": packets of profile LEGACY have no serial number; make sure that " +
+                  sensor.model.name + " (" + std::to_string(serial) + ") is of this sensor");
 }
 
 /// Warns of revolutions cut by the start or end of the capture.
@@ -372,24 +471,36 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
     progress.warn(survey.path.string() + ": " + std::to_string(empty) + " revolutions of " + name +
                   " have no points and are skipped");
   drive.frames.source =
-      std::make_shared<PacketScans>(survey.path, survey.decoder, name, std::move(turns));
+      std::make_shared<PacketScans>(survey.file, survey.decoder, name, std::move(turns));
   drive.frames.times = {PointTimes::Kind::absolute, 1, offset_s, true};
   return drive;
 }
 
-void require_options_of_captures(const DriveInput& drive) {
+void require_options_of_packets(const DriveInput& drive, bool is_recorded) {
   const std::string path = drive.folder.string();
-  if (!drive.poses_topic.empty() || !drive.scan_times.empty())
+  if ((!drive.poses_topic.empty() && !is_recorded) || !drive.scan_times.empty())
     throw Error(ErrorKind::usage, path +
                                       ": packets have times and no poses; `poses_topic` and "
                                       "`scan_times` apply to recordings and folders");
+  if (!drive.poses_topic.empty() && !drive.trajectory.empty())
+    throw Error(
+        ErrorKind::usage,
+        path + ": `trajectory` and `poses_topic` both give the poses; give only one of them");
   if (drive.points_in == PointsIn::world)
     throw Error(
         ErrorKind::usage,
         path + ": packets are in the sensor frame; `points_in` world applies to folders of files");
-  if (drive.trajectory.empty())
+  if (drive.trajectory.empty() && !is_recorded)
     throw Error(ErrorKind::usage,
                 path + ": packets contain no poses; give the poses of the sensor as `trajectory`");
+}
+
+/// From the trajectory, or from the topics of the recording.
+RecordedPoses poses_of_packets(const DriveInput& drive, const PacketSurvey& survey,
+                               const std::string& topic, const std::vector<double>& middles_s) {
+  if (drive.trajectory.empty())
+    return poses_of_clouds(drive, *survey.recording, survey.recording->topics.at(topic), middles_s);
+  return poses_of_trajectory(drive, middles_s, "revolutions", "in the middles of the revolutions");
 }
 
 }  // namespace
@@ -398,7 +509,7 @@ std::shared_ptr<const PacketDecoder> decoder_of_capture(const fs::path& capture,
                                                         const std::string& stated) {
   const std::string sensor = sensor_of_capture(capture, stated);
   if (sensor.empty()) return nullptr;
-  return std::make_shared<const PacketDecoder>(packet_sensor(load_lidar_model(sensor)));
+  return decoder_of(load_lidar_model(sensor));
 }
 
 KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& survey,
@@ -409,7 +520,7 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
                 survey.path.string() +
                     ": the sensor of its packets is unknown; give `packet_sensor`, a sensor of the "
                     "library or the maker's file (its folder contains none)");
-  require_options_of_captures(drive);
+  require_options_of_packets(drive, survey.recording != nullptr);
   const auto& [name, source] = source_of(survey, drive.topic);
   warn_of_packets(survey, name, source, progress);
   warn_of_partial_turns(survey, name, source, progress);
@@ -422,8 +533,8 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;
-  const RecordedPoses found = poses_of_trajectory(drive, scans.middles_s, "revolutions",
-                                                  "in the middles of the revolutions");
+  const RecordedPoses found = poses_of_packets(drive, survey, name, scans.middles_s);
+  if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks
   const Track track = track_of(found.poses);
   std::size_t kept = 0;
   for (const std::size_t k :

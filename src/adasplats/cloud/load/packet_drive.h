@@ -10,15 +10,16 @@
 #include <vector>
 
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/packet_file.h"
+#include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/io/packets/datagram_reader.h"
 #include "adasplats/sensors/packet_decoder.h"
 
 namespace adasplats {
 
-/// One turn of a sensor's head in a capture.
+/// One turn of a sensor's head in a capture or a recording.
 struct Revolution {
-  CapturePosition place;      ///< of the packet that it begins in
+  PacketPlace place;          ///< of the packet that it begins in
   std::size_t skipped = 0;    ///< columns of that packet that belong to the previous revolution
   std::size_t columns = 0;    ///< captured ones
   double share = 0;           ///< fraction of a full turn, from its first to its last column
@@ -27,22 +28,28 @@ struct Revolution {
   bool has_points = false;
 };
 
-/// The datagrams from one address to one port.
+/// The datagrams from one address to one port, or of one topic.
 struct PacketSource {
   std::uint64_t datagrams = 0;
   std::uint64_t packets = 0;                 ///< of the sensor
   std::uint64_t dual_packets = 0;            ///< those with two returns per firing
   std::uint64_t gaps = 0, lost_columns = 0;  ///< from missing packets
   std::string objection;  ///< why some datagrams of the right size are rejected; empty: none are
+  /// How packets contradict the sensor's file (PacketDecoder::contradiction()); empty: none do.
+  std::string contradiction;
+  std::uint64_t contradictions = 0;  ///< packets that do
+  std::uint64_t odd_turns = 0;       ///< ends of revolutions after another number of columns
   std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
   std::vector<Revolution> revolutions;
 };
 
-/// The index of a capture.
+/// The index of a capture, or of the packets of a recording.
 struct PacketSurvey {
   std::filesystem::path path;
-  std::shared_ptr<const PacketDecoder> decoder;  ///< null: unknown sensor
-  std::map<std::string, PacketSource> sources;   ///< by "192.168.1.201:2368"
+  std::shared_ptr<const PacketFile> file;
+  std::shared_ptr<const RecordingSurvey> recording;  ///< null: a capture
+  std::shared_ptr<const PacketDecoder> decoder;      ///< null: unknown sensor
+  std::map<std::string, PacketSource> sources;       ///< by "192.168.1.201:2368" or topic
   DatagramCounts counts;
 };
 
@@ -72,6 +79,15 @@ class SensorClock {
 PacketSurvey survey_packets(const std::filesystem::path& path,
                             std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress);
 
+/// Whether a recording is read by the packets in it: of the chosen topic, or if it has no clouds.
+/// Errors: usage (a packet sensor for a recording without packets).
+bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings);
+
+/// The same for the packets of a recording. Their sensor is the stated one, else that of Ouster
+/// metadata in a topic next to that of the packets, else sensor_of_capture().
+PacketSurvey survey_packets(const RecordingSurvey& recording, const DriveSettings& settings,
+                            ProgressSink& progress);
+
 /// The sensor of a capture: `stated`, else the only maker's file in its folder: STEM.json,
 /// metadata.json, calibration*.yaml, angle*.csv, correction*.csv or *.dat. Empty: none. Errors:
 /// usage (several).
@@ -82,11 +98,12 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
 std::shared_ptr<const PacketDecoder> decoder_of_capture(const std::filesystem::path& capture,
                                                         const std::string& stated);
 
-/// Opens the revolutions of a capture as the scans of a drive, in the sensor frame, as measured.
-/// Poses are those of the given trajectory at the middles of the revolutions (or one per
-/// revolution, without times). Revolutions without poses or points are skipped. Errors: usage (no
-/// trajectory, an unknown sensor, several sources and no `topic`), data (no packets of the sensor),
-/// those of survey_packets() and open_sensor_frames().
+/// Opens the revolutions of a capture or recording as the scans of a drive, in the sensor frame, as
+/// measured. Poses are those of the given trajectory at the middles of the revolutions (or one per
+/// revolution, without times); in a recording also those of open_recording_drive(). Revolutions
+/// without poses or points are skipped. Errors: usage (no trajectory, an unknown sensor, several
+/// sources and no `topic`), data (no packets of the sensor), those of survey_packets() and
+/// open_sensor_frames().
 KittiSequence open_packet_drive(const DriveInput& drive, const PacketSurvey& survey,
                                 const Executor& executor, ProgressSink& progress);
 

@@ -242,6 +242,33 @@ TEST_F(OpenedCapture, SeveralSensorsAreToldApart) {
                [&] { open(sent, "10.0.0.9:1"); });
 }
 
+/// A sensor with other columns per revolution or rotation rate than the one that sent the packets.
+std::shared_ptr<const PacketDecoder> decoder_of_mode(const char* name, std::uint32_t columns,
+                                                     double rotation_hz) {
+  LidarModel model = load_lidar_model(name);
+  model.columns = columns;
+  model.rotation_hz = rotation_hz;
+  return std::make_shared<const PacketDecoder>(packet_sensor(model));
+}
+
+TEST_F(OpenedCapture, AFileOfAnotherModeIsRejected) {
+  const SentDrive sent("ouster-os1-64", 3 * 1024);
+  const std::filesystem::path path = sent.write(folder_);
+  ProgressSink quiet;
+  const auto opened = [&](std::uint32_t columns, double rotation_hz) {
+    const PacketSurvey survey =
+        survey_packets(path, decoder_of_mode("ouster-os1-64", columns, rotation_hz), quiet);
+    DriveInput drive;
+    drive.folder = path;
+    drive.trajectory = folder_.write("poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n");
+    open_packet_drive(drive, survey, Executor(1), quiet);
+  };
+  for (const auto& [columns, rotation_hz] :
+       std::vector<std::pair<std::uint32_t, double>>{{512, 10}, {512, 20}, {1024, 20}, {2048, 10}})
+    expect_error(ErrorKind::data, {"sent.pcap: packets of 10.0.0.201:2368", "`packet_sensor`"},
+                 [&] { opened(columns, rotation_hz); });
+}
+
 TEST_F(OpenedCapture, BrokenPacketsEndInErrors) {
   io_test::Mutator mutator(11);
   std::size_t opened = 0, refused = 0;

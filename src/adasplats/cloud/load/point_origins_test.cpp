@@ -82,6 +82,30 @@ TEST(PointOrigins, KindsByWhereTheyComeFrom) {
   EXPECT_TRUE(driven.has_all_origins());
 }
 
+// Oracle: a sensor is on the side that a normal points to.
+TEST(PointOrigins, NormalsOfTheFileOrientPoints) {
+  const TemporaryFolder folder;
+  for (const char* const names :
+       {"x,y,z,nx,ny,nz", "X,Y,Z,normal_x,normal_y,normal_z", "x,y,z,NormalX,NormalY,NormalZ"}) {
+    const auto file = folder.write(
+        "a.csv", std::string(names) + "\n1,2,3,0,0,2\n4,5,6,0,-1,0\n7,8,9,0,0,0\n1,1,1,nan,0,1\n");
+    const PointCloud cloud = load({file}).first;
+    EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{guessed, guessed, none, none})) << names;
+    EXPECT_GT(cloud.sensor_positions[0].z, cloud.positions[0].z);
+    EXPECT_LT(cloud.sensor_positions[1].y, cloud.positions[1].y);
+    EXPECT_TRUE(cloud.sensor_positions[2] == cloud.positions[2]);
+    EXPECT_FALSE(cloud.has_beams());
+    LoadOptions options;
+    options.viewpoint = Vec3d{0, 0, 30};
+    EXPECT_EQ(load({file}, options).first.origin_kinds, (std::vector<OriginKind>(4, stated)));
+    options = {};
+    options.other_columns = KeptColumns::all;
+    const PointCloud kept = load({file}, options).first;
+    EXPECT_TRUE(kept.sensor_positions.empty());
+    EXPECT_EQ(kept.others.columns.size(), 3U);
+  }
+}
+
 TEST(PointOrigins, OnesThatAreNotFiniteAreNotKnownAndLoseNoPoint) {
   const TemporaryFolder folder;
   const auto file =

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <initializer_list>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -11,6 +14,7 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 
@@ -30,24 +34,8 @@ const std::array<Triple, 6> kSensorNames = {
      {"scalar_x_lidar_position", "scalar_y_lidar_position", "scalar_z_lidar_position"},
      {"scalar_sensor_x", "scalar_sensor_y", "scalar_sensor_z"},
      {"scalar_x_origin", "scalar_y_origin", "scalar_z_origin"}}};
-const std::initializer_list<std::string_view> kClassNames = {
-    "label",    "class", "classification", "semantic", "scalar_label", "scalar_classification",
-    "sem_class"};
-const std::initializer_list<std::string_view> kIntensityNames = {"intensity",
-                                                                 "reflectance",
-                                                                 "remission",
-                                                                 "reflectivity",
-                                                                 "luma",
-                                                                 "scalar_intensity",
-                                                                 "scalar_reflectance",
-                                                                 "scalar_remission",
-                                                                 "scalar_reflectivity",
-                                                                 "scalar_luma"};
-const std::initializer_list<std::string_view> kInstanceNames = {"instance", "scalar_instance"};
-const std::initializer_list<std::string_view> kTimeNames = {
-    "time",       "timestamp", "gps_time", "scalar_time", "scalar_timestamp", "scalar_gps_time",
-    "offset_time"};
-const std::initializer_list<std::string_view> kScanNames = {"scan_index", "scalar_scan_index"};
+const std::array<Triple, 3> kColorNames = {
+    {{"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}}};
 
 /// A table and the file it is from, for messages.
 struct PointFile {
@@ -64,12 +52,6 @@ struct PointFile {
   const Column* find(std::string_view lower_name) const {
     for (const Column& column : table.columns)
       if (lower_case(column.name) == lower_name) return &column;
-    return nullptr;
-  }
-
-  const Column* first_of(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view name : names)
-      if (const Column* column = find(name)) return column;
     return nullptr;
   }
 
@@ -177,15 +159,95 @@ std::vector<Vec3d> read_positions(const PointFile& file) {
   return read_vectors(file, {file.find(x), file.find(y), file.find(z)});
 }
 
-std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOptions& options) {
+/// The first triple of names that the file has; nothing without one.
+template <std::size_t kCount>
+std::optional<std::array<const Column*, 3>> find_triple(const PointFile& file,
+                                                        const std::array<Triple, kCount>& names) {
+  for (const auto& [x, y, z] : names)
+    if (file.has_all({x, y, z})) return std::array{file.find(x), file.find(y), file.find(z)};
+  return std::nullopt;
+}
+
+std::optional<std::array<const Column*, 3>> sensor_columns(const PointFile& file,
+                                                           const LoadOptions& options) {
   if (!options.sensor_x_field.empty())
-    return read_vectors(file,
-                        {&file.named(options.sensor_x_field), &file.named(options.sensor_y_field),
-                         &file.named(options.sensor_z_field)});
-  for (const auto& [x, y, z] : kSensorNames)
-    if (file.has_all({x, y, z}))
-      return read_vectors(file, {file.find(x), file.find(y), file.find(z)});
-  return {};
+    return std::array{&file.named(options.sensor_x_field), &file.named(options.sensor_y_field),
+                      &file.named(options.sensor_z_field)};
+  return find_triple(file, kSensorNames);
+}
+
+/// Gives points guessed sensor positions, on the side that their normals point to. Points without
+/// a valid normal get none.
+void orient_by_normals(const PointFile& file, CloudPart& part) {
+  const Table& table = file.table;
+  const std::array<const Column*, 3> columns = {find_column(table, PointColumn::normal_x),
+                                                find_column(table, PointColumn::normal_y),
+                                                find_column(table, PointColumn::normal_z)};
+  if (std::ranges::count(columns, nullptr) > 0) return;
+  constexpr double kDistance_m = 10, kMinLength = 1e-6;
+  part.world_sensors = read_vectors(file, columns);
+  part.cloud.origin_kinds.assign(part.world_sensors.size(), OriginKind::guessed);
+  for (std::size_t i = 0; i < part.world_sensors.size(); ++i) {
+    const double size = length(part.world_sensors[i]);
+    const bool is_valid = size >= kMinLength && std::isfinite(size);
+    if (!is_valid) part.cloud.origin_kinds[i] = OriginKind::none;
+    part.world_sensors[i] =
+        part.world_positions[i] + (is_valid ? kDistance_m / size * part.world_sensors[i] : Vec3d{});
+  }
+}
+
+/// Red, green and blue of a column that packs them into the bytes of a number, as PCL does: blue in
+/// the lowest byte. With other values in the highest byte also alpha.
+std::vector<Column> unpacked_colors(const Column& packed) {
+  std::array<std::vector<std::uint8_t>, 4> bytes;
+  for_each_value(packed, [&bytes](std::size_t, auto value) {
+    std::uint32_t bits = 0;
+    if constexpr (std::is_same_v<decltype(value), float>)
+      bits = std::bit_cast<std::uint32_t>(value);
+    else if (std::fabs(static_cast<double>(value)) < 0x1p32)  // no NaN
+      bits = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    for (std::size_t k = 0; k < bytes.size(); ++k)
+      bytes[k].push_back(static_cast<std::uint8_t>(bits >> (8 * k)));
+  });
+  const bool has_alpha =
+      std::ranges::adjacent_find(bytes[3], std::ranges::not_equal_to()) != bytes[3].end();
+  std::vector<Column> columns = {
+      {"red", std::move(bytes[2])}, {"green", std::move(bytes[1])}, {"blue", std::move(bytes[0])}};
+  if (has_alpha) columns.push_back({"alpha", std::move(bytes[3])});
+  return columns;
+}
+
+/// Adds the fields of LAS that repeat our extra bytes `label` and `intensity_value`, as far as they
+/// fit (save_cloud_las()).
+void use_copies(const PointFile& file, const PointCloud& cloud, std::vector<const Column*>& used) {
+  if (file.find("intensity_value") != nullptr) used.push_back(file.find("intensity"));
+  const Column* const copy = file.find("classification");
+  if (copy == nullptr || cloud.classes.size() != copy->size()) return;
+  constexpr std::uint16_t kMost = 255;
+  for (std::size_t i = 0; i < copy->size(); ++i)
+    if (copy->as_double(i) != (cloud.classes[i] > kMost ? 0 : cloud.classes[i])) return;
+  used.push_back(copy);
+}
+
+/// The columns without an attribute, which are those in `used`; colours are named red, green and
+/// blue.
+void keep_others(const PointFile& file, std::span<const Column* const> used, KeptColumns kept,
+                 CloudPart& part) {
+  if (kept == KeptColumns::none) return;
+  constexpr std::array<const char*, 3> kNames = {"red", "green", "blue"};
+  std::vector<Column>& others = part.cloud.others.columns;
+  const auto colors = find_triple(file, kColorNames);
+  const Column* packed = colors ? nullptr : file.find("rgb");
+  if (!colors && packed == nullptr) packed = file.find("rgba");
+  if (packed != nullptr) others = unpacked_colors(*packed);
+  for (std::size_t k = 0; colors && k < kNames.size(); ++k)
+    others.push_back({kNames[k], (*colors)[k]->values});
+  if (kept == KeptColumns::colors) return;
+  for (const Column& column : file.table.columns) {
+    const bool is_color = &column == packed || (colors && std::ranges::count(*colors, &column) > 0);
+    if (!is_color && std::ranges::count(used, &column) == 0) others.push_back(column);
+  }
+  part.cloud.others.has_adjusted_times = part.declared_clock == DeclaredClock::adjusted_gps;
 }
 
 /// Reports a note of the reader as a warning or an error.
@@ -199,7 +261,8 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
                            ", which this version does not know; metres assumed");
     case NoteKind::salvaged: return progress.warn(start + "salvaged " + note.text);
     case NoteKind::left_out: return progress.warn(start + "left out: " + note.text);
-    case NoteKind::intensity_scale: return progress.warn(start + note.text);
+    case NoteKind::intensity_scale:
+    case NoteKind::unnamed_columns: return progress.warn(start + note.text);
     case NoteKind::geographic:
       if (file.table.rows == 0) return;
       throw Error(ErrorKind::data,
@@ -219,6 +282,24 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
   }
 }
 
+/// Warns about columns that the user may have expected to be read.
+void warn_about_columns(const PointFile& file, const CloudPart& part, const LoadOptions& options,
+                        ProgressSink& progress) {
+  const std::string start = file.path.string() + ": ";
+  for (const Column& column : file.table.columns) {
+    if (column.name == options.label_field || column.name == options.sensor_x_field ||
+        column.name == options.sensor_y_field || column.name == options.sensor_z_field)
+      continue;
+    if (const auto likely = likely_column_name(column.name))
+      progress.warn(start + "column " + shown(column.name) + " is not read, did you mean '" +
+                    *likely + "'? Rename the column to use it");
+  }
+  if (!options.trajectory.empty() && part.times_s.empty() && part.world_sensors.empty() &&
+      has_times(options.trajectory))
+    progress.warn(start + "no column of times (found " + file.column_list() +
+                  "); sensor positions are guessed from the nearest poses");
+}
+
 /// Only LAS declares its clock: adjusted GPS time if a note reports it, else seconds of the week.
 DeclaredClock declared_clock_of(const PointFile& file) {
   const std::string extension = lower_case(file.path.extension().string());
@@ -233,8 +314,12 @@ DeclaredClock declared_clock_of(const PointFile& file) {
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor) {
   require_points(path);
-  return part_of_table(path, read_points(path, {options.salvage, executor, options.selection}),
-                       options, progress);
+  const Table table = read_points(path, {options.salvage, executor, options.selection,
+                                         options.other_columns == KeptColumns::all});
+  CloudPart part = part_of_table(path, table, options, progress);
+  if (part.world_sensors.empty())
+    part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
+  return part;
 }
 
 CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
@@ -246,33 +331,47 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   part.cloud.crs = table.crs;
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
-  part.world_sensors = read_sensor_positions(file, options);
-  const Column* time = file.first_of(kTimeNames);
-  // The name in Ouster's drivers; with a column s it is a texture coordinate.
-  if (time == nullptr && file.find("s") == nullptr) time = file.find("t");
-  if (time != nullptr) {
+  std::vector<const Column*> used;
+  for (const std::string& name : kPositionNames) used.push_back(file.find(name));
+  const auto use = [&used](const Column* column) {
+    if (column != nullptr) used.push_back(column);
+    return column;
+  };
+  if (const auto columns = sensor_columns(file, options)) {
+    part.world_sensors = read_vectors(file, *columns);
+    used.insert(used.end(), columns->begin(), columns->end());
+  }
+  if (const Column* const time = use(find_column(table, PointColumn::time))) {
+    const double unit_s = time_unit_of_name(time->name);
     part.times_s.resize(table.rows);
-    for_each_value(*time, [&part](std::size_t i, auto value) {
-      part.times_s[i] = static_cast<double>(value);
+    for_each_value(*time, [&](std::size_t i, auto value) {
+      part.times_s[i] = unit_s * static_cast<double>(value);
     });
     part.declared_clock = declared_clock_of(file);
   }
   PointCloud& cloud = part.cloud;
   if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())
-    read_origin_kinds(file, *column, cloud);
+    read_origin_kinds(file, *use(column), cloud);
   if (!options.label_field.empty())
-    read_labels(file, file.named(options.label_field), cloud);
-  else if (const Column* column = file.first_of(kClassNames))
+    read_labels(file, *use(&file.named(options.label_field)), cloud);
+  else if (const Column* column = use(find_column(table, PointColumn::classification)))
     read_labels(file, *column, cloud);
-  if (const Column* column = file.first_of(kInstanceNames)) read_instances(file, *column, cloud);
-  if (const Column* column = file.first_of(kScanNames))
+  if (const Column* column = use(find_column(table, PointColumn::instance)))
+    read_instances(file, *column, cloud);
+  if (const Column* column = use(find_column(table, PointColumn::scan_index)))
     cloud.scan_indices = read_whole_numbers(file, *column);
-  if (const Column* column = file.first_of(kIntensityNames)) {
+  if (const Column* column = use(find_column(table, PointColumn::intensity))) {
     cloud.intensities.resize(table.rows);
     for_each_value(*column, [&cloud](std::size_t i, auto value) {
       cloud.intensities[i] = static_cast<float>(value);
     });
   }
+  warn_about_columns(file, part, options, progress);
+  const bool has_origins =
+      !part.world_sensors.empty() || options.viewpoint || !options.trajectory.empty();
+  if (!has_origins && options.other_columns != KeptColumns::all) orient_by_normals(file, part);
+  use_copies(file, cloud, used);
+  keep_others(file, used, options.other_columns, part);
   return part;
 }
 

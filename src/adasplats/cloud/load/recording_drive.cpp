@@ -9,6 +9,8 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "adasplats/cloud/load/file_scan.h"
@@ -16,6 +18,7 @@
 #include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/origins/track.h"
+#include "adasplats/cloud/poses/exact_time.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/ros_values.h"
 
@@ -44,10 +47,23 @@ void add_cloud(const RecordedMessage& message, const std::string& what, TopicSur
   topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.points, message.place});
 }
 
+void add_packets(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
+  if (topic.packets.empty())
+    topic.frame =
+        ros_packets(message.bytes, message.topic.type, message.topic.encoding, what).frame;
+  topic.packets.push_back({message.time_ns, message.place});
+}
+
+/// Ouster's drivers record the metadata as a text.
+void add_metadata(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
+  if (topic.metadata.empty() && topic.topic.name.ends_with("metadata"))
+    topic.metadata = ros_string(message.bytes, message.topic.encoding, what);
+}
+
 void add_pose(const RosPose& pose, bool is_static, const std::string& what, TopicSurvey& topic) {
   const auto [found, is_new] = topic.edges.try_emplace({pose.header.frame, pose.child_frame});
   FrameEdge& edge = found->second;
-  if (is_new) edge = {pose.header.frame, pose.child_frame, is_static, {}, {}};
+  if (is_new) edge = {pose.header.frame, pose.child_frame, is_static, {}, {}, {}};
   const double norm =
       std::sqrt(pose.qw * pose.qw + pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz);
   if (!(std::fabs(norm - 1) <= kUnitTolerance) || !is_finite(pose.position)) {
@@ -57,21 +73,34 @@ void add_pose(const RosPose& pose, bool is_static, const std::string& what, Topi
                    ", expected 1 and a finite position";
     return;
   }
-  if (is_static) edge.parent_from_child.clear();  // the last one counts
+  if (is_static) {  // the last one counts
+    edge.parent_from_child.clear();
+    edge.stamps_ns.clear();
+  }
+  edge.stamps_ns.push_back(pose.header.stamp_ns);
   edge.parent_from_child.push_back(
       {seconds_of(pose.header.stamp_ns),
        {rotation_from_quaternion(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm),
         pose.position}});
 }
 
-/// Sorts by time and removes repeated times: publishers repeat unchanged poses.
+/// Sorts by time and removes repeated times: publishers repeat unchanged poses. Doubles cannot
+/// distinguish stamps a few nanoseconds apart.
 void put_in_order(FrameEdge& edge) {
-  std::ranges::stable_sort(edge.parent_from_child, {}, &TimedPose::time_s);
-  const auto same_time = [](const TimedPose& a, const TimedPose& b) {
-    return a.time_s == b.time_s;
-  };
-  Trajectory& poses = edge.parent_from_child;
-  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
+  std::vector<std::size_t> order(edge.stamps_ns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return edge.stamps_ns[k]; });
+  Trajectory poses;
+  std::optional<std::int64_t> before_ns;
+  for (const std::size_t k : order) {
+    if (before_ns == edge.stamps_ns[k]) continue;
+    before_ns = edge.stamps_ns[k];
+    TimedPose pose = edge.parent_from_child[k];
+    if (!poses.empty()) pose.time_s = time_after(poses.back().time_s, pose.time_s);
+    poses.push_back(pose);
+  }
+  edge.parent_from_child = std::move(poses);
+  edge.stamps_ns = {};
 }
 
 }  // namespace
@@ -98,10 +127,12 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
         topic.messages == 0 ? message.time_ns : std::min(topic.first_ns, message.time_ns);
     topic.last_ns = std::max(topic.last_ns, message.time_ns);
     ++topic.messages;
-    const bool has_points = topic.holds_clouds(), has_poses = holds_poses(topic.topic.type);
-    if ((!has_points && !has_poses) || topic.topic.encoding == MessageEncoding::other) return;
+    if (topic.topic.encoding == MessageEncoding::other) return;
     const std::string what = name_of_message(*survey.recording, topic);
-    if (has_points) return add_cloud(message, what, topic);
+    if (topic.holds_clouds()) return add_cloud(message, what, topic);
+    if (holds_packets(topic.topic.type)) return add_packets(message, what, topic);
+    if (topic.topic.type == kRosString) return add_metadata(message, what, topic);
+    if (!holds_poses(topic.topic.type)) return;
     const bool is_static = topic.topic.name.ends_with("tf_static");
     for (const RosPose& pose :
          ros_poses(message.bytes, topic.topic.type, topic.topic.encoding, what))

@@ -24,13 +24,21 @@ struct CloudMessage {
   MessagePosition place;
 };
 
+/// A message with packets of a sensor.
+struct PacketMessage {
+  std::uint64_t time_ns = 0;  ///< when it was recorded
+  MessagePosition place;
+};
+
 /// The contents of one topic of a recording.
 struct TopicSurvey {
   RecordedTopic topic;
   std::uint64_t messages = 0;
   std::uint64_t first_ns = 0, last_ns = 0;  ///< time of recording
   std::vector<CloudMessage> clouds;         ///< if the topic has points
-  std::string frame;                        ///< of the clouds
+  std::vector<PacketMessage> packets;       ///< if the topic has packets of a sensor
+  std::string metadata;                     ///< of an Ouster, if the topic has them
+  std::string frame;                        ///< of the clouds or packets
   std::string fault;                        ///< why its clouds cannot be used; empty: usable
   /// If the topic has poses, by parent and child; an empty child: not given.
   std::map<std::pair<std::string, std::string>, FrameEdge> edges;
@@ -44,8 +52,8 @@ struct RecordingSurvey {
   std::map<std::string, TopicSurvey> topics;
 };
 
-/// Reads a recording from front to back. Memory: 112 bytes per pose and 56 per cloud. Errors: those
-/// of Recording; data for invalid messages of clouds and poses.
+/// Reads a recording from front to back. Memory: 120 bytes per pose, 56 per cloud and 40 per
+/// message of packets. Errors: those of Recording; data for invalid messages of clouds and poses.
 RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink& progress);
 
 /// Opens the clouds of one topic of a recording as the scans of a drive, each in the frame of its

@@ -235,7 +235,8 @@ const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::str
   }
   if (count == 0 && stated.empty())
     throw Error(ErrorKind::data,
-                path + ": has no topic of points (" + std::string(kRosCloud) + "); its topics: " +
+                path + ": has no topic of points (" + std::string(kRosCloud) +
+                    ") or of packets of a sensor; its topics: " +
                     list_of_topics(survey, [](const TopicSurvey&) { return true; }));
   if (count == 0)
     throw Error(ErrorKind::usage, path + ": has no topic of points " + stated +

@@ -103,6 +103,22 @@ TEST_F(RecordedWays, WithoutCloudsAllPosesAreTaken) {
   expect_error(ErrorKind::data, {"drive.mcap", "no poses"}, [&] { read(); });
 }
 
+// Oracle: the stamps; today doubles resolve 0.24 us.
+TEST_F(RecordedWays, PosesAFewNanosecondsApartStay) {
+  for (const int k : {0, 2, 1, 2, 3})
+    messages.push_back({"/odom", "nav_msgs/msg/Odometry", 0,
+                        bags_test::odometry_message(1'700'000'000'000'000'000 + 5 * k, "map", "car",
+                                                    {1.0 * k, 0, 0, 0, 0, 0, 1})});
+  const Trajectory poses = read().poses;
+  ASSERT_EQ(poses.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(poses[k].world_from_sensor.translation.x, static_cast<double>(k));
+    if (k > 0) {
+      EXPECT_GT(poses[k].time_s, poses[k - 1].time_s);
+    }
+  }
+}
+
 TEST_F(RecordedWays, CloudsOfAnotherClockAreRefused) {
   add_moves(messages, "/tf", "lidar");
   for (int k = 0; k < 3; ++k) {

@@ -4,9 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <variant>
 
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/ply/ply.h"
 
@@ -70,6 +77,184 @@ void add_attributes(std::vector<ColumnView>& columns, const PointCloud& cloud,
   });
 }
 
+/// The values of a column as T; nothing if T does not hold them exactly.
+template <class T>
+std::optional<std::vector<T>> exact_values(const Column& column) {
+  std::vector<T> values;
+  values.reserve(column.size());
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const double value = column.as_double(i);
+    const bool fits = value >= static_cast<double>(std::numeric_limits<T>::lowest()) &&
+                      value <= static_cast<double>(std::numeric_limits<T>::max()) &&
+                      std::trunc(value) == value;
+    if (!fits) return std::nullopt;
+    values.push_back(static_cast<T>(value));
+  }
+  return values;
+}
+
+ColumnView column_view(const Column& column) {
+  return std::visit(
+      [&column](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        return ColumnView{column.name, column_type<Value>(), values.data(), sizeof(Value)};
+      },
+      column.values);
+}
+
+/// Columns that are written, with values of their own where the format needs other types.
+class OtherViews {
+ public:
+  explicit OtherViews(std::vector<ColumnView>& columns) : columns_(columns) {}
+
+  /// Under the column's name, or a free one.
+  void add(Column column) {
+    const auto is_taken = [this](const std::string& name) {
+      return std::ranges::any_of(columns_, [&name](const ColumnView& other) {
+        return lower_case(other.name) == lower_case(name);
+      });
+    };
+    while (is_taken(column.name)) column.name += '_';
+    columns_.push_back(column_view(owned_.emplace_back(std::move(column))));
+  }
+
+ private:
+  std::vector<ColumnView>& columns_;
+  std::deque<Column> owned_;
+};
+
+/// Whether three columns are 8-bit colours, also as multiples of 256 or 257; if so the factor.
+unsigned factor_of_bytes(std::span<const Column* const> colors) {
+  for (const unsigned factor : {1U, 256U, 257U}) {
+    const auto is_byte = [factor](const Column* column) {
+      const auto values = exact_values<std::uint16_t>(*column);
+      return values && std::ranges::all_of(*values, [factor](std::uint16_t value) {
+               return value % factor == 0 && value / factor <= 255;
+             });
+    };
+    if (std::ranges::all_of(colors, is_byte)) return factor;
+  }
+  return 0;
+}
+
+constexpr std::array<std::string_view, 3> kColorColumns = {"red", "green", "blue"};
+
+std::vector<const Column*> colors_in(const OtherColumns& others) {
+  std::vector<const Column*> colors;
+  for (const std::string_view name : kColorColumns) {
+    const auto found = std::ranges::find(others.columns, name, &Column::name);
+    if (found != others.columns.end()) colors.push_back(&*found);
+  }
+  return colors.size() == kColorColumns.size() ? colors : std::vector<const Column*>();
+}
+
+/// Properties of PLY have no blanks and at most 32 bits, or are doubles. Colours are bytes where
+/// that is exact, as other programs expect.
+void add_others_ply(const OtherColumns& others, OtherViews& views) {
+  const std::vector<const Column*> colors = colors_in(others);
+  const unsigned factor = colors.empty() ? 0 : factor_of_bytes(colors);
+  for (const Column& column : others.columns) {
+    Column written = column;
+    std::ranges::replace(written.name, ' ', '_');
+    if (factor != 0 && std::ranges::count(colors, &column) > 0) {
+      std::vector<std::uint8_t> bytes;
+      for (std::size_t i = 0; i < column.size(); ++i)
+        bytes.push_back(static_cast<std::uint8_t>(column.as_double(i) / factor));
+      written.values = std::move(bytes);
+    } else if (std::holds_alternative<std::vector<std::int64_t>>(column.values) ||
+               std::holds_alternative<std::vector<std::uint64_t>>(column.values)) {
+      std::vector<double> values(column.size());
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = column.as_double(i);
+      written.values = std::move(values);
+    }
+    views.add(std::move(written));
+  }
+}
+
+/// The fields of LAS for whole numbers.
+template <class T>
+bool is_las_field(std::string_view name) {
+  constexpr std::array<std::string_view, 9> kBytes = {
+      "return_number",   "number_of_returns",   "user_data",
+      "synthetic",       "key_point",           "overlap",
+      "scanner_channel", "scan_direction_flag", "edge_of_flight_line"};
+  if constexpr (sizeof(T) == 1) return std::ranges::find(kBytes, name) != kBytes.end();
+  return name == "point_source_id";
+}
+
+template <class T>
+bool add_las_field(const Column& column, OtherViews& views) {
+  const std::string name = lower_case(column.name);
+  if (!is_las_field<T>(name)) return false;
+  auto values = exact_values<T>(column);
+  constexpr int kMaxReturns = 15, kMaxChannel = 3;
+  const int most = name == "scanner_channel"   ? kMaxChannel
+                   : name == "point_source_id" ? std::numeric_limits<std::uint16_t>::max()
+                   : name == "user_data"       ? std::numeric_limits<std::uint8_t>::max()
+                   : name.find("return") != std::string::npos ? kMaxReturns
+                                                              : 1;
+  if (!values || std::ranges::any_of(*values, [most](T value) { return value > most; }))
+    return false;
+  views.add({name, std::move(*values)});
+  return true;
+}
+
+/// Degrees in steps of LAS; nothing if one is beyond its range.
+std::optional<std::vector<std::int16_t>> las_angles(const Column& column) {
+  constexpr double kStep_deg = 0.006, kMost = 30000;
+  std::vector<std::int16_t> steps;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const double step = std::round(column.as_double(i) / kStep_deg);
+    if (!(std::fabs(step) <= kMost)) return std::nullopt;
+    steps.push_back(static_cast<std::int16_t>(step));
+  }
+  return steps;
+}
+
+/// Red, green, blue and near infrared, if LAS can hold them; bytes become 16 bits as the
+/// specification says. Columns that LAS has no field for become extra bytes.
+void add_others_las(const OtherColumns& others, OtherViews& views) {
+  std::vector<const Column*> colors = colors_in(others);
+  const bool are_bytes = !colors.empty() && factor_of_bytes(colors) == 1 &&
+                         !std::holds_alternative<std::vector<std::uint16_t>>(colors[0]->values);
+  const bool fit = std::ranges::all_of(colors, [](const Column* column) {
+    return exact_values<std::uint16_t>(*column).has_value();
+  });
+  if (!fit) colors.clear();
+  for (const Column& column : others.columns) {
+    const bool is_color = std::ranges::count(colors, &column) > 0;
+    if (is_color || (column.name == "nir" && !colors.empty())) {
+      if (auto values = exact_values<std::uint16_t>(column)) {
+        for (std::uint16_t& value : *values)
+          if (is_color && are_bytes) value = static_cast<std::uint16_t>(256 * value);
+        views.add({column.name, std::move(*values)});
+        continue;
+      }
+    }
+    if (lower_case(column.name) == "gps_time" &&
+        std::holds_alternative<std::vector<double>>(column.values)) {
+      views.add({"gps_time", column.values});
+      continue;
+    }
+    if (lower_case(column.name) == "scan_angle") {
+      if (auto steps = las_angles(column)) {
+        views.add({"scan_angle", std::move(*steps)});
+        continue;
+      }
+    }
+    if (add_las_field<std::uint8_t>(column, views) || add_las_field<std::uint16_t>(column, views))
+      continue;
+    // Extra bytes: a name that is no field's, of at most 31 bytes.
+    constexpr std::size_t kMaxName = 31;
+    const std::string name = lower_case(column.name);
+    const bool is_reserved = is_las_field<std::uint8_t>(name) ||
+                             is_las_field<std::uint16_t>(name) || name == "gps_time" ||
+                             name == "scan_angle" || name == "nir" || name == "classification" ||
+                             name == "red" || name == "green" || name == "blue";
+    views.add({column.name.substr(0, kMaxName - 1) + (is_reserved ? "_" : ""), column.values});
+  }
+}
+
 }  // namespace
 
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
@@ -90,7 +275,12 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
   }
   add_attributes(columns, cloud, "intensity");
   columns.insert(columns.end(), more.begin(), more.end());
-  write_ply(path, cloud.size(), columns, crs_comments(cloud.crs));
+  OtherViews others(columns);
+  add_others_ply(cloud.others, others);
+  std::vector<std::string> comments = crs_comments(cloud.crs);
+  if (!cloud.label_scheme.empty() && !cloud.classes.empty())
+    comments.push_back(std::string(kLabelsComment) + cloud.label_scheme);
+  write_ply(path, cloud.size(), columns, comments);
 }
 
 void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
@@ -109,7 +299,11 @@ void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
   add_vectors(columns, kSensorColumns, ColumnType::f64, sensors);
   add_attributes(columns, cloud, "intensity_value");
   columns.insert(columns.end(), more.begin(), more.end());
+  OtherViews others(columns);
+  add_others_las(cloud.others, others);
   LasWriteOptions options;
+  options.has_adjusted_times = cloud.others.has_adjusted_times;
+  if (!cloud.classes.empty()) options.labels = cloud.label_scheme;
   options.offset_m = cloud.origin;
   options.crs = cloud.crs;
   options.is_packed = is_laz_name(path);

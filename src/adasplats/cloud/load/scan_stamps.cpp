@@ -136,6 +136,18 @@ std::optional<Trajectory> poses_by_number(const std::vector<fs::path>& files,
   return matched;
 }
 
+/// The time stamp in the name of a single scan, in the unit in which the track covers it, s;
+/// nothing if there is none.
+std::optional<double> stamp_on_track(const fs::path& file, const Track& track, double offset_s) {
+  const std::string text = stamp_text(file);
+  const auto number = parse_number<double>(text);
+  const bool is_short = text.find('.') == std::string::npos && text.size() < kStampDigits;
+  if (!number || is_short) return std::nullopt;
+  for (const double unit_s : kStampUnits_s)
+    if (track.covers(unit_s * *number + offset_s)) return unit_s * *number + offset_s;
+  return std::nullopt;
+}
+
 std::optional<PosesOfFiles> poses_by_stamps(std::vector<double> times_s, const std::string& from,
                                             const Trajectory& given, bool timed,
                                             const fs::path& trajectory,
@@ -169,6 +181,8 @@ std::optional<PosesOfFiles> poses_by_stamps(std::vector<double> times_s, const s
 
 std::vector<fs::path> scan_files(const fs::path& folder) {
   std::error_code ignored;
+  if (fs::is_regular_file(folder, ignored) && kind_of_file(folder) == FileKind::points)
+    return {folder};
   if (!fs::is_directory(folder, ignored) || !sequences_of_tree(folder).empty()) return {};
   std::vector<fs::path> files;
   std::vector<std::pair<double, fs::path>> numbered;
@@ -251,6 +265,9 @@ std::optional<PosesOfFiles> poses_of_files(const std::vector<fs::path>& files,
                            timed, trajectory, time_offset_s, false);
   const Track track = timed ? track_of(given) : Track();
   const Track* const known = timed ? &track : nullptr;
+  if (timed && files.size() == 1)
+    if (const auto stamp_s = stamp_on_track(files.front(), track, time_offset_s.value_or(0)))
+      return poses_at({*stamp_s}, track, "the time stamp in the name of the scan", trajectory);
   if (auto matched = poses_by_number(files, given))
     return poses_in_order(std::move(*matched), known, "by the numbers in the names of the scans",
                           timed);

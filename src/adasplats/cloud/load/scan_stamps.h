@@ -12,8 +12,8 @@
 namespace adasplats {
 
 /// The point files of a folder, one per scan: sorted by the numbers in their names if all differ,
-/// else by name. Trajectories and files without points are ignored; empty if the folder contains
-/// point files of several extensions, meshes, models or sequences.
+/// else by name; a point file is itself. Trajectories and files without points are ignored; empty
+/// if the folder contains point files of several extensions, meshes, models or sequences.
 std::vector<std::filesystem::path> scan_files(const std::filesystem::path& folder);
 
 /// Times of scans from their names, s: a number with a fraction or with at least nine digits

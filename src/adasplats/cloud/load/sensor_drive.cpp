@@ -353,12 +353,11 @@ std::string beams_text(const SweepFinding& finding) {
   const Vec3d at = finding.sensor->vehicle_from_sensor.translation;
   constexpr double kDegrees = 57.29577951308232;
   std::array<char, 256> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "%s found at (%.3f, %.3f, %.3f) m of the points' frame, beams %.3f deg from its cones%s",
-      finding.sensor->cones.sensor.c_str(), at.x, at.y, at.z,
-      finding.sensor->residual_rad * kDegrees,
-      finding.way == SweepPoints::found ? "" : ", each point at its own time");
+  std::snprintf(text.data(), text.size(),
+                "%s at %.3f, %.3f, %.3f m in the points' frame (beams %.3f deg from its cones%s)",
+                finding.sensor->cones.sensor.c_str(), at.x, at.y, at.z,
+                finding.sensor->residual_rad * kDegrees,
+                finding.way == SweepPoints::found ? "" : ", each point at its own time");
   return text.data();
 }
 
@@ -383,19 +382,26 @@ std::vector<TimeSpan> spans_of_scans(const SensorFrames& frames, const Executor&
 }
 
 void report_drive(const KittiSequence& sequence, ProgressSink& progress) {
+  // The evidence of a fact follows in parentheses or after a semicolon; 'info' lists it.
+  const auto conclusion_of = [](const std::string& fact) {
+    return fact.substr(0, std::min(fact.find(" ("), fact.find(';')));
+  };
   const DriveFacts& facts = sequence.facts;
-  progress.warn(sequence.folder.string() + ": points in the " + facts.points_in + "; poses " +
-                facts.poses + "; beams from " + sequence.beams.description() +
-                "; motion within a sweep: " + facts.motion +
-                (facts.clock.empty() ? "" : "; " + facts.clock) +
-                (facts.intensities.empty() ? "" : "; intensities " + facts.intensities) +
-                (facts.labels.empty() ? "" : "; labels " + facts.labels) +
-                (facts.left_out.empty() ? "" : "; skipped: " + facts.left_out));
+  std::string text = sequence.folder.string() + ": points in the " +
+                     conclusion_of(facts.points_in) + ", beams from " +
+                     conclusion_of(sequence.beams.description()) + " (evidence: adasplats info)";
+  if (facts.is_motion_assumed) text += "; motion within a sweep: " + facts.motion;
+  if (!facts.is_clock_checked) text += "; " + facts.clock;
+  if (!facts.unchecked.empty()) text += "; " + facts.unchecked;
+  if (!facts.intensities.empty()) text += "; intensities " + facts.intensities;
+  if (!facts.labels.empty()) text += "; labels " + facts.labels;
+  if (!facts.left_out.empty()) text += "; skipped: " + facts.left_out;
+  progress.warn(text);
 }
 
 std::string motion_text(const ScanBeams& beams) {
   if (!beams.sweeps_m.empty())
-    return "already compensated in the points, by the cones of the beams";
+    return "already compensated in the points (by the cones of the beams)";
   return beams.raw_motions.empty()
              ? "points as measured; the sensor is assumed to be at rest during a scan"
              : "points as measured, compensated by the poses, which other scans confirm";
@@ -432,9 +438,12 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
     sequence.facts.motion = "not analysed: beams start at the poses";
   } else if (sequence.beams.from_hdl64) {
     sequence.facts.motion = motion_text(sequence.beams);
+    sequence.facts.is_motion_assumed =
+        sequence.beams.sweeps_m.empty() && sequence.beams.raw_motions.empty();
   } else {
     finding = analyze_sweeps(frames, drive.sweep_points, executor);
     sequence.facts.motion = finding.motion;
+    sequence.facts.is_motion_assumed = finding.way == SweepPoints::found;
     sequence.trajectory = finding.scan_poses;
     if (finding.sensor) {
       sequence.beams.sensor = finding.sensor->cones.sensor;

@@ -222,7 +222,7 @@ TEST_F(TimedPoints, PointsInAGapAreAnError) {
 TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
   const auto points = ply(0, 1, "time");
   // One second late: the drive covers it, the points do not fit.
-  expect_error(ErrorKind::data, {"does not fit", "+1.0 s more", "`time_offset`"},
+  expect_error(ErrorKind::data, {"does not fit", "+1.0 s added", "`time_offset`"},
                [&] { load(points, with(poses(1, -4, 9))); });
   expect_error(ErrorKind::data, {"does not fit", "median range", "another scene"}, [&] {
     load(points, with(poses(0, 0, 4, {400, 500, 0})));

@@ -190,8 +190,8 @@ std::string description_of(const Recognition& found) {
   constexpr double kDegrees = 57.29577951308232;
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(),
-                "%s found at (%.3f, %.3f, %.3f) m of the trajectory's frame, beams %.3f deg from "
-                "its cones, each point at its own time",
+                "%s at %.3f, %.3f, %.3f m in the trajectory's frame (beams %.3f deg from its "
+                "cones, each point at its own time)",
                 found.cones.sensor.c_str(), at.x, at.y, at.z, found.residual_rad * kDegrees);
   return text.data();
 }
@@ -214,11 +214,10 @@ double residual_of_shift(const Overview& overview, const Trajectory& vehicle,
 }
 
 /// Checks whether the clocks of points and poses are shifted: if a vehicle turns or changes its
-/// speed, one mount fits the points to the cones only with the right times. Returns the result in
-/// words. Errors: data if another offset is clearly better (a warning if the offset is stated).
-std::string check_clock(const DriveInput& drive, const Overview& overview,
-                        const Trajectory& vehicle, const Recognition& found,
-                        ProgressSink& progress) {
+/// speed, one mount fits the points to the cones only with the right times. Sets the facts of the
+/// clock. Errors: data if another offset is clearly better (a warning if the offset is stated).
+void check_clock(const DriveInput& drive, const Overview& overview, const Trajectory& vehicle,
+                 const Recognition& found, DriveFacts& facts, ProgressSink& progress) {
   constexpr std::array kShifts_s = {0.05, 0.1, 0.2, 0.5, 1.0, 2.0};
   constexpr double kClearlyBetter = 0.8, kWorse = 1.1;  // ratio of angles to the cones
   constexpr double kDegrees = 57.29577951308232;
@@ -261,13 +260,8 @@ std::string check_clock(const DriveInput& drive, const Overview& overview,
                   "points and poses share a clock: with times %.2f s earlier or later the points "
                   "are farther from the cones of the beams",
                   resolved_s);
-  return text.data();
-}
-/// Describes the recognised sensor of a drive.
-void describe_recognised(const Recognition& found, std::string clock, KittiSequence& sequence) {
-  sequence.beams.recognised = description_of(found);
-  sequence.beams.sensor = found.cones.sensor;
-  sequence.facts.clock = std::move(clock);
+  facts.clock = text.data();
+  facts.is_clock_checked = resolved_s != 0;
 }
 
 /// Finds the sensor and its mount; nothing if both are unknown.
@@ -281,8 +275,9 @@ std::optional<WorldSensor> find_sensor(const DriveInput& drive, const WorldFrame
     progress.end_step();
   }
   if (found) {
-    describe_recognised(*found, check_clock(drive, overview, frames.vehicle, *found, progress),
-                        sequence);
+    check_clock(drive, overview, frames.vehicle, *found, sequence.facts, progress);
+    sequence.beams.recognised = description_of(*found);
+    sequence.beams.sensor = found->cones.sensor;
     return WorldSensor{found->vehicle_from_sensor, found->cones};
   }
   if (!frames.own_mount) return std::nullopt;
@@ -317,7 +312,7 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
   }
   const auto reader = std::make_shared<FrameReader>(frames, std::move(*sensor), std::move(boxes),
                                                     drive.with_classes);
-  sequence.facts.motion = "already compensated in the points, which are in world coordinates";
+  sequence.facts.motion = "already compensated in the points (they are in world coordinates)";
   sequence.facts.poses = "at the middles of the points' times";
   for (std::size_t k = 0; k < frames.files.size(); ++k) {
     const auto [first, last] = overview.times_s[k];

@@ -295,19 +295,22 @@ void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressS
   if (const double shift_s = better_shift_s(clock); shift_s != 0) {
     const std::string message =
         named + "with " + (shift_s > 0 ? "+" : "") + fixed(shift_s, 1) +
-        " s more they would clearly fit better; the clocks differ by about that: " + kGiveOffset;
+        " s added to the times of the points it fits clearly better; either the clocks differ by "
+        "about that (" +
+        kGiveOffset + "), or the axes of the poses are wrong";
     if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrustOrigins);
     progress.warn(message);
   }
   if (seen.share_behind > seen.max_behind())
-    throw Error(ErrorKind::data,
-                named + percent(seen.share_behind) +
-                    " of what was measured within 0.1 s is hidden behind other points as seen from "
-                    "there, expected at most " +
-                    percent(seen.max_behind()) +
-                    "; the mount of the sensor is wrong (`mount`), or the trajectory belongs to "
-                    "another scene or clock; " +
-                    median + kTrustOrigins);
+    throw Error(
+        ErrorKind::data,
+        named + percent(seen.share_behind) +
+            " of what was measured within 0.1 s is hidden behind other points as seen from "
+            "there, expected at most " +
+            percent(seen.max_behind()) +
+            "; the mount of the sensor is wrong (`mount`), or the trajectory has other axes "
+            "or units, or belongs to another scene or clock; " +
+            median + kTrustOrigins);
 }
 
 void ClockFinder::require_no_gaps(const ClockPair& clock, const Track& track) const {

@@ -31,12 +31,17 @@ void append_values(std::vector<T>& values, std::vector<T>&& more) {
   }
 }
 
+/// Whether two columns have one name and type.
+bool is_alike(const Column& a, const Column& b) {
+  return a.name == b.name && a.values.index() == b.values.index();
+}
+
 bool same_attributes(const PointCloud& a, const PointCloud& b) {
   bool same = true;
   for_each_attribute([&](const auto& attribute) {
     same = same && attribute.of(a).empty() == attribute.of(b).empty();
   });
-  return same;
+  return same && std::ranges::equal(a.others.columns, b.others.columns, is_alike);
 }
 
 double choose_origin_along_axis(double low, double high) {
@@ -82,16 +87,52 @@ std::string describe_origins(const OriginCounts& counts) {
   return text;
 }
 
+std::vector<std::array<std::uint8_t, 3>> file_colors(const PointCloud& cloud) {
+  std::array<const Column*, 3> channels{};
+  constexpr std::array<std::string_view, 3> kNames = {"red", "green", "blue"};
+  double most = 0;
+  bool are_whole = true;
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    const auto found = std::ranges::find(cloud.others.columns, kNames[k], &Column::name);
+    if (found == cloud.others.columns.end() || found->size() != cloud.size()) return {};
+    channels[k] = &*found;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const double value = found->as_double(i);
+      if (!std::isfinite(value)) continue;
+      most = std::max(most, value);
+      are_whole = are_whole && std::trunc(value) == value;
+    }
+  }
+  constexpr double kMost = 255, kOfByte = 256;
+  const double scale = most > kMost ? 1 / kOfByte : most <= 1 && !are_whole ? kMost : 1;
+  std::vector<std::array<std::uint8_t, 3>> colors(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const double value = scale * channels[k]->as_double(i);
+      colors[i][k] =
+          value > 0 ? static_cast<std::uint8_t>(std::min(value, kMost)) : std::uint8_t{0};
+    }
+  return colors;
+}
+
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
   PointCloud result;
   result.origin = cloud.origin;
   result.crs = cloud.crs;
+  result.label_scheme = cloud.label_scheme;
   result.scan_poses = cloud.scan_poses;
   result.empty_beams = cloud.empty_beams;
   result.positions = gathered(cloud.positions, indices);
   for_each_attribute([&](const auto& attribute) {
     attribute.of(result) = gathered(attribute.of(cloud), indices);
   });
+  result.others.has_adjusted_times = cloud.others.has_adjusted_times;
+  for (const Column& column : cloud.others.columns)
+    result.others.columns.push_back(std::visit(
+        [&](const auto& values) {
+          return Column{column.name, gathered(values, indices)};
+        },
+        column.values));
   return result;
 }
 
@@ -113,6 +154,13 @@ void append(PointCloud& cloud, PointCloud&& other) {
   for_each_attribute([&](const auto& attribute) {
     append_values(attribute.of(cloud), std::move(attribute.of(other)));
   });
+  for (std::size_t k = 0; k < cloud.others.columns.size(); ++k)
+    std::visit(
+        [&](auto& values) {
+          using Values = std::decay_t<decltype(values)>;
+          append_values(values, std::move(std::get<Values>(other.others.columns[k].values)));
+        },
+        cloud.others.columns[k].values);
 }
 
 Vec3d choose_origin(Vec3d low, Vec3d high) {

@@ -14,6 +14,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
+#include "adasplats/io/base/table.h"
 
 namespace adasplats {
 
@@ -24,11 +25,19 @@ struct EmptyBeam {
   std::uint32_t scan = 0;  ///< number of its scan
 };
 
+/// Columns of files that no attribute holds, with one value a point. Filled only on request
+/// (LoadOptions::other_columns).
+struct OtherColumns {
+  std::vector<Column> columns;
+  bool has_adjusted_times = false;  ///< gps_time is adjusted GPS time, as LAS has it
+};
+
 /// Points of one or many scans, as a structure of arrays. World coordinates are origin +
 /// position: double at the border, float inside. An attribute is empty or as long as `positions`.
 struct PointCloud {
-  Vec3d origin;                          ///< world coordinates of the local origin, m
-  Crs crs;                               ///< of the world coordinates, as the files say it
+  Vec3d origin;              ///< world coordinates of the local origin, m
+  Crs crs;                   ///< of the world coordinates, as the files say it
+  std::string label_scheme;  ///< of the classes, as load_label_scheme() takes it; empty: not known
   std::vector<Vec3f> positions;          ///< relative to `origin`, m; finite
   std::vector<Vec3f> sensor_positions;   ///< of the LiDAR when it measured the point, as positions
   std::vector<OriginKind> origin_kinds;  ///< of sensor_positions; empty: all are measured
@@ -41,6 +50,7 @@ struct PointCloud {
   Trajectory scan_poses;
   /// Of the scans, where they were looked for (find_empty_beams()). No attribute of points.
   std::vector<EmptyBeam> empty_beams;
+  OtherColumns others;
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -108,6 +118,11 @@ OriginCounts count_origins(const PointCloud& cloud);
 /// "measured", or "measured 812, not known 188": the kinds that occur; "no" if no point has an
 /// origin.
 std::string describe_origins(const OriginCounts& counts);
+
+/// 8-bit colours of the points from the columns red, green and blue of `others`; empty without
+/// them. Values up to 255 are used as they are, whole numbers up to 65535 divided by 256, fractions
+/// up to 1 multiplied by 255.
+std::vector<std::array<std::uint8_t, 3>> file_colors(const PointCloud& cloud);
 
 /// The points of `cloud` with all attributes, in the order of `indices`; empty beams stay.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);

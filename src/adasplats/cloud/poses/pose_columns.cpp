@@ -32,6 +32,9 @@ enum class PoseRole : std::uint8_t {
 
 constexpr std::array<Word, 8> kRoleNames = {"time", "x", "y", "z", "qw", "qx", "qy", "qz"};
 constexpr Word kTimeWords[] = {"time", "timestamp", "timestamps", "stamp", "t", "sec", "secs"};
+/// Only if no column has one of those names.
+constexpr Word kOtherTimeWords[] = {"gpstime", "unixtime", "utctime", "ts",
+                                    "epoch",   "seconds",  "times"};
 constexpr Word kNanosecondWords[] = {"nsec", "nsecs", "nanosec", "nanosecs"};
 constexpr Word kPositionWords[] = {"p", "t", "pos", "position", "translation", "trans", "location"};
 constexpr Word kQuaternionWords[] = {"q", "quat", "quaternion", "orientation", "rotation", "rot"};
@@ -90,7 +93,8 @@ const double* time_unit_of(Word word) {
 struct ColumnMeaning {
   PoseRole role = PoseRole::other;
   double unit_s = 1;
-  bool is_of_header = false;  ///< a message's own time, not when it was recorded
+  /// Of times: 2 a message's own time rather than when it was recorded, 0 one of kOtherTimeWords.
+  int rank = 1;
   std::string problem;
 };
 
@@ -119,9 +123,13 @@ ColumnMeaning meaning_of_time(NameParts parts) {
       meaning.unit_s = *unit_s;
       parts.words.pop_back();
     }
-  if (!is_one_of_words(parts.words.back(), kTimeWords)) return {};
+  if (is_one_of_words(parts.words.back(), kOtherTimeWords))
+    meaning.rank = 0;
+  else if (!is_one_of_words(parts.words.back(), kTimeWords))
+    return {};
+  else if (std::ranges::find(parts.words, "header") != parts.words.end())
+    meaning.rank = 2;
   meaning.role = PoseRole::time;
-  meaning.is_of_header = std::ranges::find(parts.words, "header") != parts.words.end();
   if (!parts.has_unit) return meaning;
   if (const double* const unit_s = time_unit_of(parts.unit))
     meaning.unit_s = *unit_s;
@@ -214,8 +222,8 @@ class RoleTable {
     const auto role = static_cast<std::size_t>(meaning.role);
     const bool is_time = meaning.role == PoseRole::time;
     if (columns_[role]) {
-      if (is_time && has_header_time_ != meaning.is_of_header) {
-        if (has_header_time_) return;  // the message's own time is the better one
+      if (is_time && time_rank_ != meaning.rank) {
+        if (time_rank_ > meaning.rank) return;
       } else {
         if (problem_.empty())
           problem_ = "both " + shown(fields_[*columns_[role]]) + " and " + shown(fields_[column]) +
@@ -226,14 +234,15 @@ class RoleTable {
     columns_[role] = column;
     if (!is_time) return;
     unit_s_ = meaning.unit_s;
-    has_header_time_ = meaning.is_of_header;
+    time_rank_ = meaning.rank;
   }
 
   const std::vector<std::string_view>& fields_;
   std::array<std::optional<std::size_t>, 8> columns_;
   std::optional<std::size_t> nanoseconds_;
   double unit_s_ = 1;
-  bool numbered_ = false, has_header_time_ = false;
+  int time_rank_ = 0;
+  bool numbered_ = false;
   std::string problem_;
 };
 

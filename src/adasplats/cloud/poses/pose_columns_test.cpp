@@ -109,6 +109,61 @@ TEST(PoseColumns, NamesOfManyProgramsGiveTheSamePoses) {
   EXPECT_TRUE(has_times(folder.path() / "poses.tum"));
 }
 
+TEST(PoseColumns, OtherNamesOfTimes) {
+  for (const char* name : {"GpsTime", "gps_time", "GPS Time", "TimeStamp", "time_stamp", "ts"}) {
+    const PoseHeading heading = pose_heading_of(std::string("x,y,z,qw,qx,qy,qz,") + name);
+    ASSERT_TRUE(heading.columns) << name;
+    EXPECT_EQ(heading.columns->of[0], 7U);
+  }
+  const PoseHeading both = pose_heading_of("GpsTime,time,x,y,z,qw,qx,qy,qz");
+  ASSERT_TRUE(both.columns);
+  EXPECT_EQ(both.columns->of[0], 1U);
+}
+
+// Oracle: the digits of the stamps; doubles cannot distinguish them at these epochs.
+TEST(PoseColumns, StampsAFewNanosecondsApartAscend) {
+  struct Dress {
+    const char *name, *heading, *pose;
+    std::vector<std::string> times;
+  };
+  const Dress dresses[] = {
+      {"a.csv",
+       "timestamp_ns,x,y,z,qw,qx,qy,qz\n",
+       ",0,0,0,1,0,0,0\n",
+       {"315966253572412942", "315966253572412947", "315966253572412948", "315966253577482497"}},
+      {"b.csv",
+       "secs,nsecs,x,y,z,qw,qx,qy,qz\n",
+       ",0,0,0,1,0,0,0\n",
+       {"1700000000,5", "1700000000,10", "1700000000,11", "1700000001,0"}},
+      {"c.tum",
+       "",
+       " 0 0 0 0 0 0 1\n",
+       {"1700000000.000000005", "1700000000.000000010", "1700000000.000000011", "1700000001"}}};
+  const TemporaryFolder folder;
+  for (const Dress& dress : dresses) {
+    const auto text_of = [&](const std::vector<std::size_t>& order) {
+      std::string text = dress.heading;
+      for (const std::size_t k : order) text += dress.times[k] + dress.pose;
+      return text;
+    };
+    const Trajectory poses = read_trajectory(folder.write(dress.name, text_of({0, 1, 2, 3})));
+    ASSERT_EQ(poses.size(), 4U) << dress.name;
+    for (std::size_t k = 1; k < 4; ++k) {
+      EXPECT_GT(poses[k].time_s, poses[k - 1].time_s) << dress.name;
+      EXPECT_LT(poses[k].time_s - poses[k - 1].time_s, k < 3 ? 1e-6 : 1.1) << dress.name;
+    }
+    for (const auto& order : {std::vector<std::size_t>{0, 2, 1}, {0, 1, 1}})
+      expect_error(ErrorKind::data,
+                   {dress.name, dress.times[1].substr(0, 10), "does not come after"},
+                   [&] { read_trajectory(folder.write(dress.name, text_of(order))); });
+  }
+  folder.write("times.txt", "1700000000.000000005\n1700000000.000000010\n");
+  const Trajectory kitti = read_trajectory(
+      folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n"));
+  ASSERT_EQ(kitti.size(), 2U);
+  EXPECT_GT(kitti[1].time_s, kitti[0].time_s);
+}
+
 TEST(PoseColumns, WhatIsNotClearIsAnErrorThatSaysWhatIsExpected) {
   const TemporaryFolder folder;
   const auto reject = [&](const std::string& heading, const std::string& letters,

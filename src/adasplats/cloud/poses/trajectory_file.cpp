@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "adasplats/cloud/poses/exact_time.h"
 #include "adasplats/cloud/poses/pose_columns.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
@@ -128,13 +129,33 @@ std::optional<RigidTransform> read_calibration(const std::filesystem::path& fold
                                    names + kStateFrame);
 }
 
-void require_ascending(const std::filesystem::path& path, std::uint64_t line, double before_s,
-                       double time_s) {
-  if (!(time_s > before_s))
-    throw data_error({path, {}, line}, "time " + short_text(time_s) +
-                                           " s does not come after the one before, " +
-                                           short_text(before_s) + " s");
-}
+/// The times of a file, which must ascend. They are compared exactly, as they are written.
+class AscendingTimes {
+ public:
+  explicit AscendingTimes(const std::filesystem::path& path) : path_(path) {}
+
+  /// The next time as a double that is above the one before. `exact`: if the text is decimal.
+  double next(std::uint64_t line, std::string_view text, std::optional<ExactTime> exact,
+              double time_s) {
+    if (!text_.empty()) {
+      const bool ascends = exact && exact_ ? *exact > *exact_ : time_s > time_s_;
+      if (!ascends)
+        throw data_error({path_, {}, line}, "time " + std::string(text) +
+                                                " does not come after the one before, " + text_);
+      time_s = time_after(time_s_, time_s);
+    }
+    text_ = text;
+    exact_ = exact;
+    time_s_ = time_s;
+    return time_s;
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::string text_;
+  std::optional<ExactTime> exact_;
+  double time_s_ = 0;
+};
 
 /// Times of `count` poses from times.txt, else by a fixed period.
 std::vector<double> read_times(const std::filesystem::path& path, std::size_t count) {
@@ -144,14 +165,16 @@ std::vector<double> read_times(const std::filesystem::path& path, std::size_t co
       times_s.push_back(kDefaultPeriodS * static_cast<double>(i));
     return times_s;
   }
+  AscendingTimes ascending(path);
   for (const NumberedLine& line : filled_lines(path)) {
-    const double time_s = finite_numbers<1>(path, line.number, split_blanks(line.text))[0];
-    if (!times_s.empty()) require_ascending(path, line.number, times_s.back(), time_s);
-    times_s.push_back(time_s);
+    const auto fields = split_blanks(line.text);
+    const double time_s = finite_numbers<1>(path, line.number, fields)[0];
+    times_s.push_back(ascending.next(line.number, fields[0], exact_time(fields[0], 0), time_s));
   }
   if (times_s.size() != count)
     throw Error(ErrorKind::data, path.string() + ": " + std::to_string(times_s.size()) +
-                                     " times, " + std::to_string(count) + " poses");
+                                     " times, but " + std::to_string(count) +
+                                     " poses; both files need one line per scan");
   return times_s;
 }
 
@@ -211,6 +234,16 @@ void require_seconds(const FilePosition& place, double time_s, double unit_s) {
                                            : " in the unit of its name is none since any epoch"));
 }
 
+/// The time of a line without rounding, if its numbers are decimal.
+std::optional<ExactTime> exact_time_of_line(const PoseColumns& columns,
+                                            const std::vector<std::string_view>& fields) {
+  const int exponent = static_cast<int>(std::lround(std::log10(columns.time_unit_s)));
+  const auto time = exact_time(fields[columns.of[0]], exponent);
+  if (!time || !columns.nanoseconds) return time;
+  const auto nanoseconds = exact_time(fields[*columns.nanoseconds], -9);
+  return nanoseconds ? std::optional(*time + *nanoseconds) : std::nullopt;
+}
+
 double time_of_line(const FilePosition& place, const PoseColumns& columns,
                     const std::vector<std::string_view>& fields) {
   constexpr double kNanosecond_s = 1e-9;
@@ -226,6 +259,7 @@ double time_of_line(const FilePosition& place, const PoseColumns& columns,
 Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns& columns,
                             const std::vector<NumberedLine>& lines) {
   Trajectory trajectory;
+  AscendingTimes ascending(path);
   std::vector<PlacedQuaternion> placed;
   for (const NumberedLine& line : lines) {
     const FilePosition place{path, {}, line.number};
@@ -237,7 +271,9 @@ Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns
     const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
     if (!(std::fabs(norm - 1) <= kTolerance))
       throw data_error(place, "the quaternion's norm is " + short_text(norm) + ", expected 1");
-    if (!trajectory.empty()) require_ascending(path, line.number, trajectory.back().time_s, v[0]);
+    std::string text(fields[columns.of[0]]);
+    if (columns.nanoseconds) text += " s, " + std::string(fields[*columns.nanoseconds]) + " ns";
+    v[0] = ascending.next(line.number, text, exact_time_of_line(columns, fields), v[0]);
     const Quaternion q{v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm};
     placed.push_back({{v[1], v[2], v[3]}, q});
     trajectory.push_back(

@@ -167,9 +167,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "0.99"},
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", 2, "norm"},
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n", 3,
-                "time 1 s"},
+                "time 1 does not come after the one before, 2"},
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n2,0,0,0,1,0,0,0\n", 3,
-                "time 2 s"}));
+                "time 2 does not come after the one before, 2"}));
 
 TEST(ReadTrajectory, TimesThatDoNotFit) {
   const TemporaryFolder folder;

@@ -88,7 +88,9 @@ void take_labels(const std::filesystem::path& path, KittiScan& scan) {
   const std::size_t points = scan.positions.size();
   if (labels.size() != points)
     throw Error(ErrorKind::data, path.string() + ": " + std::to_string(labels.size()) +
-                                     " labels, " + std::to_string(points) + " points");
+                                     " labels, but the scan has " + std::to_string(points) +
+                                     " points; one of the two files is truncated or of another "
+                                     "scan");
   scan.classes.reserve(points);
   scan.instances.reserve(points);
   for (const std::uint32_t label : labels) {
@@ -128,7 +130,8 @@ bool is_kitti_sequence(const std::filesystem::path& folder) {
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   if (is_kitti_raw_drive(folder)) return open_kitti_raw_drive(folder);
   if (!is_kitti_sequence(folder))
-    throw Error(ErrorKind::no_input, folder.string() + ": has no folder 'velodyne'");
+    throw Error(ErrorKind::no_input,
+                folder.string() + ": not a SemanticKITTI sequence (no folder 'velodyne')");
   KittiSequence sequence;
   sequence.folder = folder;
   sequence.scans = files_by_name(folder / "velodyne", ".bin");
@@ -137,6 +140,12 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   sequence.labels = files_by_name(folder / "labels", ".label");
   if (!sequence.labels.empty()) require_labels_of_scans(sequence);
   const std::filesystem::path poses_file = folder / "poses.txt";
+  if (!std::filesystem::exists(poses_file) && !files_by_name(folder / "calib", ".txt").empty())
+    throw Error(ErrorKind::no_input,
+                folder.string() +
+                    ": contains frames of KITTI's object benchmark (calib, no poses.txt), which "
+                    "have no common world; give one of them, for example " +
+                    sequence.scans.front().string());
   if (!std::filesystem::exists(poses_file))
     throw Error(ErrorKind::no_input,
                 poses_file.string() +

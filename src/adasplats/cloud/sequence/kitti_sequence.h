@@ -28,11 +28,13 @@ struct KittiScan;
 
 /// What was inferred about a drive, in words; empty: nothing to report.
 struct DriveFacts {
-  std::string points_in;  ///< the frame of the points in the files, and by what
-  std::string poses;      ///< how scans got theirs
-  std::string motion;     ///< of the sensor within a sweep
-  std::string clock;      ///< whether points and poses share a clock, with the evidence
-  std::string unchecked;  ///< of the poses (verify_poses())
+  std::string points_in;           ///< the frame of the points in the files, and by what
+  std::string poses;               ///< how scans got theirs
+  std::string motion;              ///< of the sensor within a sweep
+  bool is_motion_assumed = false;  ///< `motion` is undetermined
+  std::string clock;               ///< whether points and poses share a clock, with the evidence
+  bool is_clock_checked = true;    ///< or `clock` states why that is impossible
+  std::string unchecked;           ///< of the poses (verify_poses())
   /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
   /// points of the files are of none of the scans.
   std::string intensities, labels, left_out;
@@ -90,7 +92,7 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 std::vector<std::uint32_t> read_kitti_labels(const std::filesystem::path& path);
 
 /// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).
-/// Errors: data where the label file has another number of entries ("n labels, m points").
+/// Errors: data (the label file has another number of entries).
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);
 
 /// The same without labels.

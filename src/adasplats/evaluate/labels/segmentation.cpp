@@ -170,7 +170,7 @@ SegmentationConfusion grouped(const SegmentationConfusion& confusion,
 void check(const SegmentationOptions& options) {
   if (options.min_share >= 0 && options.min_share <= 1) return;
   throw Error(ErrorKind::usage,
-              "`least_share` must be from 0 to 1, found " + std::to_string(options.min_share));
+              "`min_share` must be from 0 to 1, found " + std::to_string(options.min_share));
 }
 
 }  // namespace adasplats

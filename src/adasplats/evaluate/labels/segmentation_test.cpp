@@ -120,7 +120,7 @@ TEST(SegmentationConfusion, WrongLabels) {
   });
   expect_error(ErrorKind::data, {"class 65535 of the true"}, [] { confusion_of({0}, {65535}); });
   for (const double share : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
-    expect_error(ErrorKind::usage, {"least_share"}, [&] { check({.min_share = share}); });
+    expect_error(ErrorKind::usage, {"min_share"}, [&] { check({.min_share = share}); });
   check({.min_share = 0});
   check({.min_share = 1});
 }

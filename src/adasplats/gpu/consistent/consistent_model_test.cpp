@@ -16,7 +16,6 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/base/engines.h"
-#include "adasplats/gpu/base/model_steps.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/origin_check.h"
@@ -142,7 +141,7 @@ class SideBySide {
  private:
   Executor executor_{2};
   Steps cpu_ = make_cpu_consistent_steps(executor_);
-  Steps gpu_ = gpu::make_cuda_consistent_steps(0);
+  Steps gpu_ = make_cuda_model_engine(0)->consistent_steps();
 };
 
 /// Runs all steps and compares after each; returns the number of splats.
@@ -312,9 +311,10 @@ TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksMatchTheCpu) {
   const Reflectances cpu =
       make_cpu_model_engine(executor)->measure_reflectances(disks, fallback, cloud);
   EXPECT_FALSE(cpu.response.empty());
-  expect_same(cpu, gpu::measure_reflectances(0, disks, fallback, cloud));
-  EXPECT_EQ(gpu::measure_reflectances(0, disks, fallback, without_sensors(cloud)).values, fallback);
-  EXPECT_TRUE(gpu::measure_reflectances(0, {}, {}, cloud).values.empty());
+  const auto engine = make_cuda_model_engine(0);
+  expect_same(cpu, engine->measure_reflectances(disks, fallback, cloud));
+  EXPECT_EQ(engine->measure_reflectances(disks, fallback, without_sensors(cloud)).values, fallback);
+  EXPECT_TRUE(engine->measure_reflectances({}, {}, cloud).values.empty());
 }
 
 // Oracle: the CPU engine. Half of the room, with the rays that pass it, as a tile of a city.
@@ -382,7 +382,7 @@ TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
 }
 
 ConsistentSplats model_of(const PointCloud& cloud) {
-  const Steps steps = gpu::make_cuda_consistent_steps(0);
+  const Steps steps = make_cuda_model_engine(0)->consistent_steps();
   steps->load(cloud, {});
   EXPECT_TRUE(consistent_disks(*steps, true, {}, [](std::string_view, int) {}).checked);
   return steps->take_splats();
@@ -398,7 +398,7 @@ TEST_F(ConsistentOnGpu, TwoRunsGiveTheSameBytes) {
 TEST_F(ConsistentOnGpu, ErrorsNameARemedyAndLeaveTheStepsDestructible) {
   const auto error_of = [&](const ConsistentOptions& options) -> std::string {
     try {
-      const Steps steps = gpu::make_cuda_consistent_steps(0);
+      const Steps steps = make_cuda_model_engine(0)->consistent_steps();
       steps->load(lattice(50, 0.05, 0), {});
       consistent_disks(*steps, true, options, [](std::string_view, int) {});
     } catch (const Error& error) {
@@ -413,7 +413,7 @@ TEST_F(ConsistentOnGpu, ErrorsNameARemedyAndLeaveTheStepsDestructible) {
   options = {};
   options.planes.scales.back() = 600;
   EXPECT_NE(error_of(options).find("`device` cpu"), std::string::npos);
-  EXPECT_THROW(gpu::make_cuda_consistent_steps(1000), Error);
+  EXPECT_THROW(make_cuda_model_engine(1000), Error);
 }
 
 }  // namespace

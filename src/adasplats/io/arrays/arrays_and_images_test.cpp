@@ -216,5 +216,30 @@ TEST(KittiBin, OtherFilesAreNotTakenForScans) {
                [&] { read_points(folder.file("d.bin", three)); });
 }
 
+// Oracle: the layout that was written. All values are possible coordinates and intensities.
+TEST(KittiBin, OtherWidthsAreErrors) {
+  const TemporaryFolder folder;
+  for (const int width : {3, 4, 5, 6, 7}) {
+    std::string content;
+    for (int k = 0; k < 420; ++k) {
+      const double values[] = {30 + 10 * std::cos(0.01 * k),
+                               50 + 10 * std::sin(0.01 * k),
+                               5 + 0.001 * k,
+                               0.3 + 0.1 * (k % 3),
+                               0.5 + k % 16,
+                               0.0001 * k,
+                               2.5};
+      for (int i = 0; i < width; ++i)
+        content += bytes_of(static_cast<float>(values[static_cast<std::size_t>(i)]));
+    }
+    const auto file = folder.file("w.bin", content);
+    if (width == 4)
+      EXPECT_EQ(read_points(file).rows, 420U);
+    else
+      expect_error(ErrorKind::data, {"w.bin", std::to_string(width) + " floats a point"},
+                   [&] { read_points(file); });
+  }
+}
+
 }  // namespace
 }  // namespace adasplats

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -73,6 +75,42 @@ bool looks_like_five(const Table& four) {
   return has_rings(four);
 }
 
+/// Mean difference of floats `width` apart, among the first of a file; values that are not finite
+/// or implausible count as a fixed difference.
+double mean_step(std::span<const float> values, std::size_t width) {
+  constexpr double kLargest = 1e4;
+  double sum = 0;
+  for (std::size_t i = width; i < values.size(); ++i) {
+    const double step =
+        std::fabs(static_cast<double>(values[i]) - static_cast<double>(values[i - width]));
+    sum += step < kLargest ? step : kLargest;
+  }
+  return sum / static_cast<double>(values.size() - width);
+}
+
+/// The number of floats a point, from 3 to 8, if it is clearly not `width`: neighbouring points of
+/// a scan resemble each other, so values repeat best at the true width.
+std::optional<std::size_t> other_width(InputFile& file, std::size_t width) {
+  constexpr std::size_t kMinFloats = 840, kMaxFloats = 1 << 16, kMaxWidth = 8;
+  constexpr double kClear = 0.5;
+  const std::uint64_t count = file.size_bytes() / sizeof(float);
+  if (count < kMinFloats || file.size_bytes() % sizeof(float) != 0) return std::nullopt;
+  std::vector<float> values(static_cast<std::size_t>(std::min<std::uint64_t>(count, kMaxFloats)));
+  std::memcpy(values.data(), file.peek(values.size() * sizeof(float)).data(),
+              values.size() * sizeof(float));
+  std::size_t best = width;
+  double least = kClear * mean_step(values, width);
+  for (std::size_t other = 3; other <= kMaxWidth; ++other) {
+    if (other % width == 0 || count % other != 0) continue;
+    const double step = mean_step(values, other);
+    if (step >= least) continue;
+    least = step;
+    best = other;
+  }
+  if (best == width) return std::nullopt;
+  return best;
+}
+
 constexpr const char* kFiveFloats =
     "has 5 floats a point (x, y, z, intensity, ring), as in nuScenes";
 
@@ -128,8 +166,15 @@ Table read_four_floats(const std::filesystem::path& path, const char* advice_for
       "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity)" +
           (five ? std::string("; this file may be from nuScenes, which has 20") + advice_for_five
                 : ""));
+  const auto other = other_width(file, kKittiFloats);
   Table table = read_floats(file, {"x", "y", "z", "intensity"});
   require_kitti_values(path, table, advice_for_five);
+  if (other)
+    throw data_error(
+        {path, {}, {}},
+        "seems to have " + std::to_string(*other) +
+            " floats a point, a KITTI scan has 4 (float32 x, y, z, intensity); convert "
+            "it to one, or to PLY, PCD or LAS");
   return table;
 }
 

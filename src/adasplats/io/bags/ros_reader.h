@@ -64,7 +64,8 @@ class RosReader {
                           std::to_string(reader_.remaining()) + " bytes");
     return count;
   }
-  void skip(std::size_t bytes) { reader_.take(bytes); }
+  /// uint8[N] of a fixed length
+  std::string_view take(std::size_t bytes) { return reader_.take(bytes); }
   Error error(const std::string& message) const { return reader_.error(message); }
 
  private:

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/bags/ros_values.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 
 #include "adasplats/io/bags/ros_reader.h"
 #include "adasplats/io/base/number_text.h"
@@ -14,8 +16,7 @@ namespace {
 
 constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
 
-RosHeader read_header(RosReader& reader) {
-  if (reader.is_ros1()) reader.number<std::uint32_t>();  // seq
+std::int64_t read_stamp_ns(RosReader& reader) {
   // Unsigned in ROS 1, which matters from 2038 on.
   const std::int64_t seconds = reader.is_ros1()
                                    ? static_cast<std::int64_t>(reader.number<std::uint32_t>())
@@ -24,7 +25,13 @@ RosHeader read_header(RosReader& reader) {
   if (nanoseconds >= kNanosecondsOfSecond)
     throw reader.error("has a time of " + std::to_string(nanoseconds) +
                        " ns within a second, expected below 1000000000");
-  RosHeader header{seconds * kNanosecondsOfSecond + nanoseconds, reader.text()};
+  return seconds * kNanosecondsOfSecond + nanoseconds;
+}
+
+RosHeader read_header(RosReader& reader) {
+  if (reader.is_ros1()) reader.number<std::uint32_t>();  // seq
+  const std::int64_t stamp_ns = read_stamp_ns(reader);
+  RosHeader header{stamp_ns, reader.text()};
   if (header.frame.starts_with('/')) header.frame.erase(0, 1);
   return header;
 }
@@ -89,7 +96,69 @@ void require_fields_within(const RosReader& reader, const std::vector<RecordFiel
                        std::to_string(step) + " (point_step)");
 }
 
+/// A message with a list of packets: std_msgs/Header, then for each packet its time, its bytes
+/// (`fixed_bytes`, or as many as are stated), and with `has_size` the number that are valid.
+struct PacketList {
+  std::string_view type;
+  std::size_t fixed_bytes = 0;
+  bool has_size = false;
+};
+constexpr PacketList kPacketLists[] = {{"velodyne_msgs/VelodyneScan", 1206, false},
+                                       {"nebula_msgs/NebulaPackets", 0, false},
+                                       {"pandar_msgs/PandarScan", 1500, true},
+                                       {"hesai_lidar/PandarScan", 0, true},
+                                       {"hesai_ros_driver/UdpFrame", 0, true}};
+/// Messages with the bytes of one packet.
+constexpr std::string_view kPacketMessages[] = {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg",
+                                                "ouster_sensor_msgs/PacketMsg"};
+
+const PacketList* packet_list(std::string_view type) {
+  const auto* const found = std::ranges::find(kPacketLists, type, &PacketList::type);
+  return found == std::end(kPacketLists) ? nullptr : found;
+}
+
+RosPacket read_packet(RosReader& reader, const PacketList& list) {
+  RosPacket packet;
+  packet.time_ns = read_stamp_ns(reader);
+  packet.bytes = list.fixed_bytes != 0 ? reader.take(list.fixed_bytes) : reader.bytes();
+  if (!list.has_size) return packet;
+  const auto size = reader.number<std::uint32_t>();
+  if (size > packet.bytes.size())
+    throw reader.error("has a packet of " + std::to_string(packet.bytes.size()) +
+                       " bytes, of which " + std::to_string(size) + " are valid (size)");
+  packet.bytes = packet.bytes.substr(0, size);
+  return packet;
+}
+
 }  // namespace
+
+bool holds_packets(std::string_view type) {
+  return packet_list(type) != nullptr ||
+         std::ranges::find(kPacketMessages, type) != std::end(kPacketMessages);
+}
+
+RosPackets ros_packets(std::string_view bytes, std::string_view type, MessageEncoding encoding,
+                       const std::string& what) {
+  RosReader reader(bytes, encoding, what);
+  RosPackets found;
+  const PacketList* const list = packet_list(type);
+  if (list == nullptr) {
+    RosPacket packet{0, reader.bytes()};
+    // Old versions of ouster_ros send a byte more; sizes of packets are even.
+    if (packet.bytes.size() % 2 != 0) packet.bytes.remove_suffix(1);
+    found.packets.push_back(packet);
+    return found;
+  }
+  found.frame = read_header(reader).frame;
+  constexpr std::size_t kMinBytes = 4 + 4;
+  const std::uint32_t count = reader.count(kMinBytes + std::max<std::size_t>(4, list->fixed_bytes));
+  for (std::uint32_t k = 0; k < count; ++k) found.packets.push_back(read_packet(reader, *list));
+  return found;
+}
+
+std::string ros_string(std::string_view bytes, MessageEncoding encoding, const std::string& what) {
+  return RosReader(bytes, encoding, what).text();
+}
 
 bool holds_poses(std::string_view type) {
   return type == kRosTransforms || type == kOldRosTransforms || type == kRosOdometry ||

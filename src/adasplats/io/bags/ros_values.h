@@ -13,8 +13,9 @@
 
 namespace adasplats {
 
-// Messages of ROS 1 and 2 (common_msgs/common_interfaces, geometry2) that hold points and poses.
-// `what` begins error messages; all functions throw data for anything that is not such a message.
+// Messages of ROS 1 and 2 (common_msgs/common_interfaces, geometry2) that hold points and poses,
+// and those of drivers that hold packets of a sensor. `what` begins error messages; all functions
+// throw data for anything that is not such a message.
 
 /// std_msgs/Header.
 struct RosHeader {
@@ -56,5 +57,27 @@ std::vector<RosPose> ros_poses(std::string_view bytes, std::string_view type,
 /// becomes name_0, name_1, ... Memory: at most 2x the message, since fields that overlap more than
 /// twice are an error.
 Table ros_points(std::string_view bytes, MessageEncoding encoding, const std::string& what);
+
+/// A UDP payload of a sensor.
+struct RosPacket {
+  std::int64_t time_ns = 0;  ///< when the driver received it; 0: not given
+  std::string_view bytes;    ///< of the message
+};
+struct RosPackets {
+  std::string frame;  ///< of the sensor; empty: not given
+  std::vector<RosPacket> packets;
+};
+
+/// Whether ros_packets() reads messages of this type: velodyne_msgs/VelodyneScan, PacketMsg of
+/// Ouster's drivers, nebula_msgs/NebulaPackets, pandar_msgs/PandarScan of Nebula,
+/// hesai_lidar/PandarScan and hesai_ros_driver/UdpFrame of Hesai's drivers.
+bool holds_packets(std::string_view type);
+
+/// The packets in a message of one of these types.
+RosPackets ros_packets(std::string_view bytes, std::string_view type, MessageEncoding encoding,
+                       const std::string& what);
+
+inline constexpr std::string_view kRosString = "std_msgs/String";
+std::string ros_string(std::string_view bytes, MessageEncoding encoding, const std::string& what);
 
 }  // namespace adasplats

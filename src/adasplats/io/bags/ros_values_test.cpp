@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/base/mutator_test.h"
 
@@ -160,6 +164,82 @@ TEST(RosValues, BrokenMessagesAreErrors) {
     }
   }
   EXPECT_GT(read, 100U);
+}
+
+/// One packet of a message with a list: `fixed` bytes, or as many as it has; `size` of them valid.
+struct SentPacket {
+  std::int64_t stamp_ns = 0;
+  std::string bytes;
+  std::size_t fixed = 0;
+  std::optional<std::uint32_t> size;
+};
+
+void put_packet(bags_test::MessageComposer& message, SentPacket packet) {
+  message.put(static_cast<std::uint32_t>(packet.stamp_ns / 1'000'000'000));
+  message.put(static_cast<std::uint32_t>(packet.stamp_ns % 1'000'000'000));
+  if (packet.fixed == 0) {
+    message.raw(packet.bytes);
+  } else {
+    packet.bytes.resize(packet.fixed, '.');
+    for (const char byte : packet.bytes) message.put(byte);
+  }
+  if (packet.size) message.put(*packet.size);
+}
+
+// Oracle: what was put into the messages, as the definitions in the drivers' packages state them.
+TEST(RosPackets, ListsOfEveryDriver) {
+  const std::pair<std::string, SentPacket> kKinds[] = {
+      {"velodyne_msgs/VelodyneScan", {1'000'000'007, "abc", 1206, {}}},
+      {"nebula_msgs/NebulaPackets", {1'000'000'007, "abcde", 0, {}}},
+      {"pandar_msgs/PandarScan", {1'000'000'007, "abc", 1500, 3}},
+      {"hesai_lidar/PandarScan", {1'000'000'007, "abc..", 0, 3}},
+      {"hesai_ros_driver/UdpFrame", {1'000'000'007, "abc", 0, 3}}};
+  for (const auto& [type, sent] : kKinds) {
+    for (const bool cdr : {false, true}) {
+      SCOPED_TRACE(type + (cdr ? " cdr" : " ros1"));
+      bags_test::MessageComposer message(cdr);
+      message.header(5, "velodyne").put(std::uint32_t{2});
+      put_packet(message, sent);
+      put_packet(message, sent);
+      const auto encoding = cdr ? MessageEncoding::cdr : MessageEncoding::ros1;
+      ASSERT_TRUE(holds_packets(type));
+      const RosPackets found = ros_packets(message.get(), type, encoding, "m");
+      EXPECT_EQ(found.frame, "velodyne");
+      ASSERT_EQ(found.packets.size(), 2U);
+      EXPECT_EQ(found.packets[1].time_ns, 1'000'000'007);
+      std::string expected = sent.bytes;
+      if (sent.fixed != 0) expected.resize(sent.fixed, '.');
+      EXPECT_EQ(found.packets[1].bytes, expected.substr(0, sent.size.value_or(expected.size())));
+      expect_error(ErrorKind::data, {"m "}, [&] {
+        ros_packets(message.get().substr(0, message.get().size() - 1), type, encoding, "m");
+      });
+    }
+  }
+}
+
+TEST(RosPackets, OnePacketPerMessageOfAnOuster) {
+  for (const bool cdr : {false, true}) {
+    const auto encoding = cdr ? MessageEncoding::cdr : MessageEncoding::ros1;
+    bags_test::MessageComposer message(cdr), longer(cdr);
+    message.raw("abcd");
+    longer.raw("abcd_");  // old drivers add a byte
+    for (const char* type :
+         {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg", "ouster_sensor_msgs/PacketMsg"}) {
+      ASSERT_TRUE(holds_packets(type));
+      EXPECT_EQ(ros_packets(message.get(), type, encoding, "m").packets.at(0).bytes, "abcd");
+      EXPECT_EQ(ros_packets(longer.get(), type, encoding, "m").packets.at(0).bytes, "abcd");
+    }
+  }
+  EXPECT_FALSE(holds_packets("rslidar_msgs/rslidarScan"));
+}
+
+TEST(RosPackets, SizesBeyondThePacketAreErrors) {
+  bags_test::MessageComposer message(true);
+  message.header(5, "h").put(std::uint32_t{1});
+  put_packet(message, {1, "abc", 0, 4});
+  expect_error(ErrorKind::data, {"a packet of 3 bytes, of which 4 are valid"}, [&] {
+    ros_packets(message.get(), "hesai_ros_driver/UdpFrame", MessageEncoding::cdr, "m");
+  });
 }
 
 }  // namespace

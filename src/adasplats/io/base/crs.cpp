@@ -214,13 +214,26 @@ std::vector<double> numbers_of(const GeoKeys& keys) {
   return numbers;
 }
 
+/// Whether a key concerns the vertical system (GeoTIFF 1.0, section 6.2.4).
+bool is_vertical(std::uint16_t key) {
+  constexpr std::uint16_t kLastVerticalKey = 4099;
+  return key >= kVerticalTypeKey && key <= kLastVerticalKey;
+}
+
+/// Whether keys define a horizontal system, or only one of heights.
+bool define_ground(const GeoKeys& keys) {
+  for (std::size_t k = kKeyNumbers; k + kKeyNumbers <= keys.directory.size(); k += kKeyNumbers)
+    if (!defines_no_system(keys.directory[k]) && !is_vertical(keys.directory[k])) return true;
+  return false;
+}
+
 Parts parts_of_keys(const GeoKeys& keys) {
   Parts parts;
   const auto epsg = [](std::uint16_t code) {
     return code == 0 ? std::string() : "EPSG:" + std::to_string(code);
   };
-  parts.ground.is_defined = true;
-  parts.ground.is_of_keys = true;
+  parts.ground.is_defined = define_ground(keys);
+  parts.ground.is_of_keys = parts.height.is_of_keys = true;
   parts.ground.numbers = numbers_of(keys);
   parts.ground.code =
       epsg(code_of(keys, is_projected(keys) ? kProjectedTypeKey : kGeographicTypeKey));
@@ -336,8 +349,9 @@ std::string Crs::name() const {
                  : "+" + height.code;
   std::string names = ground.name;
   if (!height.name.empty()) names += (names.empty() ? "" : " + ") + height.name;
-  if (codes.empty()) return names.empty() ? "without a name" : names;
-  return names.empty() ? codes : codes + " (" + names + ")";
+  const std::string only = ground.is_defined ? "" : "heights only, no horizontal system: ";
+  if (codes.empty()) return only + (names.empty() ? "without a name" : names);
+  return only + (names.empty() ? codes : codes + " (" + names + ")");
 }
 
 Crs crs_of_wkt(std::string_view wkt) {
@@ -415,16 +429,20 @@ void SharedCrs::add(const std::filesystem::path& file, const Crs& crs) {
                     "; the systems differ or cannot be recognized as the same: reproject the "
                     "inputs to one (e.g. 'pdal translate IN OUT reprojection "
                     "--filters.reprojection.out_srs=...')");
-  const bool has_height = parts_of(crs).height.is_defined;
+  const Parts parts = parts_of(crs);
+  const bool has_height = parts.height.is_defined, has_ground = parts.ground.is_defined;
   if (!has_height) without_heights_.push_back(file);
-  if (crs_.empty() || (found == CrsMatch::unclear && has_height)) {
+  if (!has_ground) without_crs_.push_back(file);
+  const bool lacks_ground = !crs_.empty() && !parts_of(crs_).ground.is_defined;
+  if (crs_.empty() || (lacks_ground && has_ground) ||
+      (found == CrsMatch::unclear && has_height && has_ground)) {
     crs_ = crs;
     source_ = file;
   }
 }
 
 std::string SharedCrs::warning() const {
-  if (crs_.empty()) return {};
+  if (crs_.empty() || !parts_of(crs_).ground.is_defined) return {};
   std::string text;
   const std::string assumed = "; assumed " + crs_.name() + " of " + source_.string();
   if (!without_crs_.empty())

@@ -29,7 +29,8 @@ struct Crs {
   /// Whether no system is stated. Keys with only units and model types state none.
   bool empty() const;
   /// The codes and names, "EPSG:32632+5773 (WGS 84 / UTM zone 32N + EGM96 height)"; "without a
-  /// name" if there are none, "" if no system is stated.
+  /// name" if there are none, "heights only, no horizontal system: EPSG:5773" without a horizontal
+  /// system, "" if no system is stated.
   std::string name() const;
 
   bool operator==(const Crs&) const = default;

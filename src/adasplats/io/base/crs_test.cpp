@@ -83,6 +83,21 @@ TEST(CoordinateSystem, BlanksAndUnitsAloneStateNoSystem) {
   EXPECT_FALSE(kKeys32.empty());
 }
 
+TEST(CoordinateSystem, HeightsAloneAreNoHorizontalSystem) {
+  const Crs heights = keys({1024, 0, 1, 1, 3076, 0, 1, 32632, 4096, 0, 1, 5030, 4099, 0, 1, 9001});
+  EXPECT_EQ(heights.name(), "heights only, no horizontal system: EPSG:5030");
+  EXPECT_EQ(wkt(kEgm96).name(), "heights only, no horizontal system: EPSG:5773 (EGM96 height)");
+  expect_match(heights, kZone32, CrsMatch::unclear);
+  for (const bool is_first : {true, false}) {
+    SharedCrs shared;
+    if (is_first) shared.add("heights.las", heights);
+    shared.add("zone.las", kZone32);
+    if (!is_first) shared.add("heights.las", heights);
+    EXPECT_EQ(shared.crs(), kZone32);
+    EXPECT_NE(shared.warning().find("heights.las"), std::string::npos);
+  }
+}
+
 TEST(CoordinateSystem, CodesDecideWhereBothHaveSome) {
   expect_match(kZone32, kZone32, CrsMatch::same);
   expect_match(kZone32, kZone33, CrsMatch::different);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
@@ -54,12 +55,17 @@ struct LasReadOptions {
   /// Decompresses the chunks of LAZ on these threads; nullptr: on the calling thread.
   const Executor* executor = nullptr;
   PointSelection selection = {};
+  /// Read every field of the points, else those that models use.
+  bool all_fields = false;
 };
 
 /// LAS and LAZ 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity
 /// (u16), classification (u8), return_number, number_of_returns (u8), if the format has them
 /// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and the
-/// attributes in extra bytes that the file describes, in their types (scaled ones f64). Points
+/// attributes in extra bytes that the file describes, in their types (scaled ones f64). With
+/// `all_fields` also scan_angle (f32, degrees), nir (u16), synthetic, key_point, overlap,
+/// scanner_channel, scan_direction_flag and edge_of_flight_line (u8), those with other values than
+/// 0, and a note of what was not read. Points
 /// flagged as withheld (deleted) are left out, with a note; further notes: NoteKind. LAZ: items of
 /// versions 1 to 4 (LASzip 1.0 to 3.5); of COPC only the selected chunks are decompressed.
 /// Memory: at most 2x the file's size (LAS), the table (LAZ; without chunks also twice the file's
@@ -129,6 +135,8 @@ struct LasFacts {
   Vec3d box_min, box_max;  ///< of the points, as in the header
   std::string software;
   Crs crs;
+  std::vector<std::string> extra_fields;  ///< names of the described extra bytes
+  std::string labels;  ///< label scheme, in files of this program; empty: not stated
 };
 
 /// Errors: as read_las().

@@ -42,7 +42,7 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
     file.skip(span.first * header.record_bytes);
   }
   const auto rows = static_cast<std::size_t>(span.count);
-  LasTable table(path, header, options.selection.extent, rows);
+  LasTable table(path, header, options, rows);
   const std::size_t chunk_rows = std::max<std::size_t>(1, kLasChunkBytes / header.record_bytes);
   while (table.records() < rows) {
     const std::size_t count = std::min(chunk_rows, rows - table.records());
@@ -76,7 +76,11 @@ LasFacts read_las_facts(const std::filesystem::path& path) {
   facts.box_min = header.box_min;
   facts.box_max = header.box_max;
   facts.software = header.software;
-  facts.crs = read_las_description(path, header).crs;
+  LasDescription description = read_las_description(path, header);
+  facts.crs = std::move(description.crs);
+  facts.labels = std::move(description.labels);
+  for (LasExtraField& field : description.extra_fields)
+    facts.extra_fields.push_back(std::move(field.name));
   return facts;
 }
 

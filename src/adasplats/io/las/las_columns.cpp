@@ -3,9 +3,11 @@
 #include "adasplats/io/las/las_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -24,6 +26,44 @@ constexpr std::size_t kClassAt = 15, kSourceAt = 18;
 constexpr std::size_t kExtendedFlagsAt = 15, kExtendedClassAt = 16, kExtendedSourceAt = 20;
 // In formats 0 to 5 the upper three bits of the class are flags (synthetic, key point, withheld).
 constexpr unsigned kWithheld = 1U << 7, kClassBits = 0x1f;
+
+constexpr std::size_t kAngleAt = 16, kExtendedAngleAt = 18, kInfraredAt = 36;
+constexpr float kExtendedAngleStep_deg = 0.006F;
+
+/// Bits of a byte.
+struct BitsOfByte {
+  const char* name;
+  std::size_t offset;
+  unsigned shift, mask;
+};
+constexpr std::array<BitsOfByte, 4> kFlags = {{{"synthetic", kClassAt, 5, 1},
+                                               {"key_point", kClassAt, 6, 1},
+                                               {"scan_direction_flag", kReturnsAt, 6, 1},
+                                               {"edge_of_flight_line", kReturnsAt, 7, 1}}};
+constexpr std::array<BitsOfByte, 6> kExtendedFlags = {
+    {{"synthetic", kExtendedFlagsAt, 0, 1},
+     {"key_point", kExtendedFlagsAt, 1, 1},
+     {"overlap", kExtendedFlagsAt, 3, 1},
+     {"scanner_channel", kExtendedFlagsAt, 4, 3},
+     {"scan_direction_flag", kExtendedFlagsAt, 6, 1},
+     {"edge_of_flight_line", kExtendedFlagsAt, 7, 1}}};
+
+std::span<const BitsOfByte> flags_of(const LasFormat& format) {
+  return format.is_extended ? std::span<const BitsOfByte>(kExtendedFlags) : kFlags;
+}
+
+bool has_infrared(const LasFormat& format) {
+  return format.is_extended && format.colour_offset != 0 &&
+         format.min_bytes >= kInfraredAt + sizeof(std::uint16_t);
+}
+
+bool is_zero(const Column& column) {
+  return std::visit(
+      [](const auto& values) {
+        return std::ranges::all_of(values, [](auto value) { return value == 0; });
+      },
+      column.values);
+}
 
 std::int32_t step_of(const std::byte* record, int axis) {
   return load_value<std::int32_t>(record + 4 * static_cast<std::size_t>(axis));
@@ -95,6 +135,12 @@ LasColumns::LasColumns(const LasSchema& schema) : schema_(schema) {
     for (const char* const name : {"red", "green", "blue"}) add(name, ColumnType::u16);
   add("point_source_id", ColumnType::u16);
   add("user_data", ColumnType::u8);
+  first_rare_ = columns_.size();
+  if (schema.all_fields) {
+    add("scan_angle", ColumnType::f32);
+    for (const BitsOfByte& flag : flags_of(format)) add(flag.name, ColumnType::u8);
+    if (has_infrared(format)) add("nir", ColumnType::u16);
+  }
   for (const LasExtraField& field : schema.description.extra_fields)
     columns_.push_back(make_column(field.name, field.type, 0));
 }
@@ -154,6 +200,20 @@ void LasColumns::fill_block(std::size_t first, const std::byte* records, std::si
       add(field_at<std::uint16_t>(format.colour_offset + colour));
   add(field_at<std::uint16_t>(is_extended ? kExtendedSourceAt : kSourceAt));
   add(field_at<std::uint8_t>(kUserDataAt));
+  if (schema_.all_fields) {
+    if (is_extended)
+      add([](const std::byte* record) {
+        return kExtendedAngleStep_deg *
+               static_cast<float>(load_value<std::int16_t>(record + kExtendedAngleAt));
+      });
+    else
+      add([](const std::byte* record) {
+        return static_cast<float>(load_value<std::int8_t>(record + kAngleAt));
+      });
+    for (const BitsOfByte& flag : flags_of(format))
+      add(bits_at(flag.offset, flag.shift, flag.mask));
+    if (has_infrared(format)) add(field_at<std::uint16_t>(kInfraredAt));
+  }
   for (const LasExtraField& field : schema_.description.extra_fields)
     std::visit(
         [&](auto& values) {
@@ -169,6 +229,7 @@ Table LasColumns::take_table() {
   const auto& extras = schema_.description.extra_fields;
   const std::size_t standard = columns_.size() - extras.size();
   for (std::size_t k = 0; k < columns_.size(); ++k) {
+    if (k >= first_rare_ && k < standard && is_zero(columns_[k])) continue;
     const bool is_scaled = k >= standard && extras[k - standard].is_scaled;
     table.columns.push_back(is_scaled ? scaled(extras[k - standard], columns_[k])
                                       : std::move(columns_[k]));

@@ -20,6 +20,7 @@ struct LasSchema {
   LasHeader header;
   LasDescription description;
   std::optional<Extent> extent;  ///< nothing: all
+  bool all_fields = false;       ///< LasReadOptions::all_fields
 };
 
 /// Numbers of records that are kept and that are withheld.
@@ -51,6 +52,7 @@ class LasColumns {
 
   const LasSchema& schema_;
   std::vector<Column> columns_;  ///< in the order of fill_block()
+  std::size_t first_rare_ = 0;   ///< of the columns that are left out if all their values are 0
 };
 
 }  // namespace adasplats

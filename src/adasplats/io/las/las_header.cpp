@@ -157,13 +157,13 @@ const LasFormat& las_format(std::size_t number) {
                                                                        {28, false, 20, 0},
                                                                        {26, false, 0, 20},
                                                                        {34, false, 20, 28},
-                                                                       {57, false, 20, 0},
-                                                                       {63, false, 20, 28},
+                                                                       {57, false, 20, 0, true},
+                                                                       {63, false, 20, 28, true},
                                                                        {30, true, 22, 0},
                                                                        {36, true, 22, 30},
                                                                        {38, true, 22, 30},
-                                                                       {59, true, 22, 0},
-                                                                       {67, true, 22, 30}}};
+                                                                       {59, true, 22, 0, true},
+                                                                       {67, true, 22, 30, true}}};
   return kFormats.at(number);
 }
 

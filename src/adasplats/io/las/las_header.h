@@ -60,6 +60,7 @@ struct LasFormat {
   bool is_extended = false;         ///< formats 6-10: wider bit fields
   std::size_t gps_time_offset = 0;  ///< 0: none
   std::size_t colour_offset = 0;    ///< 0: none
+  bool has_waves = false;           ///< wave packets
 };
 
 inline constexpr std::size_t kLasFormatCount = 11;

@@ -2,17 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/las/las_table.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 
 LasTable::LasTable(const std::filesystem::path& path, const LasHeader& header,
-                   const std::optional<Extent>& extent, std::size_t expected_rows)
-    : schema_{header, read_las_description(path, header), extent}, columns_(schema_) {
-  if (!extent) columns_.reserve(expected_rows);
+                   const LasReadOptions& options, std::size_t expected_rows)
+    : schema_{header, read_las_description(path, header), options.selection.extent,
+              options.all_fields},
+      columns_(schema_) {
+  if (!options.selection.extent) columns_.reserve(expected_rows);
 }
 
 void LasTable::take(const std::byte* records, std::size_t count) {
@@ -39,6 +43,18 @@ void LasTable::add(std::span<const WantedRecords> parts, const Executor* executo
     fill(0, parts.size());
 }
 
+void LasTable::note_unread(std::vector<ReaderNote>& notes) const {
+  const LasFormat& format = las_format(schema_.header.format);
+  std::size_t unread = schema_.header.record_bytes - format.min_bytes;
+  for (const LasExtraField& field : schema_.description.extra_fields)
+    unread -= std::min(unread, type_bytes(field.type));
+  if (unread > 0)
+    notes.push_back({NoteKind::left_out, std::to_string(unread) +
+                                             " extra bytes of each point that are not described, "
+                                             "or are arrays"});
+  if (format.has_waves) notes.push_back({NoteKind::left_out, "the waveforms"});
+}
+
 Table LasTable::finish() {
   Table table = columns_.take_table();
   if (withheld_ > 0)
@@ -46,6 +62,7 @@ Table LasTable::finish() {
                                                    std::to_string(records()) + " points"});
   schema_.description.add_notes(table.notes);
   table.crs = schema_.description.crs;
+  if (schema_.all_fields) note_unread(table.notes);
   if (records() < schema_.header.points)
     table.notes.push_back(
         {NoteKind::salvaged,

@@ -4,11 +4,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "adasplats/core/maths/extent.h"
+#include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/las_columns.h"
 #include "adasplats/io/las/las_header.h"
 
@@ -26,7 +25,7 @@ class LasTable {
  public:
   /// Reserves memory for `expected_rows` if all points are read.
   LasTable(const std::filesystem::path& path, const LasHeader& header,
-           const std::optional<Extent>& extent, std::size_t expected_rows);
+           const LasReadOptions& options, std::size_t expected_rows);
   LasTable(const LasTable&) = delete;  // columns look into the schema
   LasTable& operator=(const LasTable&) = delete;
 
@@ -40,6 +39,8 @@ class LasTable {
   Table finish();
 
  private:
+  void note_unread(std::vector<ReaderNote>& notes) const;
+
   LasSchema schema_;
   LasColumns columns_;
   std::size_t records_ = 0, withheld_ = 0;

@@ -97,6 +97,7 @@ struct UnitKeys {
 void add_units(std::string_view record, const UnitKeys& keys, DirectoryUnits& units) {
   constexpr std::size_t kKeyBytes = 8;
   constexpr std::uint16_t kUserDefined = 32767;
+  constexpr std::uint16_t kFirstUnit = 9001, kLastUnit = 9999;
   std::uint16_t unit = 0, system = 0;
   for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes)) {
     const auto key = value_at<std::uint16_t>(record, 0);
@@ -108,6 +109,9 @@ void add_units(std::string_view record, const UnitKeys& keys, DirectoryUnits& un
     if (const auto length = foreign_length_of(unit))
       units.not_metres = in + *length + ", by GeoTIFF key " + std::to_string(keys.unit) + " = " +
                          std::to_string(unit);
+    else if (unit < kFirstUnit || unit > kLastUnit)
+      units.unknown =
+          in + "the unit " + std::to_string(unit) + " of GeoTIFF key " + std::to_string(keys.unit);
   } else if (unit == 0 && system != 0 && system != kUserDefined) {
     const auto found = keys.unit_of_system(system);
     const std::string name = "EPSG:" + std::to_string(system);
@@ -141,12 +145,14 @@ class Descriptor {
   /// Whether a record concerns the points.
   static bool is_wanted(std::string_view user, std::uint16_t number) {
     if (user == "LASF_Spec") return number == kExtraBytesRecord;
+    if (user == kLasLabelsUser) return number == kLasLabelsRecord;
     return user == "LASF_Projection" && (number == kWktRecord || number == kGeoKeysRecord ||
                                          number == kGeoDoublesRecord || number == kGeoTextRecord);
   }
 
   void take(std::uint16_t number, std::string_view record) {
     switch (number) {
+      case kLasLabelsRecord: description_.labels = text_at(record, 0, record.size()); break;
       case kExtraBytesRecord: description_.extra_fields = extra_fields_of(record, header_); break;
       case kGeoKeysRecord:
         if (is_geographic_directory(record)) description_.geographic = "GTModelType 2, geographic";

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adasplats/io/base/crs.h"
@@ -13,6 +15,10 @@
 #include "adasplats/io/las/las_header.h"
 
 namespace adasplats {
+
+/// Our record with the label scheme of the classes, as load_label_scheme() takes it.
+inline constexpr std::string_view kLasLabelsUser = "adasplats";
+inline constexpr std::uint16_t kLasLabelsRecord = 1;
 
 /// An attribute in the extra bytes of points, described by the file.
 struct LasExtraField {
@@ -38,6 +44,7 @@ struct LasDescription {
   bool has_adjusted_times = false;  ///< as in LasHeader
   /// The text or the keys; if the file has both, the header decides.
   Crs crs;
+  std::string labels;  ///< our record kLasLabelsRecord
   /// Whether extended records reach beyond the end of the file and were not read.
   bool is_cut = false;
 

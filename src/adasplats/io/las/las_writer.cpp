@@ -18,6 +18,7 @@
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/record_writer.h"
 #include "adasplats/io/las/las_header.h"
+#include "adasplats/io/las/las_vlrs.h"
 #include "adasplats/io/las/laz_writer.h"
 
 namespace adasplats {
@@ -25,13 +26,15 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
 
-constexpr std::size_t kPointFormat = 6;
+// Without colours, with them, and with near infrared.
+constexpr std::size_t kPlainFormat6 = 6, kColourFormat = 7, kInfraredFormat = 8;
 constexpr std::size_t kHeaderBytes = 375;       // table 3
 constexpr std::size_t kExtraRecordBytes = 192;  // table 24
 constexpr std::uint16_t kExtraRecordId = 4;
 constexpr std::size_t kMaxReturns = 15;
 // Point formats 6 to 10 should set it (table 4): a coordinate system, if any, is reported as WKT.
 constexpr std::uint16_t kWktBit = 1 << 4;
+constexpr std::uint16_t kAdjustedTimesBit = 1 << 0;
 constexpr std::uint16_t kWktRecordId = 2112;
 constexpr std::uint16_t kGeoKeysId = 34735, kGeoDoublesId = 34736, kGeoTextId = 34737;
 
@@ -45,18 +48,37 @@ void put_text(char* record, std::size_t offset, std::string_view text) {
   std::ranges::copy(text, record + offset);
 }
 
-/// A field of point format 6 that is copied unchanged (table 16).
+/// A field of point formats 6 to 8 that is copied unchanged (tables 16 to 18).
 struct CopiedField {
   std::string_view name;
   ColumnType type;
   std::size_t offset;
 };
-constexpr std::array<CopiedField, 5> kCopiedFields = {{{"intensity", ColumnType::u16, 12},
-                                                       {"classification", ColumnType::u8, 16},
-                                                       {"user_data", ColumnType::u8, 17},
-                                                       {"point_source_id", ColumnType::u16, 20},
-                                                       {"gps_time", ColumnType::f64, 22}}};
+constexpr std::array<CopiedField, 10> kCopiedFields = {{{"intensity", ColumnType::u16, 12},
+                                                        {"classification", ColumnType::u8, 16},
+                                                        {"user_data", ColumnType::u8, 17},
+                                                        {"scan_angle", ColumnType::i16, 18},
+                                                        {"point_source_id", ColumnType::u16, 20},
+                                                        {"gps_time", ColumnType::f64, 22},
+                                                        {"red", ColumnType::u16, 30},
+                                                        {"green", ColumnType::u16, 32},
+                                                        {"blue", ColumnType::u16, 34},
+                                                        {"nir", ColumnType::u16, 36}}};
+constexpr std::size_t kRedField = 6, kInfraredField = 9;
 constexpr std::size_t kReturnsOffset = 14;
+
+/// Bits of the byte at kBitsOffset (table 16).
+struct BitField {
+  std::string_view name;
+  unsigned shift, most;
+};
+constexpr std::size_t kBitsOffset = 15;
+constexpr std::array<BitField, 6> kBitFields = {{{"synthetic", 0, 1},
+                                                 {"key_point", 1, 1},
+                                                 {"overlap", 3, 1},
+                                                 {"scanner_channel", 4, 3},
+                                                 {"scan_direction_flag", 6, 1},
+                                                 {"edge_of_flight_line", 7, 1}}};
 
 /// The columns by their use.
 class PointColumns {
@@ -65,6 +87,10 @@ class PointColumns {
     for (const ColumnView& column : columns) take(column);
     for (const ColumnView& axis : axes_)
       if (axis.name.empty()) throw std::logic_error("write_las: x, y or z is missing");
+    for (std::size_t field = kRedField; field <= kInfraredField; ++field)
+      if (copied_[field].name.empty() != copied_[kRedField].name.empty() &&
+          !(field == kInfraredField && copied_[field].name.empty()))
+        throw std::logic_error("write_las: red, green or blue is missing");
   }
 
   std::span<const ColumnView> extras() const { return extras_; }
@@ -74,6 +100,18 @@ class PointColumns {
   }
   std::uint8_t return_number(std::size_t row) const { return byte_of(return_number_, row); }
   std::uint8_t number_of_returns(std::size_t row) const { return byte_of(returns_, row); }
+  std::uint8_t bits(std::size_t row) const {
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < kBitFields.size(); ++k)
+      if (!bits_[k].name.empty())
+        bits |= std::min<unsigned>(byte_of(bits_[k], row), kBitFields[k].most)
+                << kBitFields[k].shift;
+    return static_cast<std::uint8_t>(bits);
+  }
+  std::size_t point_format() const {
+    if (copied_[kRedField].name.empty()) return kPlainFormat6;
+    return copied_[kInfraredField].name.empty() ? kColourFormat : kInfraredFormat;
+  }
 
   void copy_fields(std::size_t row, char* record) const {
     for (std::size_t k = 0; k < kCopiedFields.size(); ++k) {
@@ -90,6 +128,12 @@ class PointColumns {
       if (column.name != kCopiedFields[k].name) continue;
       check_type(column, kCopiedFields[k].type);
       copied_[k] = column;
+      return;
+    }
+    for (std::size_t k = 0; k < kBitFields.size(); ++k) {
+      if (column.name != kBitFields[k].name) continue;
+      check_type(column, ColumnType::u8);
+      bits_[k] = column;
       return;
     }
     if (column.name == "return_number" || column.name == "number_of_returns") {
@@ -128,6 +172,7 @@ class PointColumns {
 
   std::array<ColumnView, 3> axes_ = {};
   std::array<ColumnView, kCopiedFields.size()> copied_ = {};  ///< without a name: absent
+  std::array<ColumnView, kBitFields.size()> bits_ = {};
   ColumnView return_number_ = {};
   ColumnView returns_ = {};
   std::vector<ColumnView> extras_;
@@ -169,6 +214,7 @@ class Grid {
   /// Whether the coordinate system is GeoTIFF keys.
   bool has_keys() const { return !options_.crs.empty() && options_.crs.wkt.empty(); }
   bool is_packed() const { return options_.is_packed; }
+  bool has_adjusted_times() const { return options_.has_adjusted_times; }
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -188,11 +234,12 @@ Summary summary_of(const PointColumns& columns, std::size_t rows, const Grid& gr
     }
     const std::size_t number = columns.return_number(row);
     const std::size_t of = columns.number_of_returns(row);
-    if (number < 1 || number > of || of > kMaxReturns)
+    // 0 is not allowed, but common: it is kept, and counted nowhere.
+    if (number > kMaxReturns || of > kMaxReturns)
       throw Error(ErrorKind::data, grid.path().string() + ": point " + std::to_string(row) +
                                        ": return " + std::to_string(number) + " of " +
                                        std::to_string(of) + ", LAS allows 1 to 15");
-    ++summary.by_return[number - 1];
+    if (number > 0) ++summary.by_return[number - 1];
   }
   if (rows == 0) summary.low = summary.high = {};
   return summary;
@@ -266,21 +313,25 @@ void add_crs(const std::filesystem::path& path, const Crs& crs, Records& records
 
 /// All records between the header and the points.
 Records records_of(const std::filesystem::path& path, std::span<const ColumnView> extras,
-                   std::size_t record_bytes, const LasWriteOptions& options) {
+                   std::size_t point_format, std::size_t record_bytes,
+                   const LasWriteOptions& options) {
   Records records;
   add_crs(path, options.crs, records);
   if (!extras.empty()) records.add(path, "LASF_Spec", kExtraRecordId, extra_descriptions(extras));
+  if (!options.labels.empty()) records.add(path, kLasLabelsUser, kLasLabelsRecord, options.labels);
   if (options.is_packed)
-    records.add(path, kLaszipUser, kLaszipRecordId, laszip_record(record_bytes));
+    records.add(path, kLaszipUser, kLaszipRecordId, laszip_record(point_format, record_bytes));
   return records;
 }
 
 std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid,
-                      std::size_t record_bytes, const Records& records) {
+                      std::size_t point_format, std::size_t record_bytes, const Records& records) {
   std::string header(kHeaderBytes, '\0');
   char* const bytes = header.data();
   put_text(bytes, 0, "LASF");
-  put(bytes, 6, grid.has_keys() ? std::uint16_t{0} : kWktBit);
+  put(bytes, 6,
+      static_cast<std::uint16_t>((grid.has_keys() ? 0 : kWktBit) |
+                                 (grid.has_adjusted_times() ? kAdjustedTimesBit : 0)));
   put(bytes, 24, std::uint8_t{1});
   put(bytes, 25, std::uint8_t{4});
   put_text(bytes, 26, "OTHER");  // System Identifier, table 5: neither sensor nor merge
@@ -289,7 +340,7 @@ std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid
   put(bytes, 96, static_cast<std::uint32_t>(kHeaderBytes + records.bytes.size()));
   put(bytes, 100, records.count);
   put(bytes, 104,
-      static_cast<std::uint8_t>(kPointFormat | (grid.is_packed() ? kLaszipFormatBit : 0)));
+      static_cast<std::uint8_t>(point_format | (grid.is_packed() ? kLaszipFormatBit : 0)));
   put(bytes, 105, static_cast<std::uint16_t>(record_bytes));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     put(bytes, 131 + 8 * axis, grid.scale());
@@ -309,13 +360,14 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
   const PointColumns points(columns);
   const Grid grid(path, options);
   const Summary summary = summary_of(points, rows, grid);
-  const std::size_t fixed_bytes = las_format(kPointFormat).min_bytes;
+  const std::size_t point_format = points.point_format();
+  const std::size_t fixed_bytes = las_format(point_format).min_bytes;
   std::size_t record_bytes = fixed_bytes;
   for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
-  const Records records = records_of(path, points.extras(), record_bytes, options);
-  file.write(header_of(rows, summary, grid, record_bytes, records));
+  const Records records = records_of(path, points.extras(), point_format, record_bytes, options);
+  file.write(header_of(rows, summary, grid, point_format, record_bytes, records));
   file.write(records.bytes);
-  LazWriter packer(record_bytes);
+  LazWriter packer(point_format, record_bytes);
   ByteSink& to = options.is_packed ? static_cast<ByteSink&>(packer) : file;
   write_records(to, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
     std::memset(record, 0, fixed_bytes);
@@ -323,6 +375,7 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
     std::memcpy(record, steps.data(), sizeof(steps));
     const auto returns = points.return_number(row) | points.number_of_returns(row) << 4;
     put(record, kReturnsOffset, static_cast<std::uint8_t>(returns));
+    put(record, kBitsOffset, points.bits(row));
     points.copy_fields(row, record);
   });
   if (options.is_packed) packer.finish(file, kHeaderBytes + records.bytes.size());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/byte_sink.h"
@@ -20,6 +21,8 @@ struct LasWriteOptions {
   /// keys, which cannot be converted to a text, are written unchanged (records 34735 to 34737, bit
   /// 4 of the global encoding 0), which readers accept.
   Crs crs;
+  std::string labels;  ///< label scheme of the classes, in a record of this program; empty: none
+  bool has_adjusted_times = false;  ///< gps_time is adjusted GPS time, else seconds of the week
   /// Write LAZ with the bytes of LASzip (layers, chunks of 50000 points). Takes memory for the
   /// compressed points.
   bool is_packed = false;
@@ -28,10 +31,13 @@ struct LasWriteOptions {
 /// Whether the name of an output file means LAZ: `.laz` in any case.
 bool is_laz_name(const std::filesystem::path& path);
 
-/// Writes LAS or LAZ 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
+/// Writes LAS or LAZ 1.4, point format 6, 7 with colours, 8 with near infrared (ASPRS, "LAS
+/// specification 1.4 - R15"). Columns by name:
 /// - x, y, z (f32 or f64, required), rounded to the scale;
-/// - optional: intensity, point_source_id (u16), return_number, number_of_returns (u8, 1 to 15;
-///   default 1), classification, user_data (u8), gps_time (f64);
+/// - optional: intensity, point_source_id, red, green, blue, nir (u16), return_number,
+///   number_of_returns (u8, 0 to 15; default 1), classification, user_data, synthetic, key_point,
+///   overlap, scanner_channel, scan_direction_flag, edge_of_flight_line (u8), scan_angle (i16,
+///   steps of 0.006 degrees), gps_time (f64);
 /// - any other column becomes an attribute in "extra bytes", in its type, with a record that
 ///   describes it (table 24); names have at most 31 bytes.
 /// The same columns give the same bytes: no date is written. Atomic. Throws std::logic_error for a

@@ -231,7 +231,7 @@ Table read_laz(const std::filesystem::path& path, const LasReadOptions& options)
   // The count is not trusted before the points are read; a point of a sensor takes at least two
   // bytes.
   InputFile file(path);
-  LasTable table(path, header, options.selection.extent,
+  LasTable table(path, header, options,
                  static_cast<std::size_t>(std::min(points, file.size_bytes() / 2)));
   LazReader reader(path, layout, options.executor, table);
   reader.read();

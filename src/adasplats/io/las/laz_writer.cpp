@@ -12,9 +12,14 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kPackedFormat = 6;
+constexpr std::size_t kPlainFormat = 6;
 constexpr std::uint32_t kChunkPoints = 50000;  // as LASzip does
 constexpr unsigned kItemVersion = 3;
+
+/// Bytes of the colours of a format.
+std::size_t colour_bytes_of(std::size_t point_format) {
+  return las_format(point_format).min_bytes - las_format(kPlainFormat).min_bytes;
+}
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -23,11 +28,16 @@ void append(std::string& bytes, T value) {
 
 }  // namespace
 
-std::string laszip_record(std::size_t record_bytes) {
-  const std::size_t point_bytes = las_format(kPackedFormat).min_bytes;
-  std::vector<LazItem> items = {{LazItemType::point14, point_bytes, kItemVersion}};
-  if (record_bytes > point_bytes)
-    items.push_back({LazItemType::extra_bytes14, record_bytes - point_bytes, kItemVersion});
+std::string laszip_record(std::size_t point_format, std::size_t record_bytes) {
+  constexpr std::size_t kRgbBytes = 6;
+  std::vector<LazItem> items = {
+      {LazItemType::point14, las_format(kPlainFormat).min_bytes, kItemVersion}};
+  const std::size_t colours = colour_bytes_of(point_format);
+  const std::size_t extras = record_bytes - las_format(point_format).min_bytes;
+  if (colours > 0)
+    items.push_back({colours == kRgbBytes ? LazItemType::rgb14 : LazItemType::rgb_nir14, colours,
+                     kItemVersion});
+  if (extras > 0) items.push_back({LazItemType::extra_bytes14, extras, kItemVersion});
   std::string record;
   append(record, LazCompressor::layered);
   append(record, std::uint16_t{0});  // coder
@@ -62,7 +72,8 @@ void LazWriter::write(const void* data, std::size_t bytes) {
 
 void LazWriter::pack() {
   chunks_.push_back(pack_layered_chunk(reinterpret_cast<const std::byte*>(records_.data()),
-                                       records_.size() / record_bytes_, record_bytes_));
+                                       records_.size() / record_bytes_, record_bytes_,
+                                       colour_bytes_of(point_format_)));
   records_.clear();
 }
 

@@ -17,15 +17,16 @@ inline constexpr std::uint16_t kLaszipRecordId = 22204;
 /// Flag in the point format byte of a LAZ header.
 inline constexpr std::uint8_t kLaszipFormatBit = 1U << 7;
 
-/// The content of LASzip's record for a file of point format 6 with extra bytes up to
+/// The content of LASzip's record for a file of point format 6, 7 or 8 with extra bytes up to
 /// `record_bytes`, written by LazWriter.
-std::string laszip_record(std::size_t record_bytes);
+std::string laszip_record(std::size_t point_format, std::size_t record_bytes);
 
-/// Compresses records of point format 6, passed in parts of any size, in chunks of 50000. Keeps the
-/// compressed chunks in memory, since the offset of the chunk table comes before them.
+/// Compresses records of point format 6, 7 or 8, passed in parts of any size, in chunks of 50000.
+/// Keeps the compressed chunks in memory, since the offset of the chunk table comes before them.
 class LazWriter final : public ByteSink {
  public:
-  explicit LazWriter(std::size_t record_bytes) : record_bytes_(record_bytes) {}
+  LazWriter(std::size_t point_format, std::size_t record_bytes)
+      : point_format_(point_format), record_bytes_(record_bytes) {}
 
   using ByteSink::write;
   void write(const void* data, std::size_t bytes) override;
@@ -36,7 +37,7 @@ class LazWriter final : public ByteSink {
  private:
   void pack();
 
-  std::size_t record_bytes_;
+  std::size_t point_format_, record_bytes_;
   std::string records_;  ///< of the incomplete chunk
   std::vector<std::string> chunks_;
 };

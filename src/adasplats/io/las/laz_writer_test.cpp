@@ -94,6 +94,37 @@ TEST(LazWriter, GivesTheBytesOfLaszip) {
   }
 }
 
+// Oracle: LASzip 3.5.0, which packed the same points with wave packets, a layer of their own.
+TEST(LazWriter, GivesTheColoursOfLaszip) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kColourBytes = 8, kColourLayers = 2;
+  const LazSample& sample = kLazSamples[2];
+  ASSERT_EQ(sample.format, 10U);
+  const std::string file = laz_file(sample), all = sample_records(sample);
+  const std::size_t bytes = all.size() / sample.rows;
+  std::string records;
+  for (std::size_t row = 0; row < sample.rows; ++row) {
+    records += all.substr(row * bytes, kPointBytes + kColourBytes);
+    records += all.substr((row + 1) * bytes - laz_test::kExtraBytes, laz_test::kExtraBytes);
+  }
+  constexpr std::size_t kRecordBytes = kPointBytes + kColourBytes + laz_test::kExtraBytes;
+  std::size_t first = 0;
+  for (const LazChunk& chunk : read_laz_layout(folder.file("a.laz", file), false).chunks) {
+    const auto points = static_cast<std::size_t>(chunk.points);
+    const std::string packed = pack_layered_chunk(
+        reinterpret_cast<const std::byte*>(records.data() + first * kRecordBytes), points,
+        kRecordBytes, kColourBytes);
+    constexpr std::size_t kLayers = kPointLayers + kColourLayers + laz_test::kExtraBytes;
+    const auto found = layers_of(packed, kRecordBytes, kLayers);
+    auto wanted =
+        layers_of(file.substr(static_cast<std::size_t>(chunk.offset_bytes)), bytes, kLayers + 1);
+    wanted.erase(wanted.begin() + kPointLayers + kColourLayers);
+    EXPECT_EQ(found, wanted);
+    first += points;
+  }
+  EXPECT_EQ(first, sample.rows);
+}
+
 /// Points whose attributes change in every way that has a symbol of its own.
 struct Walk {
   std::vector<double> x, y, z, time;

@@ -53,6 +53,33 @@ Rgb RgbModels::decode(RangeDecoder& decoder, const Rgb& last) {
   return colour;
 }
 
+void RgbModels::encode(RangeEncoder& encoder, const Rgb& last, const Rgb& colour) {
+  const auto change_of = [&](std::size_t channel, std::size_t half) {
+    return half_of(colour[channel], half) - half_of(last[channel], half);
+  };
+  std::uint32_t changed =
+      colour[1] == colour[0] && colour[2] == colour[0] ? 0 : kGreenAndBlueDiffer;
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    for (const std::size_t half : {0U, 1U})
+      if (change_of(channel, half) != 0) changed |= 1U << (2 * channel + half);
+  changed_.encode(encoder, changed);
+  const auto encode_half = [&](std::size_t channel, std::size_t half, int change) {
+    const std::size_t model = 2 * channel + half;
+    if ((changed & (1U << model)) == 0) return;
+    const int near = std::clamp(half_of(last[channel], half) + change, 0, 255);
+    differences_[model].encode(encoder,
+                               static_cast<std::uint8_t>(half_of(colour[channel], half) - near));
+  };
+  encode_half(0, 0, 0);
+  encode_half(0, 1, 0);
+  if ((changed & kGreenAndBlueDiffer) == 0) return;
+  for (const std::size_t half : {0U, 1U}) {
+    const int red = change_of(0, half);
+    encode_half(1, half, red);
+    encode_half(2, half, (red + change_of(1, half)) / 2);
+  }
+}
+
 std::uint16_t InfraredModels::decode(RangeDecoder& decoder, std::uint16_t last) {
   const std::uint32_t changed = changed_.decode(decoder);
   std::uint32_t value = 0;
@@ -62,6 +89,17 @@ std::uint16_t InfraredModels::decode(RangeDecoder& decoder, std::uint16_t last) 
     value |= byte << (8 * half);
   }
   return static_cast<std::uint16_t>(value);
+}
+
+void InfraredModels::encode(RangeEncoder& encoder, std::uint16_t last, std::uint16_t value) {
+  std::uint32_t changed = 0;
+  for (const std::size_t half : {0U, 1U})
+    if (half_of(value, half) != half_of(last, half)) changed |= 1U << half;
+  changed_.encode(encoder, changed);
+  for (const std::size_t half : {0U, 1U})
+    if ((changed & (1U << half)) != 0)
+      differences_[half].encode(
+          encoder, static_cast<std::uint8_t>(half_of(value, half) - half_of(last, half)));
 }
 
 namespace {

@@ -6,16 +6,18 @@
 #include <cstdint>
 
 #include "adasplats/io/laz/range_decoder.h"
+#include "adasplats/io/laz/range_encoder.h"
 
 namespace adasplats {
 
 using Rgb = std::array<std::uint16_t, 3>;
 
-/// Decodes colours from the differences of their bytes to the last colour; green and blue are
+/// Codes colours as the differences of their bytes to the last colour; green and blue are
 /// predicted to change like red.
 class RgbModels {
  public:
   Rgb decode(RangeDecoder& decoder, const Rgb& last);
+  void encode(RangeEncoder& encoder, const Rgb& last, const Rgb& colour);
 
  private:
   /// The new value of a changed byte: `expected` plus the decoded difference.
@@ -26,10 +28,11 @@ class RgbModels {
                                              SymbolModel(256), SymbolModel(256), SymbolModel(256)};
 };
 
-/// Decodes the near infrared from the differences of its bytes to the last value.
+/// Codes the near infrared as the differences of its bytes to the last value.
 class InfraredModels {
  public:
   std::uint16_t decode(RangeDecoder& decoder, std::uint16_t last);
+  void encode(RangeEncoder& encoder, std::uint16_t last, std::uint16_t value);
 
  private:
   SymbolModel changed_{4};

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
+
+#include "adasplats/io/base/input_file.h"
 
 namespace adasplats {
 namespace {
@@ -29,6 +32,8 @@ enum class Opcode : std::uint8_t {
   message_index = 0x07,
   chunk_index = 0x08,
   statistics = 0x0b,
+  metadata = 0x0c,
+  metadata_index = 0x0d,
   summary_offset = 0x0e,
   data_end = 0x0f,
 };
@@ -86,6 +91,15 @@ void McapFile::put(std::string_view bytes) {
   file_.write(bytes);
   crc_ = crc_of(crc_, bytes);
   offset_ += bytes.size();
+}
+
+void McapFile::add_metadata(std::string_view name, std::string_view key, std::string_view value) {
+  const std::string entry = Fields().text(key).text(value).get();
+  const std::string bytes = record(Opcode::metadata, Fields().text(name).text(entry).get());
+  Fields index;
+  index.number(offset_).number(std::uint64_t{bytes.size()}).text(name);
+  metadata_indexes_.push_back(record(Opcode::metadata_index, index.get()));
+  put(bytes);
 }
 
 std::uint16_t McapFile::add_channel(const McapChannel& channel) {
@@ -174,7 +188,9 @@ std::string McapFile::statistics() const {
   const auto channels = static_cast<std::uint32_t>(channels_.size());
   Fields fields;
   fields.number(messages).number(static_cast<std::uint16_t>(channels)).number(channels);
-  fields.number(std::uint32_t{0}).number(std::uint32_t{0});  // attachments, metadata
+  fields
+      .number(std::uint32_t{0})  // attachments
+      .number(static_cast<std::uint32_t>(metadata_indexes_.size()));
   fields.number(static_cast<std::uint32_t>(chunk_indexes_.size()));
   return fields.number(times_.begin()).number(times_.last).text(counts.get()).get();
 }
@@ -201,6 +217,9 @@ void McapFile::put_summary() {
   put_group(Opcode::chunk_index, [&] {
     for (const std::string& index : chunk_indexes_) put(record(Opcode::chunk_index, index));
   });
+  put_group(Opcode::metadata_index, [&] {
+    for (const std::string& index : metadata_indexes_) put(index);
+  });
   const std::uint64_t offsets_start = offset_;
   put(offsets);
   // The checksum covers the footer up to itself.
@@ -217,6 +236,40 @@ void McapFile::finish() {
   put_summary();
   put(kMagic);
   file_.commit();
+}
+
+std::string read_mcap_metadata(const std::filesystem::path& path, std::string_view name,
+                               std::string_view key) {
+  constexpr std::size_t kHeadBytes = 1 + 8, kMaxBytes = 1 << 16;
+  InputFile file(path);
+  const auto peeked = [&file](std::size_t count) -> std::string_view {
+    if (file.remaining() < count) return {};
+    return {reinterpret_cast<const char*>(file.peek(count).data()), count};
+  };
+  if (peeked(kMagic.size()) != kMagic) return {};
+  file.skip(kMagic.size());
+  while (file.remaining() >= kHeadBytes) {
+    const std::string_view head = peeked(kHeadBytes);
+    const auto opcode = static_cast<Opcode>(head[0]);
+    std::uint64_t length = 0;
+    std::memcpy(&length, head.data() + 1, sizeof(length));
+    if (opcode == Opcode::chunk || opcode == Opcode::message || opcode == Opcode::data_end)
+      return {};
+    file.skip(kHeadBytes);
+    if (length > file.remaining()) return {};
+    if (opcode == Opcode::metadata && length <= kMaxBytes) {
+      // Of the form that add_metadata() writes: one entry.
+      const std::string start = Fields().text(name).get();
+      const std::string_view content = peeked(static_cast<std::size_t>(length));
+      const std::string entry = Fields().text(key).get();
+      const std::size_t value_at = start.size() + sizeof(std::uint32_t) + entry.size();
+      if (content.starts_with(start) && content.size() >= value_at + sizeof(std::uint32_t) &&
+          content.substr(value_at - entry.size(), entry.size()) == entry)
+        return std::string(content.substr(value_at + sizeof(std::uint32_t)));
+    }
+    file.skip(length);
+  }
+  return {};
 }
 
 }  // namespace adasplats

@@ -42,6 +42,9 @@ class McapFile {
   /// `profile` is a word of the registry, e.g. "ros2". Errors: cannot_create, io.
   McapFile(const std::filesystem::path& path, std::string_view profile);
 
+  /// Adds a record of metadata with one entry. Call before the first message. Errors: io.
+  void add_metadata(std::string_view name, std::string_view key, std::string_view value);
+
   /// Returns the number of the channel for add_message(); at most 65535 channels.
   std::uint16_t add_channel(const McapChannel& channel);
   /// A message of mcap_message(). Errors: io.
@@ -82,6 +85,15 @@ class McapFile {
   Times chunk_times_, times_;
   std::vector<ChannelState> channels_;
   std::vector<std::string> chunk_indexes_;
+  std::vector<std::string> metadata_indexes_;  ///< their records
 };
+
+/// Our metadata record, and its entry with the label scheme of the classes.
+inline constexpr std::string_view kMcapMetadataName = "adasplats", kMcapLabelsKey = "labels";
+
+/// The value of a record of add_metadata() before the first message; empty without one, or if the
+/// file is no MCAP. Errors: no_input, io.
+std::string read_mcap_metadata(const std::filesystem::path& path, std::string_view name,
+                               std::string_view key);
 
 }  // namespace adasplats

@@ -54,6 +54,20 @@ TEST(McapFile, ChunksOfTwoChannels) {
   }
 }
 
+TEST(McapFile, Metadata) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.mcap";
+  McapFile writer(path, "ros2");
+  const std::uint16_t a = writer.add_channel(channel("a"));
+  writer.add_metadata("adasplats", "labels", "asprs");
+  writer.add_message(a, 1, "x");
+  writer.finish();
+  EXPECT_EQ(read_mcap_metadata(path, "adasplats", "labels"), "asprs");
+  EXPECT_EQ(read_mcap_metadata(path, "adasplats", "other"), "");
+  EXPECT_EQ(read_mcap_metadata(path, "others", "labels"), "");
+  EXPECT_EQ(read_mcap_metadata(folder.file("b.mcap", "no MCAP"), "adasplats", "labels"), "");
+}
+
 TEST(McapFile, UnknownChannelAndUnfinishedFile) {
   const TemporaryFolder folder;
   {

@@ -62,7 +62,7 @@ class PcdHeaderParser {
     } else if (keyword == "TYPE") {
       for (const std::string_view word : split_blanks(tokens.rest())) take_type(word);
     } else if (keyword == "COUNT") {
-      counts_ = take_numbers(keyword, tokens, 1, kMaxValues);
+      counts_ = take_numbers(keyword, tokens, 0, kMaxValues);
     } else if (keyword == "WIDTH") {
       width_ = take_number(keyword, tokens);
     } else if (keyword == "HEIGHT") {
@@ -150,8 +150,10 @@ class PcdHeaderParser {
       values += count;
       if (values > kMaxValues)
         throw lines_.error_here("more than " + std::to_string(kMaxValues) + " values a point");
+      if (count == 0) continue;  // PCL writes padding so; it takes no bytes
       header_.fields.push_back({names_[k], pcd_type(lines_, types_[k], bytes), bytes, count});
     }
+    if (header_.fields.empty()) throw lines_.error_here("COUNT is 0 for all FIELDS");
   }
 
   void check_length(std::string_view keyword, std::size_t found) const {

@@ -124,10 +124,21 @@ TEST(Pcd, SizeTypeAndCount) {
   for (const char* type : {"F", "F X", "F FF"})
     expect_data_error(with("4 4", type, "1 1"), {"TYPE"});
   expect_data_error(with("2 4", "F F", "1 1"), {"TYPE F with SIZE 2"});
-  for (const char* count : {"0 1", "-1 1", "4294967296 1", "1", "1 1 1"})
+  for (const char* count : {"0 0", "-1 1", "4294967296 1", "1", "1 1 1"})
     expect_data_error(with("4 4", "F F", count), {"COUNT"});
   expect_data_error(with("4 4", "F F", "65536 65536"), {"more than 65536"});
   expect_data_error(with("4 4", "F F", "65000 1"), {"room for 0"});
+}
+
+// PCL skips fields of which a point has no values.
+TEST(Pcd, FieldsWithoutValues) {
+  const Table table = read(
+      "FIELDS _ x n _ y\nSIZE 1 4 8 1 4\nTYPE U F F U F\nCOUNT 0 1 0 2 1\nWIDTH 1\nHEIGHT 1\n"
+      "POINTS 1\nDATA binary\n" +
+      bytes_of(1.5F) + std::string(2, '\1') + bytes_of(-2.0F));
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(values_of(table, "x"), Doubles{1.5});
+  EXPECT_EQ(values_of(table, "y"), Doubles{-2});
 }
 
 // Fault 12.

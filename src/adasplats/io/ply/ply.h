@@ -38,6 +38,9 @@ bool ply_has_faces(const std::filesystem::path& path);
 /// The coordinate system in the comments. Errors: as read_ply().
 Crs read_ply_crs(const std::filesystem::path& path);
 
+/// The comments in the header, without "comment". Errors: as read_ply().
+std::vector<std::string> read_ply_comments(const std::filesystem::path& path);
+
 /// Writes one `vertex` element, binary little-endian, `rows` records. Atomic (see AtomicFile).
 /// Columns may be i8..i32, u8..u32, f32, f64 (PLY has no 64-bit integers: std::logic_error).
 void write_ply(const std::filesystem::path& path, std::size_t rows,

@@ -155,10 +155,14 @@ MeshTable read_ply_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-Crs read_ply_crs(const std::filesystem::path& path) {
+std::vector<std::string> read_ply_comments(const std::filesystem::path& path) {
   InputFile file(path);
   LineReader lines(file);
-  return crs_of_comments(path, read_ply_header(lines).comments);
+  return read_ply_header(lines).comments;
+}
+
+Crs read_ply_crs(const std::filesystem::path& path) {
+  return crs_of_comments(path, read_ply_comments(path));
 }
 
 bool ply_has_faces(const std::filesystem::path& path) {

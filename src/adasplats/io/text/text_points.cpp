@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -94,6 +95,19 @@ std::vector<std::string> usual_names(std::size_t columns, bool is_pts) {
   return names;
 }
 
+/// What is assumed of columns without names; nothing for x, y, z and for the layouts of PTS.
+std::optional<std::string> note_on_unnamed(const std::vector<std::string>& names, bool is_pts) {
+  const std::size_t columns = names.size();
+  if (columns == 3 || (is_pts && (columns == 4 || columns == 6 || columns == 7)))
+    return std::nullopt;
+  std::string text = "no line names its columns: 1 to 3 are read as x, y and z";
+  if (columns == 4 || columns == 5 || columns == 7) text += ", 4 as intensity";
+  if (columns == 7) text += ", 5 to 7 as red, green and blue";
+  if (columns == 5) text += ", 5 is skipped";
+  if (columns == 6 || columns > 7) text += ", 4 to " + std::to_string(columns) + " are skipped";
+  return text + "; name them in a first line, such as 'x y z intensity time'";
+}
+
 class TextReader {
  public:
   explicit TextReader(const std::filesystem::path& path) : file_(path), lines_(file_) {}
@@ -171,7 +185,8 @@ class TextReader {
       throw lines_.error_here("found " + std::to_string(count) +
                               " columns, a point has at least x, y and z");
     }
-    if (names_.empty()) names_ = usual_names(count, expected_rows_.has_value());
+    has_names_ = !names_.empty();
+    if (!has_names_) names_ = usual_names(count, expected_rows_.has_value());
     values_.resize(count);
   }
 
@@ -211,14 +226,27 @@ class TextReader {
           {NoteKind::wrong_count, "the file states " + std::to_string(*expected_rows_) +
                                       " points and has " + std::to_string(table_.rows)});
     }
+    if (!has_names_) note_missing_names();
     for (std::size_t k = 0; k < values_.size(); ++k)
       table_.columns.push_back(Column{std::move(names_[k]), std::move(values_[k])});
     return std::move(table_);
   }
 
+  void note_missing_names() {
+    auto note = note_on_unnamed(names_, expected_rows_.has_value());
+    if (!note) return;
+    constexpr std::size_t kMinRows = 10;
+    const std::vector<double>& first = values_.front();
+    const bool ascends = std::ranges::adjacent_find(first, std::greater_equal<>()) == first.end();
+    if (ascends && first.size() >= kMinRows)
+      *note += " (column 1 ascends from point to point, like a time or a number of the point)";
+    table_.notes.push_back({NoteKind::unnamed_columns, std::move(*note)});
+  }
+
   InputFile file_;
   LineReader lines_;
   Table table_;
+  bool has_names_ = false;
   char separator_ = ' ';
   std::vector<std::string> names_;
   std::string last_comment_;

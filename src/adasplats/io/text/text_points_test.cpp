@@ -61,6 +61,24 @@ TEST(TextPoints, NamesOfColumnsWithoutAHeader) {
   EXPECT_EQ(names_of(read("1\n1 2 3 4 5 6")), (Names{"x", "y", "z", "red", "green", "blue"}));
 }
 
+TEST(TextPoints, ColumnsWithoutNamesAreNoted) {
+  const auto note_of = [](const std::string& content) {
+    const Table table = read(content);
+    EXPECT_LE(table.notes.size(), 1U);
+    if (table.notes.empty()) return std::string();
+    EXPECT_EQ(table.notes[0].kind, NoteKind::unnamed_columns);
+    return table.notes[0].text;
+  };
+  for (const char* clear : {"1 2 3\n", "1\n1 2 3 4\n", "1\n1 2 3 4 5 6 7\n", "x y z w\n1 2 3 4\n"})
+    EXPECT_EQ(note_of(clear), "") << clear;
+  EXPECT_NE(note_of("1 2 3 4\n").find("x, y and z, 4 as intensity; name them"), std::string::npos);
+  EXPECT_NE(note_of("1 2 3 4 5\n").find("5 is skipped"), std::string::npos);
+  EXPECT_NE(note_of("1 2 3 4 5 6 7 8\n").find("4 to 8 are skipped"), std::string::npos);
+  std::string timed;
+  for (int k = 0; k < 10; ++k) timed += std::to_string(k) + " 1 2 3\n";
+  EXPECT_NE(note_of(timed).find("column 1 ascends"), std::string::npos);
+}
+
 TEST(TextPoints, HeaderOfNames) {
   for (const char* header : {"X,Y,\"Z\",Time", "X, Y, Z, Time,", "#X,Y,Z,Time", "//X Y Z Time",
                              "# a comment\n# X;Y;Z;Time"}) {

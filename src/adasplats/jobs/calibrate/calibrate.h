@@ -29,17 +29,16 @@ struct CalibrateResult {
   CalibrationReport report;
   Calibration calibration;
   Trajectory given, corrected;     ///< poses of the scans
-  std::string sensor;              ///< that measured all drives; empty: not known
+  std::string sensor;              ///< that measured all drives; empty: unknown
   std::vector<std::string> files;  ///< below the folder
   double seconds = 0;
 };
 
 /// Estimates and writes, for a drive (several: each in a folder drive_N of its own, from 0 on),
-/// trajectory.csv and, of a SemanticKITTI folder all of whose scans are covered, poses.txt to stand
-/// in place of its own; lasers.csv, where the sensor is recognised sensor.toml, report.json and
-/// report.html. Where nothing is to be applied, the reports alone. Errors: usage (nothing to
-/// estimate); data with the objection, where nothing is to be applied; those of load_cloud and
-/// OutputFolder.
+/// trajectory.csv, lasers.csv, report.json and report.html; for a SemanticKITTI folder with all
+/// scans covered also poses.txt, which can replace its own; for a recognised sensor sensor.toml.
+/// Without a correction to apply only the reports. Errors: usage (nothing to estimate); data with
+/// the objection (no correction to apply); those of load_cloud and OutputFolder.
 CalibrateResult run_calibrate(const CalibrateJob& job, Session& session);
 
 /// The keys of report.json; the same for the same job.

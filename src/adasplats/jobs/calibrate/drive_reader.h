@@ -14,11 +14,11 @@
 
 namespace adasplats {
 
-/// Drives that are too long to stand in memory, read some scans at a time.
+/// Reads drives that do not fit in memory, some scans at a time.
 class DriveReader {
  public:
-  /// Nothing where the inputs are to be loaded at once: not all of them are drives, or none is
-  /// longer than `window_scans`. `inputs` must outlive it.
+  /// Empty if the inputs can be loaded at once: not all of them are drives, or none is longer than
+  /// `window_scans`. `inputs` must outlive it.
   static std::optional<DriveReader> of(const OpenInputs& inputs, std::size_t window_scans,
                                        Session& session);
 

@@ -44,8 +44,8 @@ Json content_in(const fs::path& city) {
   return content;
 }
 
-/// Whether a tile is modelled with points of the last layer, or beside a tile that is new: splats
-/// that it had there belong to that one now.
+/// Whether a tile is modelled with points of the last layer, or has a new neighbour: splats that it
+/// had there now belong to the neighbour.
 bool has_new_points(TileKey tile, const CityWork& work) {
   const PointLayer& added = work.layers.back();
   const GroundBox reach = work.tiles.reach_of(tile);

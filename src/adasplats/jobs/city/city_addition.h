@@ -33,8 +33,7 @@ class CityToExtend {
   std::size_t layers() const { return layers_; }
   CityBefore before() const;
   const CityManifest& manifest() const { return manifest_; }
-  /// What the longer city is made of beside the job's inputs: what this one was made of, and its
-  /// SHA-256.
+  /// Sources of the extended city besides the job's inputs: those of this city, and its SHA-256.
   nlohmann::ordered_json content() const;
 
   /// Puts the points of all layers, and what is known of them, into another city's unfinished

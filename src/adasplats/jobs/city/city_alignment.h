@@ -41,8 +41,8 @@ class CityAlignment {
   /// that missing_for_calibration() objects to is left as it is.
   void lay_on(PointCloud& cloud);
 
-  /// A calibration that was applied before, with what lay_on() corrected behind it, for scans whose
-  /// correction it has, or all where it moves none.
+  /// `applied`, a calibration that was applied before, followed by the corrections of lay_on(): for
+  /// the scans that it corrects, or for all if it corrects none.
   Calibration behind(const Calibration& applied) const;
   AlignmentReport report() const;
 

@@ -57,7 +57,7 @@ void for_tiles(const LayerWork& work, const Find& find, const Take& take) {
   }
 }
 
-/// What intensities are shares of in the whole place; nothing where points have none.
+/// The full scale of intensities in the whole city; nothing if points have none.
 std::optional<float> full_intensity_of(const LayerWork& work, ResumableFolder& folder) {
   const std::filesystem::path file = work.path(kIntensityFile);
   if (folder.has(work.layer.file(kIntensityFile))) {

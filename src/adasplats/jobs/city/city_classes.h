@@ -8,10 +8,10 @@
 
 namespace adasplats {
 
-/// Gives the points of all tiles the classes that a network gives the whole place in one cloud,
-/// into a file a tile beside its points (city/tile_points.h); needs the sorted points with their
-/// order. Fills in LayerWork::segmented, and how many rays stay. What an earlier run has done
-/// stays. Errors: data (points farther than 100 km from the city's origin; damaged files), those of
+/// Classifies the points of all tiles as a network classifies the whole city in one cloud. Writes
+/// one file per tile next to its points (city/tile_points.h); needs the sorted points with their
+/// order. Sets LayerWork::segmented and the number of remaining rays. Keeps files of earlier runs.
+/// Errors: data (points farther than 100 km from the city's origin; damaged files), those of
 /// PointClassifier::classes_of.
 void give_classes(const PointClassifier& classifier, LayerWork& work, ResumableFolder& folder);
 

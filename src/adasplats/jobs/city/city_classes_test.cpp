@@ -258,7 +258,8 @@ TEST_F(CityClasses, WhatWasDamagedIsMadeAgain) {
   fs::remove(files(".classes").begin()->first);
   EXPECT_EQ(classes_by(listener), expected);
   flip_last_byte(files(".order").begin()->first);
-  expect_error(ErrorKind::data, {".order", "not as it was written"}, [&] { classes_by(listener); });
+  expect_error(ErrorKind::data, {".order", "changed since it was written"},
+               [&] { classes_by(listener); });
 }
 
 TEST_F(CityClasses, OtherPointsThanThoseThatGotClassesAreAnError) {

@@ -11,10 +11,10 @@
 
 namespace adasplats {
 
-/// How the points of the last layer lie beside the splats of the city that they are added to, by
-/// rays that end in tiles of both, all over what they have in common; found once, and kept in the
-/// folder. Errors: data (they lie farther beside than AdditionChoice::max_shift_m: two places
-/// would be modelled as one), those of reading.
+/// Offset of the points of the last layer from the splats of the city that they are added to, from
+/// rays that end in tiles of both. Estimated once and stored in the folder. Errors: data (the
+/// offset exceeds AdditionChoice::max_shift_m, so two places would be modelled as one), those of
+/// reading.
 PointFit require_fit(const CityToExtend& before, const CityWork& work, ResumableFolder& folder);
 
 /// The keys of the report's `fit`.

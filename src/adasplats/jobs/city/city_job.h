@@ -58,9 +58,9 @@ void visit_settings(MemoryChoice& choice, Visit&& visit) {
         choice.memory_gb);
 }
 
-/// What points that are added to a city must be like.
+/// Limits for points that are added to a city.
 struct AdditionChoice {
-  double max_shift_m = 0.1;  ///< that they may lie beside its splats (PointFit)
+  double max_shift_m = 0.1;  ///< offset from its splats (PointFit)
 };
 
 template <class Visit>

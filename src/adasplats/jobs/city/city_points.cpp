@@ -186,8 +186,9 @@ void sort_points(LayerWork& work, ResumableFolder& folder) {
     load_sorted(work);
     for (const std::string& file : files_of_points(work))
       if (!folder.has(work.layer.file(file)))
-        throw Error(ErrorKind::data, work.path(file).string() + ": not as it was written; remove " +
-                                         work.city.string() + " to start anew");
+        throw Error(ErrorKind::data, work.path(file).string() +
+                                         ": changed since it was written; remove " +
+                                         work.city.string() + " to start again");
     return;
   }
   fs::remove_all(work.folder());  // what a killed run left half done

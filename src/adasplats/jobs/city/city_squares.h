@@ -10,8 +10,8 @@
 
 namespace adasplats {
 
-/// Squares that a network looks at, from the lowest to the highest, inclusive: those whose middle
-/// is in one tile, which may have no points.
+/// Squares that a network classifies, from the lowest to the highest, inclusive: those with their
+/// middle in one tile, which may have no points.
 struct SquareGroup {
   TileKey tile;
   SegmentSquare low, high;
@@ -21,15 +21,15 @@ struct SquareGroup {
   }
 };
 
-/// The tile whose group a square is in.
+/// The tile of the group that contains a square.
 TileKey group_of(SegmentSquare square, const SegmentOptions& options, const LayerWork& work);
 /// All squares that may have points, each in one group; by their tiles.
 std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const LayerWork& work);
 
-/// The classes of the points that stand in the squares: those that the whole place in one cloud
-/// gets, since squares are looked at whole and with all that is around them, points in the order in
-/// which they were read. Reads the points of tiles near them; memory: what the squares and their
-/// margins hold, without attributes. Errors: data (damaged files of points).
+/// The classes of the points in the squares, in the order in which the points were read. They equal
+/// those of the whole city in one cloud, since a square is classified with its margin. Reads the
+/// points of tiles near the squares. Memory: the points of the squares and margins, without
+/// attributes. Errors: data (damaged files of points).
 SquareClasses classes_of_squares(const SquareGroup& group, const PointClassifier& classifier,
                                  const SegmentOptions& options, const LayerWork& work,
                                  Session& session);

@@ -20,15 +20,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Points of the tiles whose cells say how dense cells are, about.
+/// Approximate number of points in the tiles that the spacing of cells is measured in.
 constexpr std::size_t kSurveyedPoints = 16'000'000;
 
 /// Spacings of cells by whether they have a beam.
 struct Spacings {
   std::vector<float> with_beam, without;
+  std::size_t cells = 0, limited = 0;  ///< CellSpacing::limited
 };
 
-/// Tiles all over the city whose cells say how dense cells are: all of them, or every n-th.
+/// Tiles in which the spacing of cells is measured: all, or every n-th.
 std::vector<TileKey> surveyed(const CityWork& work) {
   std::size_t points = 0;
   for (const TileKey tile : work.tiles.tiles) points += work.points_in(tile);
@@ -53,8 +54,10 @@ Spacings spacings_in(TileKey tile, const LabelScheme* scheme, const ModelEngine&
   steps->fuse(work.options);
   const GroundBox own = work.tiles.grid.box_of(tile);
   for (const CellSpacing& cell : steps->spacings(work.options)) {
-    if (!(cell.spacing > 0) || !own.contains(work.origin() + vec_cast<double>(cell.place)))
-      continue;
+    if (!own.contains(work.origin() + vec_cast<double>(cell.place))) continue;
+    ++found.cells;
+    found.limited += cell.limited ? 1 : 0;
+    if (!(cell.spacing > 0)) continue;
     (cell.with_beam ? found.with_beam : found.without).push_back(cell.spacing);
   }
   return found;
@@ -66,7 +69,7 @@ TypicalSpacing load_spacing(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   try {
     const Json json = Json::parse(text);
-    return {json.at("with_beam"), json.at("without")};
+    return {json.at("with_beam"), json.at("without"), json.value("limited", 0.0)};
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
   }
@@ -97,9 +100,15 @@ void survey_spacing(CityWork& work, ResumableFolder& folder) {
   for (const Spacings& some : of_tiles) {
     found.with_beam.insert(found.with_beam.end(), some.with_beam.begin(), some.with_beam.end());
     found.without.insert(found.without.end(), some.without.begin(), some.without.end());
+    found.cells += some.cells;
+    found.limited += some.limited;
   }
   work.typical = typical_spacing(std::move(found.with_beam), std::move(found.without));
-  const Json json = {{"with_beam", work.typical.with_beam}, {"without", work.typical.without}};
+  if (found.cells > 0)
+    work.typical.limited = static_cast<double>(found.limited) / static_cast<double>(found.cells);
+  const Json json = {{"with_beam", work.typical.with_beam},
+                     {"without", work.typical.without},
+                     {"limited", work.typical.limited}};
   write_file_in_place(work.path(kSpacingFile), json.dump() + "\n");
   folder.record(std::string(kSpacingFile));
 }

@@ -51,7 +51,7 @@ SplatModel TileModeller::model(TileKey tile, Session& session) const {
   ModelOptions options = work_.job;
   options.calibration.on = false;
   options.segment.on = false;                  // the points have their classes
-  options.labels = work_.common.label_scheme;  // also where the inputs alone said it
+  options.labels = work_.common.label_scheme;  // also if only the inputs name it
   options.build.whole = &whole;
   options.build.reflectances =
       options.build.reflectances && (tile == pilot_ || whole.response.has_value());
@@ -79,7 +79,7 @@ std::vector<std::string> TileModeller::files_for(TileKey tile) const {
   return files;
 }
 
-/// Takes out splats that stand in other tiles.
+/// Removes splats of other tiles.
 void TileModeller::keep_own(TileKey tile, SplatModel& model) const {
   std::size_t kept = 0;
   const auto move_down = [&](auto& values, std::size_t i) {

@@ -18,7 +18,7 @@ class TileModeller {
   /// `work` must outlive it. Reads where the rays for each tile are.
   explicit TileModeller(const CityWork& work);
 
-  /// The splats that stand in a tile. The pilot's have the response of the sensor by its own rays,
+  /// The splats of a tile. The pilot's have the response of the sensor by its own rays,
   /// others `work.response`. Several threads may call it, each with a session of its own.
   SplatModel model(TileKey tile, Session& session) const;
 

@@ -80,11 +80,11 @@ class CityMaker {
     result_.steps.push_back({name, watch.seconds()});
   }
 
-  /// Points that are refused are not kept for the next run: it is to read those that were mended.
-  template <class Judge>
-  void judge(const Judge& judge_points) {
+  /// Discards rejected points, so that the next run reads the corrected inputs.
+  template <class Check>
+  void discard_if_rejected(const Check& check_points) {
     try {
-      judge_points();
+      check_points();
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::data) folder_.discard();
       throw;
@@ -102,11 +102,14 @@ class CityMaker {
     result_.segmented = reading.segmented;
     work_.add(std::move(reading.layer));
     if (before_)
-      step("fit", [&] { judge([&] { result_.fit = require_fit(*before_, work_, folder_); }); });
+      step("fit", [&] {
+        discard_if_rejected([&] { result_.fit = require_fit(*before_, work_, folder_); });
+      });
     step("rays", [&] { hand_out(); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
-    step("origin_check",
-         [&] { judge([&] { result_.origins = check_city_origins(work_, folder_); }); });
+    step("origin_check", [&] {
+      discard_if_rejected([&] { result_.origins = check_city_origins(work_, folder_); });
+    });
     result_.city.tiles = tiles_to_model(work_);
   }
 

@@ -28,7 +28,7 @@ LayerWork::LayerWork(const CityJob& its_job, Session& its_session, fs::path its_
 
 std::optional<LabelScheme> scheme_of(const CityJob& job) {
   if (job.segment.on) return semantickitti_labels();
-  return label_scheme_for(job.labels, job.inputs);
+  return label_scheme_for(job.labels, job.inputs, job.load.label_field);
 }
 
 void read_points_of(TileKey tile, const fs::path& folder, const CityJob& job, PointCloud& cloud,

@@ -105,7 +105,7 @@ double max_points_of(std::span<const fs::path> inputs) {
 
 PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session) {
   PlaceEstimate place;
-  ProgressSink quiet;  // what is to be said of the inputs is said when they are read
+  ProgressSink quiet;  // reading the inputs reports their warnings
   std::vector<Sample> samples;
   std::size_t pieces = 0, done = 0;
   for (std::size_t k = 0; k < inputs.inputs().size(); ++k) {

@@ -31,8 +31,8 @@ struct PlaceEstimate {
 /// No fewer points than inputs can have, by the sizes of their files. Time: that of listing them.
 double max_points_of(std::span<const std::filesystem::path> inputs);
 
-/// Looks at scans or records all over the inputs, two million points or so; files whose records are
-/// not at random are read. Errors: those of OpenInputs.
+/// Samples about two million points in scans or records of all inputs; reads files without random
+/// access as a whole. Errors: those of OpenInputs.
 PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session);
 
 /// What suits the memory: whether a place is to be modelled in tiles.

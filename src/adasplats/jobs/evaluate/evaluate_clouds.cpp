@@ -11,6 +11,8 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/sensor_frame.h"
+#include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
@@ -58,19 +60,35 @@ void write_distance_picture(const CloudPair& clouds, const CloudComparisonJob& j
   session.progress.end_step();
 }
 
+/// Throws data if only one of the clouds is in the frame of a sensor.
+void require_same_frame(const std::array<LoadReport, 2>& reports,
+                        const std::array<std::filesystem::path, 2>& inputs) {
+  if (reports[0].sensor_frames.empty() == reports[1].sensor_frames.empty()) return;
+  const std::size_t scan = reports[0].sensor_frames.empty() ? 1 : 0;
+  const auto& [file, because] = reports[scan].sensor_frames.front();
+  throw Error(ErrorKind::data, file.string() + ": is one scan in the sensor frame (" + because +
+                                   "), unlike " + inputs[1 - scan].string() + "; " +
+                                   advice_for_scans(file, "POSES.csv") +
+                                   ", with its pose in POSES.csv (time,x,y,z,qw,qx,qy,qz)");
+}
+
 }  // namespace
 
 CloudPair load_clouds(const CloudFiles& files, Session& session) {
   const std::array<std::filesystem::path, 2> inputs = {resolve_cloud_input(files.simulated),
                                                        resolve_cloud_input(files.original)};
+  std::array<LoadReport, 2> reports;
   const auto load = [&](std::size_t k) {
-    return load_cloud(std::span(inputs).subspan(k, 1), {}, session.executor, session.progress)
-        .first;
+    auto [cloud, report] =
+        load_cloud(std::span(inputs).subspan(k, 1), {}, session.executor, session.progress);
+    reports[k] = std::move(report);
+    return std::move(cloud);
   };
   CloudPair pair;
   pair.labels = label_scheme_for(files.labels, inputs);
   pair.simulated = load(0);
   pair.original = load(1);
+  require_same_frame(reports, inputs);
   require_same_crs({{inputs[0], pair.simulated.crs}, {inputs[1], pair.original.crs}},
                    session.progress);
   return pair;

@@ -14,6 +14,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/packets/capture_reader.h"
 #include "adasplats/jobs/evaluate/evaluate_clouds.h"
 #include "adasplats/jobs/evaluate/json_values.h"
@@ -108,11 +109,12 @@ void write_beam_picture(const ResimulateJob& job, const ScanErrors& scan, Sessio
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   const bool is_drive = !scans.trajectory.empty() || is_self_contained_drive(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
-    throw Error(ErrorKind::usage, "`topic` and `poses_topic` are for a recording (MCAP, ROS bag)");
+    throw Error(ErrorKind::usage,
+                "`topic` and `poses_topic` are for a recording or a packet capture");
   if (!is_drive && !scans.scene.empty())
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
-  if (!is_capture(scans.sequence) && !scans.packets_of.empty())
-    throw Error(ErrorKind::usage, "`packet_sensor` is for a capture of packets (.pcap, .pcapng)");
+  if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packets_of.empty())
+    throw Error(ErrorKind::usage, "`packet_sensor` is for a packet capture or a recording");
   if (!is_drive && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` need scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||

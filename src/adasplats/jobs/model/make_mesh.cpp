@@ -39,7 +39,7 @@ class Steps {
   Steps(std::vector<StepTime>& times, ProgressSink& progress)
       : times_(times), progress_(progress) {}
 
-  /// `passes`: how many ProgressPasses the work consists of; 0: that cannot be said.
+  /// `passes`: how many ProgressPasses the work consists of; 0: unknown.
   template <class Work>
   auto run(const std::string& name, int passes, Work&& work) {
     progress_.begin_step(name, static_cast<std::uint64_t>(passes) * kPassUnits);
@@ -172,7 +172,7 @@ std::pair<MeshModel, MeshResult> make_mesh(const MeshJob& job, Session& session)
   for (const auto& input : job.inputs) require_input(input);
   const Stopwatch total;
   MeshResult result;
-  MeshMaker maker(job, label_scheme_for(job.labels, job.inputs), session);
+  MeshMaker maker(job, label_scheme_for(job.labels, job.inputs, job.load.label_field), session);
   MeshModel model = maker.run(
       [&] {
         auto [loaded, report] =

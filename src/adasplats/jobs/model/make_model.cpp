@@ -32,20 +32,21 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
                   "each surface (see cell, neighbors, denoise and remove)");
 }
 
-/// Makes one model; the points come from `load_points`. Building takes the memory that they stand
-/// in: where it fails on a GPU they are loaded again.
+/// Makes one model from the points of `load_points`. Building consumes the points; if it fails on a
+/// GPU, they are loaded again.
 class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;
 
-  /// `inputs`: what the points come from, where they come from files.
+  /// `inputs`, `label_field`: what the points come from, where they come from files.
   ModelMaker(const ModelOptions& options, std::span<const std::filesystem::path> inputs,
-             LoadPoints load_points, Session& session)
+             const std::string& label_field, LoadPoints load_points, Session& session)
       : options_(options),
         classifier_(classifier_for(options)),  // says what is wrong before anything is loaded
         load_points_(std::move(load_points)),
         session_(session) {
-    scheme_ = classifier_ ? semantickitti_labels() : label_scheme_for(options_.labels, inputs);
+    scheme_ = classifier_ ? semantickitti_labels()
+                          : label_scheme_for(options_.labels, inputs, label_field);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
                   "the method semantic needs labels: name their scheme with `labels` "
@@ -183,7 +184,7 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   };
   ModelOptions options = job;
   options.build.trust_origins |= job.load.trust_origins;
-  ModelMaker maker(options, job.inputs, load_points, session);
+  ModelMaker maker(options, job.inputs, job.load.label_field, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -216,7 +217,7 @@ std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>&
     result.loaded.points_read = cloud.size();
     return cloud;
   };
-  ModelMaker maker(options, {}, load_points, session);
+  ModelMaker maker(options, {}, {}, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -288,6 +289,9 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_used"] = built.points_used;
   json["primitives"] = built.primitives;
   if (built.consistent) {
+    json["scale"] = built.consistent->scale;
+    json["cell_m"] = built.consistent->cell_m;
+    json["sparse"] = built.consistent->sparse;
     json["cells"] = built.consistent->cells;
     json["seeds"] = built.consistent->seeds;
     json["rays"] = built.consistent->rays;
@@ -295,6 +299,11 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
     json["seeds_removed"] = built.consistent->seeds_removed;
     if (built.consistent->origins) json["origin_check"] = to_json(*built.consistent->origins);
     json["splats_filled"] = built.consistent->splats_filled;
+    json["splats_limited"] = built.consistent->splats_limited;
+    json["share_limited"] = built.primitives == 0
+                                ? 0.0
+                                : static_cast<double>(built.consistent->splats_limited) /
+                                      static_cast<double>(built.primitives);
   } else {
     json["radius_m"] = built.radius_m;
     json["error_m"] = built.error_m;

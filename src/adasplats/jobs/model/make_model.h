@@ -85,14 +85,14 @@ struct ModelOptions {
   std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
   SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
   BuildOptions build;
-  /// The user has asked for `build.remove`: where it can remove nothing, that is an error and not
-  /// only said.
+  /// The user requested `build.remove`: if it cannot remove anything, that is an error instead of a
+  /// warning.
   bool removal_is_asked = false;
   CalibrationChoice calibration;
 };
 
-/// The network that gives the points their classes; nothing where none is to. Errors: usage (labels
-/// beside it, `remove` moving of a network that knows nothing that moves), those of
+/// The network that classifies the points; nothing if none is requested. Errors: usage (labels are
+/// given, too; `remove` is moving, but the network has no moving classes), those of
 /// PointClassifier.
 std::optional<PointClassifier> classifier_for(const ModelOptions& options);
 

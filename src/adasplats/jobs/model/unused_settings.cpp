@@ -87,7 +87,8 @@ void check_label_use(const LabelUse& use, const PointCloud& cloud, const LabelSc
   if (use.removal_is_asked) {
     throw Error(ErrorKind::usage, "`remove` " + std::string(name_of(use.removal)) + ": " + why);
   }
-  if (!cloud.classes.empty()) progress.warn(why + "; nothing is removed");
+  const bool removes_noise = scheme != nullptr && has_noise(*scheme);
+  if (!cloud.classes.empty() && !removes_noise) progress.warn(why + "; nothing is removed");
 }
 
 }  // namespace adasplats

@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// A setting that changes nothing beside the others.
+/// A setting that has no effect with the others.
 struct UnusedSetting {
   Setting setting;
   std::string why;  ///< behind "has no effect": "with the method consistent"

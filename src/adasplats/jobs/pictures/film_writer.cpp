@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Frames as numbered pictures in a folder beside the film, which ffmpeg then makes a film of.
+/// Writes frames as numbered pictures in a folder next to the film; ffmpeg then encodes them.
 class Mp4Film final : public FilmWriter {
  public:
   Mp4Film(fs::path ffmpeg, fs::path path, double frames_per_s)
@@ -62,7 +62,7 @@ class Mp4Film final : public FilmWriter {
     if (result.end != ChildEnd::done)
       throw Error(ErrorKind::unavailable, path_.string() + ": ffmpeg failed: " + result.message);
     std::error_code error;
-    fs::rename(made, path_, error);  // of one file system: the folder stands beside the film
+    fs::rename(made, path_, error);  // same file system: the folder is next to the film
     if (error) throw Error(ErrorKind::io, path_.string() + ": " + error.message());
   }
 

@@ -15,7 +15,7 @@ namespace adasplats {
 /// name), unavailable (what it needs is not there).
 void check_film(const std::filesystem::path& path);
 
-/// A film whose frames come one by one. It appears under its name when it is whole.
+/// Writes a film frame by frame. The file gets its name when it is complete.
 class FilmWriter {
  public:
   virtual ~FilmWriter() = default;

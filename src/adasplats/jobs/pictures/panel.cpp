@@ -71,7 +71,9 @@ Panel::Panel(const std::filesystem::path& input, const std::string& labels, Sess
     cloud_ = std::move(points.cloud);
     point_errors_m_ = std::move(points.errors_m);
   } else {
-    cloud_ = load_cloud(inputs, {}, session.executor, session.progress).first;
+    LoadOptions load;
+    load.other_columns = KeptColumns::colors;
+    cloud_ = load_cloud(inputs, load, session.executor, session.progress).first;
   }
   if (cloud_.empty()) throw Error(ErrorKind::data, input.string() + ": no points");
 }
@@ -106,6 +108,8 @@ void Panel::prepare(const PanelLook& look, SharedRange& range) {
   }
   color_ = look.color.value_or(model_ ? model_->default_color()
                                       : default_color(cloud_, labels_ ? &*labels_ : nullptr));
+  if (model_ && color_ == ImageColor::rgb)
+    throw Error(ErrorKind::usage, "color rgb is for points: a model has no colours of points");
   if (!has_values(color_) || !point_errors_m_.empty()) return;
   const float lift = color_ == ImageColor::height ? static_cast<float>(origin_z()) : 0.0F;
   if (!range.contains(color_)) {

@@ -29,8 +29,8 @@ struct PanelLook {
   bool captions = true;  ///< title, legend, scale and north
 };
 
-/// Values that the ends of the scale of each colour stand for, in the world: panels of one picture
-/// that show the same share them.
+/// Values at the ends of each colour scale, in world coordinates. Panels of one picture with the
+/// same colouring share them.
 using SharedRange = std::map<ImageColor, ValueRange>;
 
 /// Whether a file is a splat model or a mesh; other inputs are points.
@@ -90,8 +90,8 @@ Image blank_image(int width, int height);
 /// Copies `part`, which must fit, into `picture` with its top left corner at (left, top).
 void paste(Image& picture, const Image& part, int left, int top);
 
-/// The colours of a picture by class and what they stand for, the commonest first, at most 14, each
-/// of at least one in a thousand; where the scene has no classes, its groups.
+/// The colours of a picture by class and their names, the most frequent first: at most 14, each of
+/// at least 0.1 %. Groups if the scene has no classes.
 using ClassLegend = std::vector<std::pair<Rgb, std::string>>;
 ClassLegend legend_of(const ImageScene& scene);
 ClassLegend legend_of(std::span<const std::uint16_t> classes, const LabelScheme* labels);

@@ -40,7 +40,7 @@ class Panels {
       if (!job.errors.empty()) panel.show_errors(job.errors);
       panel.prepare(job.look, range);
     }
-    part_ = panels_.front().shown_part();  // the first decides where the camera stands
+    part_ = panels_.front().shown_part();  // the first determines the camera
     if (job.view.trajectory.empty()) middle_ = part_.middle();
   }
 

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What stands behind the separator in the first line of `file` that begins with `key`.
+/// The text after the separator in the first line of `file` that begins with `key`.
 Json value_in(const char* file, const std::string& key, char separator) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {
@@ -39,7 +39,7 @@ std::uint64_t machine_memory_bytes() {
 
 Json cpu_name() { return value_in("/proc/cpuinfo", "model name", ':'); }
 
-/// The first word of digits and points in the line of NVIDIA's kernel module.
+/// The first word of digits and dots in the version file of NVIDIA's kernel module.
 Json kernel_driver() {
   std::ifstream file("/proc/driver/nvidia/version");
   for (std::string word; file >> word;) {

@@ -53,7 +53,7 @@ Json matrix_content(const RigidTransform& transform) {
   return rows;
 }
 
-/// A trajectory, or what stands for one.
+/// A trajectory, or the options that replace it.
 Json where_content(const DriveOptions& drive, const DrivenPoses& driven) {
   if (!drive.trajectory.empty()) return {{"trajectory", trajectory_content(driven.poses)}};
   Json json = {{"height_m", drive.height_m.value_or(kRoofHeight_m)}};
@@ -68,7 +68,7 @@ Json where_content(const DriveOptions& drive, const DrivenPoses& driven) {
 Json drive_content(const DriveOptions& drive) {
   const auto given = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
   DrivenPoses driven;
-  ProgressSink silent;  // scans_along() has said what there was to say
+  ProgressSink silent;  // scans_along() has reported the warnings
   if (!drive.trajectory.empty()) driven = driven_poses(drive, silent);
   Json json = where_content(drive, driven);
   json.update(Json{{"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},

@@ -32,16 +32,22 @@ void require_finite(const DriveOptions& drive) {
 
 /// The scans at these poses.
 std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
-                                 const Trajectory& all, const Trajectory& motion) {
+                                 const Trajectory& all, const Trajectory& motion,
+                                 ProgressSink& progress) {
   Trajectory chosen;
   for (std::size_t i = 0; i < all.size(); i += drive.every) chosen.push_back(all[i]);
   if (chosen.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
   const Trajectory poses = shifted(mounted(std::move(chosen), drive.mount), drive.offset_m);
-  if (!drive.rolling_shutter) return still_scans(poses);
+  if (!drive.rolling_shutter || fires_at_once(sensor)) return still_scans(poses);
   if (motion.size() < 2)
     throw Error(ErrorKind::data,
                 "a rolling shutter needs at least two poses, which define the motion");
-  return moving_scans(poses, mounted(motion, drive.mount), 1 / sensor.rotation_hz);
+  const double duration_s = 1 / sensor.rotation_hz;
+  if (!drive.trajectory.empty())
+    if (const std::string note = motion_ends_note(poses, motion, duration_s); !note.empty())
+      progress.warn((drive.motion.empty() ? drive.trajectory : drive.motion).string() + ": " +
+                    note);
+  return moving_scans(poses, mounted(motion, drive.mount), duration_s);
 }
 
 }  // namespace
@@ -94,7 +100,7 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   Trajectory all = std::move(driven.poses);
   if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
   if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
-  return scans_at(drive, sensor, all, driven.motion);
+  return scans_at(drive, sensor, all, driven.motion, progress);
 }
 
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
@@ -105,12 +111,13 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   PathDrive path_drive;
   path_drive.height_m = drive.height_m.value_or(kRoofHeight_m);
   if (!drive.at.empty())
-    return scans_at(drive, sensor, poses_at(scene, drive.at, path_drive.height_m, executor), {});
+    return scans_at(drive, sensor, poses_at(scene, drive.at, path_drive.height_m, executor), {},
+                    progress);
   path_drive.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
   path_drive.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
   path_drive.spacing_m = drive.spacing_m;
   const Trajectory poses = poses_on_path(scene, drive.path, path_drive, executor);
-  return scans_at(drive, sensor, poses, poses);
+  return scans_at(drive, sensor, poses, poses, progress);
 }
 
 }  // namespace adasplats

@@ -9,7 +9,7 @@
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
 #include "adasplats/jobs/session/inputs.h"
-#include "adasplats/simulate/image/class_colors.h"
+#include "adasplats/simulate/image/point_colors.h"
 
 namespace adasplats {
 
@@ -131,9 +131,9 @@ ImageScene ModelScene::image_scene() const {
 
 ImageColor ModelScene::default_color() const {
   const ImageScene scene = image_scene();
-  if (share_with_class_colors(scene.attributes.classes, scene.labels) >= kMaxHaveClasses)
-    return ImageColor::semantic;
-  if (!scene.attributes.intensities.empty()) return ImageColor::intensity;
+  if (const auto color = adasplats::default_color(scene.attributes.classes,
+                                                  scene.attributes.intensities, scene.labels))
+    return *color;
   return scene.groups.empty() ? ImageColor::height : ImageColor::semantic;
 }
 

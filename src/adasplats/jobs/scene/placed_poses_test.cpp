@@ -160,6 +160,10 @@ TEST_F(PlacedPoses, RollingShutterOnAPath) {
   const auto scans = scans_along(drive, sensor, scene_, executor_, quiet);
   ASSERT_EQ(scans.size(), 4U);
   EXPECT_FALSE(scans[1].knots.empty());
+  LidarModel flash = sensor;  // all rays fire at the time of the pose
+  flash.free_pattern = {{{1, 0, 0}, 0, 0, 0, {}}, {{0, 1, 0}, 0, 1, 0, {}}};
+  for (const ScanMotion& scan : scans_along(drive, flash, scene_, executor_, quiet))
+    EXPECT_TRUE(scan.knots.empty());
   drive.path.pop_back();
   expect_error(ErrorKind::usage, {"two corners"},
                [&] { scans_along(drive, sensor, scene_, executor_, quiet); });

@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& m
     if (!file.empty() && std::ranges::find(files, file) == files.end()) files.push_back(file);
   };
   const auto add_geometry = [&](const std::filesystem::path& file) {
-    if (is_city(file)) {  // whose manifest has the SHA-256 of every tile
+    if (is_city(file)) {  // its manifest has the SHA-256 of every tile
       add(file / kCityFile);
       add(file / kCityCommonFile);
       return;

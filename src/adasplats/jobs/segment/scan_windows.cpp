@@ -51,7 +51,7 @@ void ScanWindows::add_points(const Placed& placed, PointCloud& cloud) const {
     cloud.positions.push_back(vec_cast<float>(pose * vec_cast<double>(p) - cloud.origin));
   cloud.intensities.insert(cloud.intensities.end(), placed.intensities.begin(),
                            placed.intensities.end());
-  // Of scans without intensities they are not known.
+  // NaN: scans without intensities.
   cloud.intensities.resize(cloud.positions.size(), std::numeric_limits<float>::quiet_NaN());
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
@@ -142,6 +143,7 @@ class PointSegmenter {
     FoundLabels found = labels_of(cloud, cloud.size());
     session_.progress.end_step();
     cloud.classes = std::move(found.labels);
+    if (job_.class_map.empty()) cloud.label_scheme = semantickitti_labels().name();
     (as_las ? save_cloud_las : save_cloud_ply)(job_.output, cloud,
                                                FoundColumns(found, outputs_).columns);
   }

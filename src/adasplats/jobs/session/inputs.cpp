@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/session/inputs.h"
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/data_tree.h"
@@ -10,6 +14,11 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/mcap/mcap_file.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 
@@ -22,8 +31,65 @@ void require_input(const fs::path& path) {
   }
 }
 
+namespace {
+
+/// A scheme as our files state it; nothing if it cannot be loaded here.
+std::optional<LabelScheme> stated_scheme(const std::string& scheme) {
+  if (scheme.empty()) return std::nullopt;
+  ProgressSink silent;
+  return load_labels_of_model(scheme, silent);
+}
+
+/// The scheme in the adasplats.json of a folder with output of this program, or of the folders
+/// above, as far as the tree of a simulation goes.
+std::optional<LabelScheme> scheme_of_folder(fs::path folder) {
+  constexpr int kLevels = 3;                                // OUTPUT/sequences/00
+  constexpr const char* kFolderContent = "adasplats.json";  // as jobs/output has it
+  folder = fs::absolute(folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  for (int level = 0; level < kLevels; ++level, folder = folder.parent_path()) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(folder / kFolderContent, ignored)) continue;
+    const auto content = nlohmann::json::parse(read_file(folder / kFolderContent), nullptr, false);
+    const auto labels = content.is_object() ? content.find("labels") : content.end();
+    if (!content.is_object() || labels == content.end() || !labels->is_object()) continue;
+    const auto name = labels->find("name");
+    if (name != labels->end() && name->is_string()) return stated_scheme(name->get<std::string>());
+  }
+  return std::nullopt;
+}
+
+/// Whether the classes of a file are those of the specification of LAS, as far as that can be
+/// determined: in files of this program they are of any scheme.
+bool has_las_classes(const LasFacts& las, const std::string& label_field) {
+  if (!label_field.empty()) return label_field == "classification";
+  return las.software != "adasplats" && std::ranges::none_of(las.extra_fields, [](auto name) {
+           return lower_case(name) == "label" || lower_case(name) == "class";
+         });
+}
+
+std::optional<LabelScheme> scheme_of_file(const fs::path& file, const std::string& label_field) {
+  const std::string extension = lower_case(file.extension().string());
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  if (extension == ".mcap")
+    return stated_scheme(read_mcap_metadata(file, kMcapMetadataName, kMcapLabelsKey));
+  if (extension == ".las" || extension == ".laz") {
+    const LasFacts las = read_las_facts(file);
+    if (!las.labels.empty()) return stated_scheme(las.labels);
+    if (has_las_classes(las, label_field)) return asprs_labels();
+  } else if (extension == ".ply") {
+    for (const std::string& comment : read_ply_comments(file))
+      if (comment.starts_with(kLabelsComment))
+        return stated_scheme(comment.substr(kLabelsComment.size()));
+  }
+  return scheme_of_folder(file.parent_path());
+}
+
+}  // namespace
+
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
-                                            std::span<const fs::path> inputs) {
+                                            std::span<const fs::path> inputs,
+                                            const std::string& label_field) {
   if (!labels.empty()) {
     const LabelScheme stated = load_label_scheme(labels);
     for (const fs::path& input : inputs) require_labels_of_tree(input, stated);
@@ -31,9 +97,15 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
   }
   for (const fs::path& input : inputs) {
     if (auto own = labels_of_tree(input)) return own;
-    for (const CloudInput& one : cloud_inputs(input, SensorScans::taken)) {
-      if (one.is_sequence && fs::is_directory(one.path / "labels")) return semantickitti_labels();
+    const std::vector<CloudInput> parts = cloud_inputs(input, SensorScans::taken);
+    for (const CloudInput& one : parts) {
+      if (!one.is_sequence || !fs::is_directory(one.path / "labels")) continue;
+      if (auto own = scheme_of_folder(one.path)) return own;
+      return semantickitti_labels();
     }
+    // The files of a folder are of one kind: the first stands for all.
+    if (!parts.empty() && !parts.front().is_sequence)
+      if (auto own = scheme_of_file(parts.front().path, label_field)) return own;
   }
   return std::nullopt;
 }
@@ -56,7 +128,11 @@ std::string scheme_reference(const std::string& labels, const LabelScheme& schem
 std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
   require_input(input);
   const std::vector<CloudInput> inputs = cloud_inputs(input, SensorScans::taken);
-  if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
+  // A folder of scans with poses stays one: its files alone are in the sensor frame.
+  std::error_code ignored;
+  if (!inputs.front().is_sequence &&
+      (inputs.size() > 1 || fs::exists(input / "poses.csv", ignored)))
+    return {input};
   std::vector<fs::path> paths;
   paths.reserve(inputs.size());
   for (const CloudInput& one : inputs) paths.push_back(one.path);

@@ -14,11 +14,14 @@
 
 namespace adasplats {
 
-/// The scheme that `labels` names. If it is empty, the scheme of the first input with labels:
-/// SemanticKITTI for a sequence folder, labels_of_tree() for the tree of a data set; nothing if
-/// there is none. Errors: those of require_labels_of_tree.
+/// The scheme that `labels` names. If it is empty, the scheme of the first input that states one or
+/// has labels: in files of this program the one that they state; else labels_of_tree() for the tree
+/// of a data set, SemanticKITTI for a sequence folder, ASPRS for LAS and LAZ, if the classes are
+/// those of LAS (`label_field` as in LoadOptions). Nothing if there is none. Errors: those of
+/// require_labels_of_tree, and of headers.
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
-                                            std::span<const std::filesystem::path> inputs);
+                                            std::span<const std::filesystem::path> inputs,
+                                            const std::string& label_field = {});
 
 /// The scheme that a model's file names; nothing if it names none or, with a warning, if that
 /// cannot be loaded: geometry and class numbers do not depend on it.

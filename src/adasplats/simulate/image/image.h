@@ -29,6 +29,7 @@ enum class ImageColor : std::uint8_t {
   intensity,  ///< measured intensity, 2nd to 98th percentile; grey if there is none
   range,      ///< distance, on a logarithmic scale from 1 m to 100 m
   height,     ///< world z, 2nd to 98th percentile
+  rgb,        ///< colours in the file of points; of models, which have none, grey
   error,      ///< the intensities are signed errors: blue, white, red; grey if unknown
 };
 

@@ -60,6 +60,18 @@ std::vector<Rgb> by_range(const PointCloud& cloud, Vec3d eye) {
   return colors;
 }
 
+/// Whether values other than NaN differ.
+template <class T>
+bool has_several_values(std::span<const T> values) {
+  const T* first = nullptr;
+  for (const T& value : values) {
+    if (value != value) continue;
+    if (first != nullptr && value != *first) return true;
+    if (first == nullptr) first = &value;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
@@ -78,6 +90,13 @@ std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels
     case ImageColor::intensity: return by_intensity(cloud, ends);
     case ImageColor::range: return by_range(cloud, eye);
     case ImageColor::height: return by_value(heights_of(cloud), ends);
+    case ImageColor::rgb: {
+      std::vector<Rgb> colors = file_colors(cloud);
+      if (colors.empty() && !cloud.empty())
+        throw Error(ErrorKind::usage,
+                    "points can be coloured by rgb only with columns red, green and blue");
+      return colors;
+    }
     case ImageColor::error: throw Error(ErrorKind::usage, "a point cloud has no errors to show");
   }
   return {};
@@ -91,9 +110,17 @@ ValueRange shown_range(const PointCloud& cloud, ImageColor color) {
 }
 
 ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels) {
-  if (share_with_class_colors(cloud.classes, labels) >= kMaxHaveClasses)
+  if (has_several_values<Rgb>(file_colors(cloud))) return ImageColor::rgb;
+  return default_color(cloud.classes, cloud.intensities, labels).value_or(ImageColor::height);
+}
+
+std::optional<ImageColor> default_color(std::span<const std::uint16_t> classes,
+                                        std::span<const float> intensities,
+                                        const LabelScheme* labels) {
+  if (has_several_values(classes) && share_with_class_colors(classes, labels) >= kMaxHaveClasses)
     return ImageColor::semantic;
-  return cloud.intensities.empty() ? ImageColor::height : ImageColor::intensity;
+  if (has_several_values(intensities)) return ImageColor::intensity;
+  return std::nullopt;
 }
 
 }  // namespace adasplats

@@ -123,6 +123,7 @@ ADASPLATS_HD inline float log10_anywhere(float x) {
 ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, const Hit& hit) {
   const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
   switch (tables.color) {
+    case ImageColor::rgb:
     case ImageColor::shading:
       return shading::light(normal, ray.direction) * Vec3f{0.92F, 0.92F, 0.92F};
     case ImageColor::semantic:

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 namespace {
@@ -53,10 +54,11 @@ std::vector<ScanMotion> still_scans(std::span<const TimedPose> poses) {
   return scans;
 }
 
-std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& motion,
+std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& given,
                                      double duration_s) {
   if (!(duration_s > 0)) throw Error(ErrorKind::usage, "a moving scan needs a positive duration");
-  if (motion.empty()) throw Error(ErrorKind::usage, "the motion has no poses");
+  if (given.empty()) throw Error(ErrorKind::usage, "the motion has no poses");
+  const Trajectory motion = with_extrapolated_ends(given, 0.5 * duration_s);
   std::vector<ScanMotion> scans;
   scans.reserve(poses.size());
   for (const TimedPose& pose : poses) {
@@ -72,6 +74,30 @@ std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Tra
     scans.push_back(std::move(scan));
   }
   return scans;
+}
+
+std::string motion_ends_note(std::span<const TimedPose> poses, const Trajectory& motion,
+                             double duration_s) {
+  constexpr double kRounding = 1e-6;  // of times in seconds since an epoch
+  const double begin_s = motion.front().time_s, end_s = motion.back().time_s;
+  const double half_s = 0.5 * duration_s;
+  std::size_t partly = 0, wholly = 0;
+  for (const TimedPose& pose : poses) {
+    const double beyond_s = std::max(begin_s - pose.time_s, pose.time_s - end_s);
+    wholly += beyond_s > half_s ? 1 : 0;
+    partly += beyond_s <= half_s && beyond_s > -half_s + kRounding ? 1 : 0;
+  }
+  const std::string of = " of " + std::to_string(poses.size()) + " scans ";
+  std::string note;
+  if (partly > 0)
+    note = std::to_string(partly) + of +
+           "begin before the first pose or end after the last one; their motion there is "
+           "extrapolated at constant velocity, by at most " +
+           decimal_text(half_s) + " s";
+  if (wholly > 0)
+    note += (note.empty() ? "" : "; ") + std::to_string(wholly) + of + "are outside the poses (" +
+            decimal_text(begin_s) + " to " + decimal_text(end_s) + " s) and at rest";
+  return note;
 }
 
 RigidTransform pose_at(const ScanMotion& motion, double share) {

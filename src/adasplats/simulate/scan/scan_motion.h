@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
@@ -26,12 +27,16 @@ struct ScanMotion {
 std::vector<ScanMotion> still_scans(std::span<const TimedPose> poses);
 
 /// Scans that last `duration_s` around the time of each pose and move as `motion`, relative to its
-/// pose at that time, so its frame may differ from that of the poses. Before and after `motion` the
-/// sensor is at rest. A scan has enough knots (at most 64) for each segment to turn by less than
-/// half a degree and to contain at most one pose of `motion`. Errors: usage (a duration that is not
-/// positive).
+/// pose at that time, so its frame may differ from that of the poses. For half a scan before and
+/// after `motion` its velocity stays constant (motion_ends_note()). A scan has enough knots (at
+/// most 64) for each segment to turn by less than half a degree and to contain at most one pose of
+/// `motion`. Errors: usage (a duration that is not positive).
 std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& motion,
                                      double duration_s);
+
+/// A warning with the number of scans that begin before or end after `motion`; empty: none do.
+std::string motion_ends_note(std::span<const TimedPose> poses, const Trajectory& motion,
+                             double duration_s);
 
 /// Pose of the sensor after `share` (0..1) of the revolution.
 RigidTransform pose_at(const ScanMotion& motion, double share);

@@ -72,6 +72,24 @@ TEST(ScanMotion, TheMotionMayHaveAnotherFrame) {
         1e-9);
 }
 
+// Oracle: the circle. At rest beyond the poses the ends would be 0.5 m off.
+TEST(ScanMotion, GoesOnForHalfAScanBeyondThePoses) {
+  const Trajectory motion = drive(0.01, 2.0, 10, 0.8);
+  const std::vector<TimedPose> poses = {motion.front(), motion[50], motion.back()};
+  const auto scans = moving_scans(poses, motion, 0.1);
+  ASSERT_EQ(scans.size(), 3U);
+  EXPECT_NEAR(length(pose_at(scans[0], 0).translation - pose_at(scans[0], 0.5).translation), 0.5,
+              1e-3);
+  EXPECT_NEAR(length(pose_at(scans[2], 1).translation - pose_at(scans[2], 0.5).translation), 0.5,
+              1e-3);
+  const std::string note = motion_ends_note(poses, motion, 0.1);
+  EXPECT_NE(note.find("2 of 3 scans begin before"), std::string::npos) << note;
+  EXPECT_NE(note.find("at most 0.05 s"), std::string::npos) << note;
+  EXPECT_EQ(motion_ends_note({&poses[1], 1}, motion, 0.1), "");
+  const std::vector<TimedPose> far = {{9.0, {}}};
+  EXPECT_NE(motion_ends_note(far, motion, 0.1).find("1 of 1 scans are outside"), std::string::npos);
+}
+
 TEST(ScanMotion, FastTurnsHaveMoreKnots) {
   const std::vector<TimedPose> poses = {{1.0, {}}};
   const auto knots = [&](double yaw_rate) {

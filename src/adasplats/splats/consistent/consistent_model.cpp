@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
@@ -50,18 +54,111 @@ CoverOptions ConsistentOptions::cover_options(bool checked) const {
   return chosen;
 }
 
+ConsistentOptions ConsistentOptions::scaled(double scale) const {
+  ConsistentOptions made = *this;
+  for (double* length_m :
+       {&made.cell_m, &made.small_cell_m, &made.planes.max_sigma_m, &made.planes.min_sigma_m,
+        &made.planes.max_shift_m, &made.min_radius_m, &made.cover.tolerance_m, &made.cover.edge_m,
+        &made.cover.largest_radius_m, &made.cover.covered_within_m, &made.settle.reach_m,
+        &made.settle.scale_m, &made.settle.max_shift_m})
+    *length_m *= scale;
+  for (float* length_m : {&made.judge.min_radius_m, &made.evidence.range_margin_m,
+                          &made.evidence.height_margin_m, &made.missed_m, &made.met_m})
+    *length_m *= static_cast<float>(scale);
+  return made;
+}
+
+bool ConsistentOptions::has_default_sizes() const {
+  const ConsistentOptions given;
+  return cell_m == given.cell_m && small_cell_m == given.small_cell_m &&
+         cover.largest_radius_m == given.cover.largest_radius_m;
+}
+
+namespace {
+
+// An object is small and dense if its points fill at most kSmallCells cells (10 m2 of cells of 5
+// cm) with at least kDensePoints points each: cells of a third of the side would have one point.
+constexpr std::size_t kSmallCells = 4000;
+constexpr double kDensePoints = 9;
+constexpr double kMinScale = 1.0 / 256;  // cells of 0.2 mm
+
+double points_per_cell(const ConsistentCounts& counts) {
+  return counts.cells == 0 ? 0
+                           : static_cast<double>(counts.points) / static_cast<double>(counts.cells);
+}
+
+/// Share of the cells whose surroundings are flat: noise is smaller than the cells.
+double flat_share(ConsistentSteps& steps, const ConsistentOptions& options) {
+  const std::vector<CellSpacing> cells = steps.spacings(options);
+  const auto flat = std::ranges::count_if(cells, [](const CellSpacing& cell) { return cell.flat; });
+  return static_cast<double>(flat) / static_cast<double>(cells.size());
+}
+
+/// Scale of cells and limits for the fused points: 1, except for small dense objects. For these the
+/// smallest power of 1/2 whose cells have a few points each and are mostly flat: smaller cells
+/// would be finer than the points, or than their noise.
+double fitting_scale(ConsistentSteps& steps, const ConsistentOptions& options) {
+  constexpr double kMinFlat = 0.5;
+  const ConsistentCounts counts = steps.counts();
+  if (counts.cells > kSmallCells || points_per_cell(counts) < kDensePoints) return 1;
+  double scale = 1;
+  while (scale > kMinScale && points_per_cell(steps.counts()) >= kDensePoints) {
+    scale /= 2;
+    steps.fuse(options.scaled(scale));
+  }
+  while (scale < 1 && flat_share(steps, options.scaled(scale)) < kMinFlat) {
+    scale *= 2;
+    steps.fuse(options.scaled(scale));
+  }
+  return scale;
+}
+
+std::string millimetres(double length_m) {
+  std::ostringstream text;
+  text << std::setprecision(2) << 1000 * length_m;
+  return text.str() + " mm";
+}
+
+}  // namespace
+
+std::string spacing_doubt(const ConsistentReport& report, const ConsistentOptions& options) {
+  constexpr double kMaxRatio = 10;  // of cells and spacing
+  if (report.spacing_m == 0) return {};
+  const double ratio = report.cell_m / report.spacing_m;
+  const std::string points = "points are " + millimetres(report.spacing_m) + " apart on average";
+  if (report.scale < 1)
+    return points + ", so cells and limits in metres are scaled by 1/" +
+           std::to_string(std::lround(1 / report.scale)) + ": cells of " +
+           millimetres(report.cell_m) + " instead of " + millimetres(options.cell_m) +
+           " (--cell and --small-cell choose other ones)";
+  const bool is_small = report.cells <= kSmallCells && ratio * ratio >= kDensePoints;
+  if (!options.has_default_sizes() || report.checked || !(is_small || ratio >= kMaxRatio))
+    return {};
+  return points + ", but cells of " + millimetres(report.cell_m) + " (" +
+         std::to_string(std::lround(ratio)) +
+         " times as large) merge them; if their noise is lower than 1 cm, choose smaller cells "
+         "with "
+         "--cell and --small-cell";
+}
+
 ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
-                                  const ConsistentOptions& options,
+                                  const ConsistentOptions& chosen,
                                   const std::function<void(std::string_view, int)>& begin_step) {
-  const bool checked = has_rays && options.balance_rounds > 0;
+  const bool checked = has_rays && chosen.balance_rounds > 0;
   ConsistentReport report;
   report.checked = checked;
   begin_step("fusion", 0);
-  steps.fuse(options);
+  steps.fuse(chosen);
+  if (chosen.fit_scale && chosen.has_default_sizes()) report.scale = fitting_scale(steps, chosen);
+  const ConsistentOptions options = chosen.scaled(report.scale);
+  report.cell_m = options.cell_m;
+  if (steps.counts().points > 0)
+    report.spacing_m = options.cell_m / std::sqrt(points_per_cell(steps.counts()));
   begin_step("planes", 2);
   steps.fit_seeds(options);
   report.cells = steps.counts().cells;
   report.seeds = steps.counts().seeds;
+  report.sparse = steps.is_sparse();
   if (checked && !options.trust_origins) {
     begin_step("check of sensor positions", 1 + static_cast<int>(kOriginMoves.size()));
     report.origins = origin_check(steps.check_origins(options));
@@ -69,7 +166,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
     if (!objection.empty()) throw Error(ErrorKind::data, objection);
   }
   if (checked) {
-    begin_step("ray check of seeds", options.balance_rounds);
+    begin_step("visibility check of seeds", options.balance_rounds);
     steps.order_rays(options);
     for (int i = 0; i < options.balance_rounds; ++i) steps.balance_seeds(i, options);
     report.rays = steps.counts().rays;
@@ -79,7 +176,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
   begin_step("cover", 1);
   steps.cover(checked, options);
   if (checked) {
-    begin_step("ray check of splats", options.strict_rounds);
+    begin_step("visibility check of splats", options.strict_rounds);
     for (int i = 0; i < options.strict_rounds; ++i) steps.limit_overhangs(i, options);
     steps.limit_unchosen();
   }
@@ -94,6 +191,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
       report.splats_filled = steps.counts().disks - before;
     }
   }
+  report.splats_limited = steps.count_limited();
   return report;
 }
 

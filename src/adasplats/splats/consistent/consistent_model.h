@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "adasplats/core/host_device.h"
@@ -25,7 +26,8 @@ namespace adasplats {
 //
 // The steps, in the order of consistent_disks(). The file in brackets has the work for one element
 // (below src/adasplats/); consistent_steps_on.h runs it on all elements, on the CPU or a GPU.
-// - fuse: average the points of each grid cell [surface/fused_points.h]
+// - fuse: average the points of each grid cell [surface/fused_points.h]; of small dense objects
+//   with smaller cells (fitting_scale())
 // - fit_seeds: fit planes to the cells [surface/adaptive_planes.h] and make a disk, the seed, of
 //   each [splats/consistent/seed_disk.h]
 // - check_origins: compare the sensor positions with shifted ones
@@ -39,7 +41,7 @@ namespace adasplats {
 // - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
 // Without sensor positions the steps with rays are skipped, and disks stay smaller.
 
-/// Options of the consistent method; docs/fidelity.md gives the source of each number.
+/// Options of the consistent method; docs/research/consistent.md gives the source of each number.
 struct ConsistentOptions {
   double cell_m = 0.05;  ///< side of the cells that points are fused in
   /// Cells are split if no plane around them is larger than this scale (of `planes.scales`)...
@@ -72,8 +74,15 @@ struct ConsistentOptions {
   bool fill = true;        ///< restore seeds where rays pass between splats...
   float missed_m = 0.15F;  ///< ...if no splat is within this distance behind the ray's end...
   float met_m = 0.4F;      ///< ...and within this distance before it
+  /// Scale the default cells and limits for small dense objects; false for tiles of a city, which
+  /// share their cells.
+  bool fit_scale = true;
 
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
+  /// The options for a scene of `scale` times the size: cells and all limits in metres, except the
+  /// minimum range.
+  ConsistentOptions scaled(double scale) const;
+  bool has_default_sizes() const;  ///< of cells and splats
   /// `planes` for deciding which cells to split: only the scales up to the one after `split_scale`.
   AdaptivePlaneOptions planes_for_splitting() const;
   /// Maximum radius of a seed in median spacings; `has_rays`: the cell has a beam.
@@ -145,13 +154,23 @@ void check(const ConsistentOptions& consistent);
 struct ConsistentReport {
   bool checked = false;                ///< the disks were checked against measured rays
   std::optional<OriginCheck> origins;  ///< nullopt: not checked
+  double scale = 1;                    ///< of the cells and limits, for small dense objects
+  double cell_m = 0;                   ///< side of the cells
+  double spacing_m = 0;                ///< of points in cells with several; at most cell_m
   std::size_t cells = 0;               ///< of fused points
   std::size_t seeds = 0;               ///< cells with a disk before the visibility check
   std::size_t rays = 0;                ///< measured rays that the disks were checked against
   std::size_t empty_beams = 0;         ///< and beams without return
   std::size_t seeds_removed = 0;       ///< more rays contradict than confirm them
   std::size_t splats_filled = 0;       ///< restored where rays passed between disks
+  bool sparse = false;                 ///< no centre was moved far (TypicalSpacing::is_sparse())
+  /// Splats whose centres were moved by the maximum, 10 cm, and are not on the surface.
+  std::size_t splats_limited = 0;
 };
+
+/// Warning about cells that are smaller than chosen, or much larger than the spacing of points;
+/// empty if the cells fit. `options`: as chosen.
+std::string spacing_doubt(const ConsistentReport& report, const ConsistentOptions& options);
 
 class ConsistentSteps;
 

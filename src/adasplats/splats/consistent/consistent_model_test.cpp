@@ -85,6 +85,81 @@ bool same_bytes(const SplatModel& a, const SplatModel& b) {
          same_bytes(a.intensities, b.intensities);
 }
 
+float distance_to_points_m(Vec3f place, const std::vector<Vec3f>& points) {
+  float nearest_m = std::numeric_limits<float>::max();
+  for (const Vec3f point : points) nearest_m = std::min(nearest_m, length(point - place));
+  return nearest_m;
+}
+
+/// Centres that are the maximum shift of planes beside the points.
+std::size_t count_at_limit(const SplatModel& model, const std::vector<Vec3f>& points) {
+  return static_cast<std::size_t>(std::ranges::count_if(model.disks, [&](const Disk& disk) {
+    return std::fabs(distance_to_points_m(disk.center, points) - 0.1F) < 2e-4F;
+  }));
+}
+
+TEST(ConsistentModel, CellsOfSmallDenseObjectsFollowTheSpacing) {
+  constexpr float kRadius_m = 0.07F;
+  PointCloud cloud;
+  for (std::size_t i = 0; i < 20'000; ++i) {
+    Random random(3, 0, i);
+    const Vec3d direction =
+        direction_of(random.uniform(0, 6.2831853), std::asin(random.uniform(-1, 1)));
+    cloud.positions.push_back(kRadius_m * vec_cast<float>(direction));
+  }
+  const Built ball = build(cloud);
+  EXPECT_LT(ball.report.consistent->scale, 0.25);
+  EXPECT_GT(ball.model.size(), 500U);
+  for (const Disk& disk : ball.model.disks) ASSERT_NEAR(length(disk.center), kRadius_m, 0.002F);
+  EXPECT_TRUE(std::ranges::any_of(ball.warnings.texts, [](const std::string& text) {
+    return text.find("points are 1.8 mm apart") != std::string::npos;
+  }));
+  BuildOptions chosen = consistent_options();
+  std::get<ConsistentOptions>(chosen.recipe).cell_m = 0.04;
+  EXPECT_EQ(build(cloud, 2, chosen).report.consistent->scale, 1);
+  // Noise of half a cell: smaller cells would show the noise.
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.positions[i] =
+        (1 + static_cast<float>(Random(4, 0, i).uniform(-0.4, 0.4))) * cloud.positions[i];
+  EXPECT_GE(build(cloud).report.consistent->scale, 0.25);
+}
+
+TEST(ConsistentModel, PointsFromTheAirStayInPlace) {
+  PointCloud cloud;
+  for (std::size_t i = 0; i < 2400; ++i) {
+    Random random(5, 0, i);
+    const double x = random.uniform(0, 40), y = random.uniform(0, 40);
+    const bool is_tree = i % 3 != 0;
+    cloud.positions.push_back(vec_cast<float>(
+        Vec3d{x, y, is_tree ? random.uniform(1, 15) : random.uniform(-0.03, 0.03)}));
+  }
+  const Built forest = build(cloud);
+  EXPECT_TRUE(forest.report.consistent->sparse);
+  EXPECT_EQ(forest.report.consistent->splats_limited, 0U);
+  EXPECT_GT(forest.model.size(), 1500U);
+  EXPECT_EQ(count_at_limit(forest.model, cloud.positions), 0U);
+}
+
+TEST(ConsistentModel, CountsCentresMovedByTheMaximum) {
+  PointCloud cloud;
+  for (int x = 0; x < 60; ++x)
+    for (int y = 0; y < 60; ++y)
+      cloud.positions.push_back({0.1F * static_cast<float>(x), 0.1F * static_cast<float>(y), 0});
+  for (std::size_t i = 0; i < 400; ++i) {
+    Random random(6, 0, i);
+    cloud.positions.push_back(
+        vec_cast<float>(Vec3d{random.uniform(0, 6), random.uniform(0, 6), random.uniform(1, 5)}));
+  }
+  BuildOptions options = consistent_options();
+  std::get<ConsistentOptions>(options.recipe).isolated = 100;
+  const Built built = build(cloud, 2, options);
+  EXPECT_FALSE(built.report.consistent->sparse);
+  EXPECT_GT(built.report.consistent->splats_limited, 50U);
+  // A few centres are nearer to another point than to their own.
+  EXPECT_NEAR(static_cast<double>(built.report.consistent->splats_limited),
+              static_cast<double>(count_at_limit(built.model, cloud.positions)), 5);
+}
+
 TEST(ConsistentModel, PredictsBeamsItNeverSaw) {
   const SplatModel& model = room_model().model;
   expect_sound(room_model());
@@ -567,9 +642,9 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   const std::vector<std::string> expected = {"fusion",
                                              "planes",
                                              "check of sensor positions",
-                                             "ray check of seeds",
+                                             "visibility check of seeds",
                                              "cover",
-                                             "ray check of splats",
+                                             "visibility check of splats",
                                              "settling",
                                              "filling"};
   EXPECT_EQ(made.steps, expected);

@@ -27,6 +27,7 @@ struct ConsistentSplats {
 
 /// Numbers of elements after the last step.
 struct ConsistentCounts {
+  std::size_t points = 0;  ///< loaded
   std::size_t cells = 0;
   std::size_t seeds = 0;  ///< with a radius
   std::size_t rays = 0;   ///< measured rays; 0 before order_rays()
@@ -72,6 +73,10 @@ class ConsistentSteps {
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
 
   virtual ConsistentCounts counts() const = 0;
+  /// Chosen disks whose centres were moved by the maximum and are not on the surface.
+  virtual std::size_t count_limited() const = 0;
+  /// TypicalSpacing::is_sparse() of the cloud or its city; valid after fit_seeds().
+  virtual bool is_sparse() const = 0;
 
   /// The chosen disks, on the host. Only measure_reflectances() may follow.
   virtual ConsistentSplats take_splats() = 0;

@@ -69,7 +69,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const bool beam = with_beam[i] > 0;
       const float unit_m = beam ? with_beam[i] : without[i];
-      spacings[i] = {positions[i], unit_m > 0 ? found[i].spacing_m / unit_m : 0, beam};
+      spacings[i] = {positions[i], unit_m > 0 ? found[i].spacing_m / unit_m : 0, beam,
+                     found[i].scale > options.split_scale, found[i].limited};
     }
     return spacings;
   }
@@ -77,12 +78,16 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   void fit_seeds(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
     const TypicalSpacing typical = split_where_not_flat(options);
+    is_sparse_ = typical.is_sparse();
     index_.emplace(backend_.index(cells_));
-    planes_ = backend_.planes(cells_, *index_, options.planes);
+    AdaptivePlaneOptions planes = options.planes;
+    planes.strict_shift = planes.strict_shift || is_sparse_;
+    planes_ = backend_.planes(cells_, *index_, planes);
     seeds_ = backend_.template array<Disk>(cells_.size());
-    backend_.for_each(
-        cells_.size(), "make seeds",
-        MakeSeed{points(), cells_.view(), typical, options, planes_.data(), seeds_.data()});
+    limited_ = backend_.template array<std::uint8_t>(cells_.size());
+    backend_.for_each(cells_.size(), "make seeds",
+                      MakeSeed{points(), cells_.view(), typical, options, planes_.data(),
+                               seeds_.data(), limited_.data()});
     backend_.wait("fit planes");
   }
 
@@ -165,9 +170,11 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   void settle(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    const auto sums = backend_.shifts(chosen_, *rays_, options.settle);
+    SettleOptions how = options.settle;
+    how.strict_shift = how.strict_shift || is_sparse_;
+    const auto sums = backend_.shifts(chosen_, *rays_, how);
     backend_.for_each(chosen_.size(), "settle disks",
-                      SettleDisk{chosen_.data(), sums.data(), options.settle});
+                      SettleDisk{chosen_.data(), sums.data(), how, limited_.data()});
     backend_.wait("settle disks");
   }
 
@@ -182,9 +189,22 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   ConsistentCounts counts() const override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    return {cells_.size(), backend_.count_present(seeds_), rays_ ? rays_->size() : 0,
-            empty_rays_ ? empty_rays_->size() : 0, backend_.count_present(chosen_)};
+    return {cloud_.size(),
+            cells_.size(),
+            backend_.count_present(seeds_),
+            rays_ ? rays_->size() : 0,
+            empty_rays_ ? empty_rays_->size() : 0,
+            backend_.count_present(chosen_)};
   }
+
+  std::size_t count_limited() const override {
+    [[maybe_unused]] const auto entered = backend_.enter();
+    return backend_
+        .template sum<FlagCount>(chosen_.size(), "count limited splats",
+                                 CountLimitedSplats{chosen_.data(), limited_.data()})
+        .flags;
+  }
+  bool is_sparse() const override { return is_sparse_; }
 
   ConsistentSplats take_splats() override {
     [[maybe_unused]] const auto entered = backend_.enter();
@@ -271,10 +291,16 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
                       FindSpacingUnit{points(), cells_.view(), with_beam, units_m.data()});
     return units_m;
   }
+  double share_limited(const Array<LocalPlane>& planes) const {
+    const auto limited = backend_.template sum<FlagCount>(planes.size(), "count limited planes",
+                                                          CountLimitedPlanes{planes.data()});
+    return static_cast<double>(limited.flags) / static_cast<double>(planes.size());
+  }
   TypicalSpacing typical_spacing(const Array<LocalPlane>& planes) const {
     if (whole_) return whole_->typical;
     return {rounded_spacing(backend_.median_spacing(planes, spacing_units(true))),
-            rounded_spacing(backend_.median_spacing(planes, spacing_units(false)))};
+            rounded_spacing(backend_.median_spacing(planes, spacing_units(false))),
+            share_limited(planes)};
   }
 
   /// Splits cells where the surface is not flat. Returns the median spacings before the split.
@@ -310,6 +336,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   std::optional<typename Backend::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;
   Array<Disk> seeds_;
+  Array<std::uint8_t> limited_;  ///< one per cell: MakeSeed, SettleDisk
+  bool is_sparse_ = false;       ///< TypicalSpacing
   std::optional<typename Backend::Rays> rays_, empty_rays_, passing_rays_;
   std::optional<typename Backend::Cover> cover_;
   Array<Disk> chosen_;

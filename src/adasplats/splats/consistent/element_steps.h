@@ -35,6 +35,25 @@ struct FindSpacingUnit {
   }
 };
 
+/// Sums of flags.
+struct FlagCount {
+  std::uint64_t flags = 0;
+
+  ADASPLATS_HD FlagCount& operator+=(const FlagCount& other) {
+    flags += other.flags;
+    return *this;
+  }
+};
+
+/// Counts planes that are farther from their cells than the maximum shift.
+struct CountLimitedPlanes {
+  const LocalPlane* planes;
+
+  ADASPLATS_HD void operator()(std::size_t cell, FlagCount& count) const {
+    count.flags += planes[cell].limited ? 1 : 0;
+  }
+};
+
 /// Flags cells without a plane larger than the smallest scales: leaves, poles and wires are smaller
 /// than a cell.
 struct FlagNotFlat {
@@ -55,6 +74,7 @@ struct MakeSeed {
   ConsistentOptions options;
   LocalPlane* planes;
   Disk* seeds;
+  std::uint8_t* limited;  ///< flags of centres that were moved by the maximum
 
   ADASPLATS_HD void operator()(std::size_t cell) const {
     LocalPlane& plane = planes[cell];
@@ -63,6 +83,7 @@ struct MakeSeed {
     const double largest_m = largest_seed_m(points, members, typical, options);
     const auto spacing_m = static_cast<double>(plane.spacing_m);
     seeds[cell] = {plane.center, seed_radius(spacing_m, largest_m, options), plane.normal};
+    limited[cell] = plane.limited ? 1 : 0;
   }
 };
 
@@ -160,9 +181,21 @@ struct SettleDisk {
   Disk* disks;
   const ShiftSums* sums;
   SettleOptions options;
+  std::uint8_t* limited;  ///< as of MakeSeed
 
   ADASPLATS_HD void operator()(std::size_t i) const {
     disks[i] = settled(disks[i], sums[i], options);
+    if (sums[i].rays >= options.min_rays) limited[i] = is_limited(sums[i], options) ? 1 : 0;
+  }
+};
+
+/// Counts splats whose centres were moved by the maximum.
+struct CountLimitedSplats {
+  const Disk* chosen;
+  const std::uint8_t* limited;
+
+  ADASPLATS_HD void operator()(std::size_t i, FlagCount& count) const {
+    count.flags += chosen[i].radius > 0 && limited[i] != 0 ? 1 : 0;
   }
 };
 

@@ -34,6 +34,8 @@ struct CellSpacing {
   Vec3f place;        ///< mean of its points
   float spacing = 0;  ///< to the 7th nearest cell, in units of spacing_unit_m()
   bool with_beam = false;
+  bool flat = false;     ///< needs no smaller cells (FlagNotFlat)
+  bool limited = false;  ///< LocalPlane::limited
 };
 
 /// Rounds in steps of at most 1/200: a tile sees other neighbours for a few cells at its border,

@@ -18,7 +18,7 @@ constexpr std::size_t kCheckedBeams = 400'000;
 constexpr std::uint64_t kEnoughOfPart = 1000, kEnough = 1500;
 
 // OriginCheck::near_rise and far_rise: correct positions never have less than the kMin values, and
-// rarely less than both kDoubted values (docs/fidelity.md).
+// rarely less than both kDoubted values (docs/research/positions.md).
 constexpr double kMinNear = 0.96, kDoubtedNear = 1.03;
 constexpr double kMinFar = 0.97, kDoubtedFar = 1.06;
 
@@ -87,7 +87,7 @@ std::string origin_objection(const OriginCheck& check) {
   if (check.near_rise >= kMinNear && check.far_rise >= kMinFar) return {};
   return "the sensor positions do not match the points: " + figures(check) +
          "; correct ones give at least " + hundredths(kMinNear) + " and " + hundredths(kMinFar) +
-         " (`trust_origins` accepts them)";
+         "; check the axes, units, clock and mount of the poses (`trust_origins` skips this check)";
 }
 
 std::string origin_doubt(const OriginCheck& check) {
@@ -95,7 +95,8 @@ std::string origin_doubt(const OriginCheck& check) {
   if (check.near_rise >= kDoubtedNear || check.far_rise >= kDoubtedFar) return {};
   return "the sensor positions may be wrong: " + figures(check) +
          "; most recordings give at least " + hundredths(kDoubtedNear) + " or " +
-         hundredths(kDoubtedFar) + ", dense vegetation less";
+         hundredths(kDoubtedFar) +
+         ", dense vegetation less; check the axes, units, clock and mount of the poses";
 }
 
 PointCloud sample_beams(const PointCloud& cloud, std::span<const std::uint8_t> removed,

@@ -18,7 +18,7 @@ namespace adasplats {
 
 // Checks the sensor positions. From the true positions rays pass through fewer seeds than from
 // shifted ones; from wrong positions, shifted ones are as good or better. Numbers:
-// docs/fidelity.md.
+// docs/research/positions.md.
 
 /// Shifts of all beam origins that the check tries: along x and y, in units of origin_unit_m(). Not
 /// upward: rays from above pass through fewer seeds wherever the sensor was.

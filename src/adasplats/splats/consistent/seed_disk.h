@@ -61,6 +61,12 @@ ADASPLATS_HD inline float spacing_unit_m(const MeasuredPoints& points,
 struct TypicalSpacing {
   double with_beam = 0;
   double without = 0;
+  double limited = 0;  ///< share of the cells farther from their planes than the maximum shift
+
+  /// Cells are too far apart for planes through their neighbours, as in clouds from the air over
+  /// trees. Of vehicle drives and street scans at most 12 % of the cells are limited (one scan of
+  /// 32 beams), of clouds from the air over trees at least 57 %.
+  ADASPLATS_HD bool is_sparse() const { return limited > 0.25; }
 
   ADASPLATS_HD double of(bool beam) const { return beam ? with_beam : without; }
 };

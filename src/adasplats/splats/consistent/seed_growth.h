@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-struct CoverOptions {              // sources of the numbers: docs/fidelity.md
+struct CoverOptions {              // sources of the numbers: docs/research/consistent.md
   std::uint32_t neighbors = 160;   ///< maximum number of seeds that a disk can grow over
   double tolerance_m = 0.02;       ///< a disk grows over seeds within this distance of its plane...
   double min_normal_cosine = 0.9;  ///< ...with normals aligned like this

@@ -3,6 +3,10 @@
 #include "adasplats/splats/model/any_model.h"
 
 #include <limits>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/point_format.h"
 
 namespace adasplats {
 namespace {
@@ -25,10 +29,33 @@ std::pair<Vec3d, Vec3d> world_box(const MeshModel& model) {
   return box;
 }
 
+/// Throws for a folder (no_input).
+void require_no_folder(const std::filesystem::path& path) {
+  std::error_code ignored;  // loading reports what cannot be examined
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error(ErrorKind::no_input,
+                path.string() +
+                    ": is a folder, but not a city; 'adasplats model' builds a model "
+                    "from a folder of scans");
+}
+
+/// Throws for a file of points or text (data).
+void require_no_points(const std::filesystem::path& file) {
+  const PointFormat* format = format_of_extension(file);
+  if (format == nullptr || format->means == ExtensionMeaning::geometry) return;
+  const bool is_text = format->means == ExtensionMeaning::text;
+  throw Error(ErrorKind::data,
+              file.string() + ": is a " +
+                  (is_text ? "text file" : "point cloud (" + std::string(format->name) + ")") +
+                  ", not a model; 'adasplats model' builds one from points");
+}
+
 }  // namespace
 
 AnyModel load_any_model(const std::filesystem::path& file) {
+  require_no_folder(file);
   if (is_mesh_file(file)) return load_mesh(file);
+  require_no_points(file);
   return load_model(file);
 }
 

@@ -19,8 +19,8 @@ namespace adasplats {
 /// have; std::get_if gives access to the rest.
 using AnyModel = std::variant<SplatModel, MeshModel>;
 
-/// Loads a mesh or a splat model; the file's content decides which. Errors: those of load_mesh and
-/// load_model.
+/// Loads a mesh or a splat model; the file's content decides which. Errors: no_input (a folder),
+/// data (a file of points or text), those of load_mesh and load_model.
 AnyModel load_any_model(const std::filesystem::path& file);
 
 inline SceneView view_of(const AnyModel& model) {

@@ -133,7 +133,8 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model) {
     face_columns.push_back({"class", ColumnType::u16, mesh.classes.data(), sizeof(std::uint16_t)});
   std::vector<std::string> comments = {kMeshComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
-  if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  if (!model.label_scheme.empty())
+    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
   for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   static_assert(sizeof(mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
   const std::uint32_t* const corners =

@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
 
 // Comments in the PLY files of splat models and meshes: "KEY VALUE". Private to splats/model.
 
-inline constexpr const char* kLabelsComment = "adasplats.labels ";
 inline constexpr const char* kMethodComment = "adasplats.method ";
 
 /// The value of the first comment with this key; empty without one.

@@ -36,8 +36,8 @@ const Column& required(const Table& table, const std::filesystem::path& path,
                        std::string_view name) {
   const Column* column = table.find(name);
   if (column == nullptr)
-    throw data_error({path, {}, {}}, "not a splat model: no vertex property '" + std::string(name) +
-                                         "' (a model has x y z nx ny nz radius)");
+    throw data_error({path, {}, {}}, "not a model (no vertex property '" + std::string(name) +
+                                         "'); 'adasplats model' builds one from a point cloud");
   return *column;
 }
 
@@ -265,7 +265,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
     columns.push_back({"intensity", ColumnType::f32, model.intensities.data(), sizeof(float)});
   std::vector<std::string> comments = {kFormatComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
-  if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  if (!model.label_scheme.empty())
+    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
   if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
   for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   add_response_comments(model.response, comments);

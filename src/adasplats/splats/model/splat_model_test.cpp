@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/splats/model/any_model.h"
 
 namespace adasplats {
 namespace {
@@ -40,6 +41,22 @@ TEST(SplatModel, ValuesThatASplatCannotHaveAreErrors) {
     rejected(model_text("6", "0.1", label, "1"), "class");
   for (const char* group : {"4", "-1", "0.5", "nan"})
     rejected(model_text("6", "0.1", "50", group), "group");
+}
+
+TEST(AnyModel, PointsAreRejectedWithTheCommandThatModelsThem) {
+  const TemporaryFolder folder;
+  const std::string points =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+      "property double z\nend_header\n1 2 3\n";
+  const auto load = [&](const std::filesystem::path& file) { load_any_model(file); };
+  expect_error(ErrorKind::data, {"points.ply", "'nx'", "'adasplats model'"},
+               [&] { load(folder.write("points.ply", points)); });
+  expect_error(ErrorKind::data,
+               {"points.las", "is a point cloud (LAS or LAZ)", "'adasplats model'"},
+               [&] { load(folder.write("points.las", "LASF")); });
+  expect_error(ErrorKind::no_input, {"is a folder", "'adasplats model'"},
+               [&] { load(folder.path()); });
+  expect_error(ErrorKind::no_input, {"missing.las"}, [&] { load(folder.path() / "missing.las"); });
 }
 
 }  // namespace

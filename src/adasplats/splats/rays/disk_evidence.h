@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-struct EvidenceOptions {  // sources of the numbers: docs/fidelity.md
+struct EvidenceOptions {  // sources of the numbers: docs/research/consistent.md
   /// A ray ends at a disk if it crosses the disk within this distance of its end (range noise)...
   float range_margin_m = 0.04F;
   /// ...plus the distance that moves its end off the disk's plane by this height: grazing rays
@@ -124,7 +124,7 @@ ADASPLATS_HD inline bool is_supported(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
-struct SeedCheckOptions {       // sources of the numbers: docs/fidelity.md
+struct SeedCheckOptions {       // sources of the numbers: docs/research/consistent.md
   int core_rings = 2;           ///< rings that form the core of a disk
   std::uint32_t core_rays = 3;  ///< minimum rays that confirm the core...
   double core_share = 0.3;      ///< ...and minimum share of the rays through it, to retry the disk

@@ -12,13 +12,14 @@
 
 namespace adasplats {
 
-struct SettleOptions {      // sources of the numbers: docs/fidelity.md
+struct SettleOptions {      // sources of the numbers: docs/research/consistent.md
   double reach_m = 0.4;     ///< rays with a larger range error are ignored
   double scale_m = 0.08;    ///< scale of the Cauchy weights on range errors
   double prior_rays = 3;    ///< weight of the current position, in rays
   double min_cosine = 0.1;  ///< of incidence; limits the weight of grazing rays
   std::uint32_t min_rays = 4;
   double max_shift_m = 0.1;
+  bool strict_shift = false;  ///< no shift instead of the maximum
 };
 
 /// The part of a ray that is cast to settle disks. Surfaces farther before its end are irrelevant,
@@ -52,14 +53,24 @@ ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, flo
           static_cast<std::int64_t>(std::llround(weight * shift_m / ShiftSums::kUnit)), 1};
 }
 
+/// Distance along its normal from a disk to the surface that its rays show; needs rays.
+ADASPLATS_HD inline double shown_shift_m(const ShiftSums& sums, const SettleOptions& options) {
+  const double weight = ShiftSums::kUnit * static_cast<double>(sums.weight);
+  const double prior = options.prior_rays * weight / sums.rays;
+  return ShiftSums::kUnit * static_cast<double>(sums.shift) / (weight + prior);
+}
+
+/// Whether settled() moves a disk with enough rays by the maximum, which is not to the surface.
+ADASPLATS_HD inline bool is_limited(const ShiftSums& sums, const SettleOptions& options) {
+  return !options.strict_shift && std::fabs(shown_shift_m(sums, options)) > options.max_shift_m;
+}
+
 /// The disk moved along its normal to the surface that its rays show.
 ADASPLATS_HD inline Disk settled(Disk disk, const ShiftSums& sums, const SettleOptions& options) {
   if (sums.rays < options.min_rays) return disk;
-  const double weight = ShiftSums::kUnit * static_cast<double>(sums.weight);
-  const double prior = options.prior_rays * weight / sums.rays;
-  const double shift_m =
-      std::clamp(ShiftSums::kUnit * static_cast<double>(sums.shift) / (weight + prior),
-                 -options.max_shift_m, options.max_shift_m);
+  const double shown_m = shown_shift_m(sums, options);
+  const double shift_m = std::clamp(shown_m, -options.max_shift_m, options.max_shift_m);
+  if (options.strict_shift && shift_m != shown_m) return disk;
   disk.center = disk.center + static_cast<float>(shift_m) * disk.normal;
   return disk;
 }

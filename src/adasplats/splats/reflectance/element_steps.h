@@ -86,7 +86,7 @@ struct ObserveRay {
  private:
   ADASPLATS_HD Observation observation(float intensity, const Ray& ray, float range_m,
                                        Hit hit) const {
-    // Chosen well above the model's errors (median 3 cm, docs/fidelity.md): a ray that ends farther
+    // Chosen well above the model's errors (median 3 cm, docs/results.md): a ray that ends farther
     // away met another object.
     const float tolerance_m = 0.2F + 0.005F * range_m;
     if (!hit.valid() || !std::isfinite(intensity)) return {};

@@ -325,8 +325,7 @@ std::optional<std::string> objection_to_blocks(const HesaiPacket& packet,
 class HesaiParser final : public PacketParser {
  public:
   PacketTraits traits(const PacketSensor& sensor) const override {
-    if (sensor.format == PacketFormat::at_128)
-      return {.has_frames = true, .has_pauses = true, .has_cut = true};
+    if (sensor.format == PacketFormat::at_128) return {.has_frames = true, .has_pauses = true};
     return {.has_cut = cut_deg(sensor) != 0};
   }
   std::uint32_t steps_per_turn(const PacketSensor& sensor) const override {

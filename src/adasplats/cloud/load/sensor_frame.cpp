@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/sensor_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/cloud/load/nuscenes_drive.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/constants.h"
+#include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMinPoints = 10;
+constexpr double kMinShare = 0.9;
+
+constexpr std::array<std::string_view, 3> kRangeNames = {"range", "range_m", "ranges"};
+constexpr std::array<std::string_view, 6> kRingNames = {"ring",     "ring_id", "laser",
+                                                        "laser_id", "channel", "row"};
+
+/// A column by one of the names, in any case, with or without CloudCompare's prefix.
+const Column* column_of(const Table& table, std::span<const std::string_view> names) {
+  constexpr std::string_view kPrefix = "scalar_";
+  for (const Column& column : table.columns) {
+    std::string name = lower_case(column.name);
+    if (name.starts_with(kPrefix)) name.erase(0, kPrefix.size());
+    if (std::ranges::find(names, name) != names.end()) return &column;
+  }
+  return nullptr;
+}
+
+/// Whether ranges are the distances from the origin: within 0.1 m, since lasers are a little off
+/// the origin.
+bool are_distances(const Column& ranges, double unit_m, std::span<const Vec3d> positions) {
+  constexpr double kTolerance_m = 0.1, kMin_m = 0.5;
+  std::size_t points = 0, same = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double distance_m = length(positions[i]);
+    if (!std::isfinite(distance_m) || distance_m < kMin_m) continue;
+    ++points;
+    if (std::fabs(unit_m * ranges.as_double(i) - distance_m) <= kTolerance_m) ++same;
+  }
+  return points >= kMinPoints &&
+         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+}
+
+/// Whether the points of each ring have one elevation above the origin. Points near the sensor are
+/// skipped: lasers are a little off the origin.
+bool are_on_cones(const Column& rings, std::span<const Vec3d> positions) {
+  constexpr double kMin_m = 5, kTolerance_rad = 0.5 * kDegree, kMinSpread_rad = 4 * kDegree;
+  constexpr std::size_t kMinRings = 4, kMaxRings = 1024;
+  std::map<double, std::vector<double>> elevations;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d p = positions[i];
+    if (!is_finite(p) || length(p) < kMin_m) continue;
+    elevations[rings.as_double(i)].push_back(std::atan2(p.z, std::hypot(p.x, p.y)));
+    ++points;
+    if (elevations.size() > kMaxRings) return false;
+  }
+  if (elevations.size() < kMinRings || points < kMinPoints * elevations.size()) return false;
+  std::size_t same = 0;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (auto& [ring, all] : elevations) {
+    const double middle = upper_median_of(all);
+    least = std::min(least, middle);
+    most = std::max(most, middle);
+    same += static_cast<std::size_t>(std::ranges::count_if(
+        all, [&](double one) { return std::fabs(one - middle) <= kTolerance_rad; }));
+  }
+  return most - least >= kMinSpread_rad &&
+         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+}
+
+/// Whether the origin is in the box of the points and none is farther than LiDARs measure.
+bool are_around_origin(std::span<const Vec3d> positions) {
+  constexpr double kMaxRange_m = 500;
+  Vec3d low, high;
+  std::size_t points = 0;
+  for (const Vec3d p : positions) {
+    if (!is_finite(p)) continue;
+    if (length(p) > kMaxRange_m) return false;
+    low = points == 0 ? p : min(low, p);
+    high = points == 0 ? p : max(high, p);
+    ++points;
+  }
+  return points >= kMinPoints && low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
+}
+
+/// Whether a PCD states a pose of its sensor.
+bool has_viewpoint(const Table& table) {
+  return std::ranges::any_of(table.comments, [](const std::string& comment) {
+    constexpr std::string_view kKey = "VIEWPOINT ";
+    return comment.starts_with(kKey) && comment.substr(kKey.size()) != "0 0 0 1 0 0 0";
+  });
+}
+
+/// Whether `simulate` wrote the folder.
+bool is_simulated(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path manifest = folder / "adasplats.json";
+  if (!fs::exists(folder / "poses.csv", ignored) || !fs::is_regular_file(manifest, ignored))
+    return false;
+  try {
+    return read_file(manifest).find("\"command\": \"simulate\"") != std::string::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::optional<SensorFrame> sensor_frame_of(const fs::path& file, const Table& table,
+                                           std::span<const Vec3d> positions) {
+  SensorFrame frame;
+  const Column* const ranges = column_of(table, kRangeNames);
+  const Column* const rings = column_of(table, kRingNames);
+  if (ranges != nullptr &&
+      (are_distances(*ranges, 1, positions) || are_distances(*ranges, 1e-3, positions)))
+    frame.because = "its column '" + ranges->name + "' has the distances from the origin";
+  else if (rings != nullptr && are_on_cones(*rings, positions))
+    frame.because = "the points of each '" + rings->name + "' have one elevation above the origin";
+  else if (lower_case(file.extension().string()) == ".bin" && are_around_origin(positions))
+    frame.because = "a .bin file is a scan, and its points are around the origin";
+  else
+    return std::nullopt;
+  frame.has_pose = has_viewpoint(table);
+  return frame;
+}
+
+std::optional<fs::path> drive_with_scan(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(file, ignored).parent_path();
+  if (is_simulated(folder)) return file.parent_path();
+  if (lower_case(file.extension().string()) != ".bin") return std::nullopt;
+  const fs::path up = folder.parent_path();
+  const bool is_kitti = folder.filename() == "velodyne" && fs::exists(up / "poses.txt", ignored);
+  if (is_kitti || (folder.filename() == "data" && is_kitti_raw_drive(up.parent_path())) ||
+      is_nuscenes_root(up.parent_path()))
+    return is_kitti ? up : up.parent_path();
+  return std::nullopt;
+}
+
+std::string advice_for_scans(const fs::path& folder, const fs::path& poses) {
+  return "to use them as world points, apply the poses first: 'adasplats export " +
+         folder.string() + " --trajectory " + poses.string() + " -o points.ply'";
+}
+
+}  // namespace adasplats

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "adasplats/io/base/table.h"
+
+namespace adasplats {
+
+/// The meaning of a column of points, in any format with named columns.
+enum class PointColumn : std::uint8_t {
+  time,
+  intensity,
+  ring,  ///< number of the laser
+  classification,
+  instance,
+  scan_index,
+  return_number,
+  number_of_returns,
+  normal_x,
+  normal_y,
+  normal_z,
+};
+
+/// The column of that meaning, by the names that PDAL, CloudCompare, LAStools, PCL, ROS and
+/// Autoware give it; of several the one with the most common name. Case, blanks, `_`, `-`, `.` and
+/// CloudCompare's prefix `scalar_` are ignored: `GpsTime`, `gps_time` and `scalar_GPS Time` are the
+/// same. `t` is a time unless there is an `s` (texture coordinates). nullptr: none.
+const Column* find_column(const Table& table, PointColumn meaning);
+
+/// Seconds in the unit at the end of a name of times: 1e-9 for `timestamp_ns` and `time [ns]`; 1
+/// for names without a unit.
+double time_unit_of_name(std::string_view name);
+
+/// The known name that a name may be a misspelling of, if the name has no meaning itself.
+std::optional<std::string> likely_column_name(std::string_view name);
+
+}  // namespace adasplats
