@@ -121,10 +121,10 @@ Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& 
 /// Whether a file is small enough for one scan: half a million points of 64 bytes. Larger files
 /// are not read twice.
 bool can_be_scan(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 25;
+  constexpr std::uintmax_t kMaxBytesOfScan = std::uintmax_t{1} << 25;
   std::error_code problem;
   const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
-  return !problem && bytes <= kMaxBytes;
+  return !problem && bytes <= kMaxBytesOfScan;
 }
 
 /// The frame of a single file: by its columns, else as find_frame().

@@ -16,6 +16,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -23,20 +24,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMinPoints = 10;
-constexpr double kMinShare = 0.9;
+constexpr std::size_t kMinPointsInFrame = 10;
+constexpr double kMinShareInFrame = 0.9;
 
 constexpr std::array<std::string_view, 3> kRangeNames = {"range", "range_m", "ranges"};
-constexpr std::array<std::string_view, 6> kRingNames = {"ring",     "ring_id", "laser",
-                                                        "laser_id", "channel", "row"};
 
-/// A column by one of the names, in any case, with or without CloudCompare's prefix.
-const Column* column_of(const Table& table, std::span<const std::string_view> names) {
+/// A column of ranges, in any case, with or without CloudCompare's prefix.
+const Column* range_column(const Table& table) {
   constexpr std::string_view kPrefix = "scalar_";
   for (const Column& column : table.columns) {
     std::string name = lower_case(column.name);
     if (name.starts_with(kPrefix)) name.erase(0, kPrefix.size());
-    if (std::ranges::find(names, name) != names.end()) return &column;
+    if (std::ranges::find(kRangeNames, name) != kRangeNames.end()) return &column;
   }
   return nullptr;
 }
@@ -52,8 +51,8 @@ bool are_distances(const Column& ranges, double unit_m, std::span<const Vec3d> p
     ++points;
     if (std::fabs(unit_m * ranges.as_double(i) - distance_m) <= kTolerance_m) ++same;
   }
-  return points >= kMinPoints &&
-         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+  return points >= kMinPointsInFrame &&
+         static_cast<double>(same) >= kMinShareInFrame * static_cast<double>(points);
 }
 
 /// Whether the points of each ring have one elevation above the origin. Points near the sensor are
@@ -70,7 +69,7 @@ bool are_on_cones(const Column& rings, std::span<const Vec3d> positions) {
     ++points;
     if (elevations.size() > kMaxRings) return false;
   }
-  if (elevations.size() < kMinRings || points < kMinPoints * elevations.size()) return false;
+  if (elevations.size() < kMinRings || points < kMinPointsInFrame * elevations.size()) return false;
   std::size_t same = 0;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (auto& [ring, all] : elevations) {
@@ -81,7 +80,7 @@ bool are_on_cones(const Column& rings, std::span<const Vec3d> positions) {
         all, [&](double one) { return std::fabs(one - middle) <= kTolerance_rad; }));
   }
   return most - least >= kMinSpread_rad &&
-         static_cast<double>(same) >= kMinShare * static_cast<double>(points);
+         static_cast<double>(same) >= kMinShareInFrame * static_cast<double>(points);
 }
 
 /// Whether the origin is in the box of the points and none is farther than LiDARs measure.
@@ -96,7 +95,7 @@ bool are_around_origin(std::span<const Vec3d> positions) {
     high = points == 0 ? p : max(high, p);
     ++points;
   }
-  return points >= kMinPoints && low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
+  return points >= kMinPointsInFrame && low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
 }
 
 /// Whether a PCD states a pose of its sensor.
@@ -125,8 +124,8 @@ bool is_simulated(const fs::path& folder) {
 std::optional<SensorFrame> sensor_frame_of(const fs::path& file, const Table& table,
                                            std::span<const Vec3d> positions) {
   SensorFrame frame;
-  const Column* const ranges = column_of(table, kRangeNames);
-  const Column* const rings = column_of(table, kRingNames);
+  const Column* const ranges = range_column(table);
+  const Column* const rings = find_column(table, PointColumn::ring);
   if (ranges != nullptr &&
       (are_distances(*ranges, 1, positions) || are_distances(*ranges, 1e-3, positions)))
     frame.because = "its column '" + ranges->name + "' has the distances from the origin";

@@ -81,6 +81,25 @@ TEST(SqliteDatabase, PagesOfEveryKindAreRead) {
       }
 }
 
+// rosbag2 without a serialization format means CDR.
+TEST(SqliteDatabase, TopicsWithoutASerializationFormatAreCdr) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.db3";
+  write_bag(path, "PRAGMA page_size = 4096");
+  sqlite3* opened = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &opened), SQLITE_OK);
+  {
+    const std::unique_ptr<sqlite3, int (*)(sqlite3*)> database(opened, &sqlite3_close);
+    execute(opened, "UPDATE topics SET serialization_format = ''");
+  }
+  int messages = 0;
+  Recording(path).for_each_message([&](const RecordedMessage& message) {
+    ++messages;
+    EXPECT_EQ(message.topic.encoding, MessageEncoding::cdr);
+  });
+  EXPECT_GT(messages, 0);
+}
+
 /// Offset of the last page of a kind, given by its first byte, among those with messages.
 std::size_t page_of_kind(const std::string& bytes, std::size_t page_bytes, char kind) {
   std::size_t found = bytes.size();

@@ -60,8 +60,10 @@ class SqliteRecording final : public RecordingFile {
     require_tables();
     Query topics(database_, "SELECT id, name, type, serialization_format FROM topics");
     while (topics.next()) {
-      RecordedTopic topic{std::string(topics.bytes(1)), short_type_name(topics.bytes(2)),
-                          topics.bytes(3) == "cdr" ? MessageEncoding::cdr : MessageEncoding::other};
+      const auto format = topics.bytes(3);  // some writers leave it empty; CDR is rosbag2's default
+      RecordedTopic topic{
+          std::string(topics.bytes(1)), short_type_name(topics.bytes(2)),
+          format.empty() || format == "cdr" ? MessageEncoding::cdr : MessageEncoding::other};
       topics_.insert_or_assign(topics.number(0), std::move(topic));
     }
   }

@@ -265,6 +265,27 @@ nlohmann::ordered_json to_json(const OriginCheck& check) {
           {"far_rise", check.far_rise}};
 }
 
+namespace {
+
+void add_consistent(const ConsistentReport& report, std::size_t splats,
+                    nlohmann::ordered_json& json) {
+  json["scale"] = report.scale;
+  json["cell_m"] = report.cell_m;
+  json["sparse"] = report.sparse;
+  json["cells"] = report.cells;
+  json["seeds"] = report.seeds;
+  json["rays"] = report.rays;
+  json["empty_beams"] = report.empty_beams;
+  json["seeds_removed"] = report.seeds_removed;
+  if (report.origins) json["origin_check"] = to_json(*report.origins);
+  json["splats_filled"] = report.splats_filled;
+  json["splats_limited"] = report.splats_limited;
+  json["share_limited"] =
+      splats == 0 ? 0.0 : static_cast<double>(report.splats_limited) / static_cast<double>(splats);
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
@@ -289,21 +310,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_used"] = built.points_used;
   json["primitives"] = built.primitives;
   if (built.consistent) {
-    json["scale"] = built.consistent->scale;
-    json["cell_m"] = built.consistent->cell_m;
-    json["sparse"] = built.consistent->sparse;
-    json["cells"] = built.consistent->cells;
-    json["seeds"] = built.consistent->seeds;
-    json["rays"] = built.consistent->rays;
-    json["empty_beams"] = built.consistent->empty_beams;
-    json["seeds_removed"] = built.consistent->seeds_removed;
-    if (built.consistent->origins) json["origin_check"] = to_json(*built.consistent->origins);
-    json["splats_filled"] = built.consistent->splats_filled;
-    json["splats_limited"] = built.consistent->splats_limited;
-    json["share_limited"] = built.primitives == 0
-                                ? 0.0
-                                : static_cast<double>(built.consistent->splats_limited) /
-                                      static_cast<double>(built.primitives);
+    add_consistent(*built.consistent, built.primitives, json);
   } else {
     json["radius_m"] = built.radius_m;
     json["error_m"] = built.error_m;
