@@ -205,6 +205,8 @@ void add_packets(Seeds& seeds) {
   seeds.add("packet", {static_cast<char>(choice) + pandar64, static_cast<char>(choice + 1) + xt32});
   std::string at128("\xEE\xFF\1\5\x80\3\3\1\2\4\0\0\0\0\0\2", 16);
   at128.resize(47176);
+  for (std::size_t laser = 0; laser < 128; ++laser)  // elevations in steps of 0.02 degrees
+    at128[16 + 24 + 4 * (128 + laser) + 1] = static_cast<char>(laser);
   seeds.add("sensor-dat", {at128});
   const std::string whole = udp_text(2368, "0123456789abcdef0123");
   const std::vector<FrameSample> frames = {

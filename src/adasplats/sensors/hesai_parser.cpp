@@ -331,8 +331,11 @@ class HesaiParser final : public PacketParser {
   std::uint32_t steps_per_turn(const PacketSensor& sensor) const override {
     if (sensor.mirror() == nullptr) return kHesaiSteps;
     const MirrorAngles& mirror = *sensor.mirror();
-    return static_cast<std::uint32_t>(
-        std::max(1.0, kStepsPerDegree * (mirror.frame_ends[0] - mirror.frame_starts[0])));
+    double longest_deg = 0;
+    for (std::size_t frame = 0; frame < mirror.frame_starts.size(); ++frame)
+      longest_deg = std::max(
+          longest_deg, std::fmod(mirror.frame_ends[frame] - mirror.frame_starts[frame] + 720, 360));
+    return static_cast<std::uint32_t>(kStepsPerDegree * longest_deg) + 1;
   }
   bool has_size(const PacketSensor& /*sensor*/, std::string_view payload) const override {
     if (payload.size() < 2) return false;

@@ -3,36 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/sensors/hesai_packets_test.h"
 #include "adasplats/sensors/packet_decoder.h"
 
 namespace adasplats {
 namespace {
 
+using hesai_test::at128_angles;
+using hesai_test::mpeg_checksum;
+using hesai_test::put;
+
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kHeadSpeed_deg_s = 3600;  // 600 turns per minute
-
-template <class T>
-void put(std::string& packet, std::size_t at, T value) {
-  std::memcpy(packet.data() + at, &value, sizeof value);
-}
-
-/// Bit by bit, by the definition of CRC-32/MPEG-2.
-std::uint32_t mpeg_checksum(const std::string& bytes) {
-  std::uint32_t value = 0xFFFFFFFF;
-  for (const char byte : bytes) {
-    value ^= static_cast<std::uint32_t>(static_cast<std::uint8_t>(byte)) << 24U;
-    for (int bit = 0; bit < 8; ++bit)
-      value = (value << 1U) ^ ((value >> 31U) != 0 ? 0x04C11DB7U : 0U);
-  }
-  return value;
-}
 
 /// A packet as the manuals draw it. The tail has the speed of 600 turns per minute and 2024-03-05
 /// 06:07:08 and 250,000 us.
@@ -269,25 +257,8 @@ TEST_F(HesaiPackets, StatesOfAnOt128) {
   EXPECT_NEAR(coarse[1][2], 21.011, 1e-9);
 }
 
-/// Three mirrors with frames of 60 degrees; corrections of laser 7: 0.1 degrees of azimuth at 44
-/// degrees of the encoder, -0.04 of elevation at 46.
-std::string made_dat() {
-  std::string file("\xEE\xFF\1\5\x80\3\3\1\2\4\0\0\0\0\0\2", 16);
-  const auto add = [&](std::int32_t value) {
-    file.append(reinterpret_cast<const char*>(&value), 4);
-  };
-  for (const int start : {20, 140, 260}) add(start * 12800);
-  for (const int end : {80, 200, 320}) add(end * 12800);
-  for (int laser = 0; laser < 128; ++laser) add(-1280 * (laser % 3));
-  for (int laser = 0; laser < 128; ++laser) add(12800 * 12 - 2560 * laser);
-  std::string azimuths(128 * 180, '\0'), elevations(128 * 180, '\0');
-  azimuths[7 * 180 + 22] = 5;
-  elevations[7 * 180 + 23] = -2;
-  return file + azimuths + elevations + std::string(32, 'h');
-}
-
 TEST_F(HesaiPackets, MirrorsOfAnAt128) {
-  const LidarModel model = load_lidar_model(folder_.write("my.dat", made_dat()).string());
+  const LidarModel model = load_lidar_model(folder_.write("my.dat", at128_angles()).string());
   EXPECT_EQ(model.free_pattern.size(), 128U * 1201);
   const PacketDecoder at(packet_sensor(model));
   MadePacket made{std::string("\xEE\xFF\4\3\0\0\x80\2\0\4\1\1", 12),
@@ -321,6 +292,7 @@ TEST_F(HesaiPackets, MirrorsOfAnAt128) {
   EXPECT_TRUE(columns[0].is_valid);
   EXPECT_FALSE(columns[1].is_valid);
   EXPECT_EQ(columns[0].frame, 0U);
+  EXPECT_LT(columns[0].step, at.steps_per_turn());
   EXPECT_EQ(columns[1].time_ns, kMade_ns - 50'915);
   EXPECT_EQ(columns[0].time_ns, kMade_ns - 50'915 - 41'666);
   PacketPoints points;
@@ -347,14 +319,17 @@ TEST_F(HesaiPackets, WrongAngleFilesOfAnAt128AreRejected) {
     expect_error(ErrorKind::data, {"my.dat", says},
                  [&] { load_lidar_model(folder_.write("my.dat", file).string()); });
   };
-  std::string file = made_dat();
+  std::string file = at128_angles();
   reject(file.substr(0, 40'000), "40000 bytes, expected " + std::to_string(file.size()));
   reject("\xEE\xFF", "does not begin with EE FF");
   file[3] = 3;
   reject(file, "version 1.3");
-  file = made_dat();
+  file = at128_angles();
   file[4] = 64;
   reject(file, "64 lasers, expected 128");
+  file = at128_angles();
+  file.replace(16 + 24 + 4 * 128, 4 * 128, 4 * 128, '\0');
+  reject(file, "all 128 beams have the elevation 0");
 }
 
 TEST_F(HesaiPackets, OtherPacketsAreRejected) {

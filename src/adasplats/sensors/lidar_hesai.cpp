@@ -235,7 +235,7 @@ LidarFile base_of_model(PacketFormat format) {
   return file;
 }
 
-LidarFile base_of(std::optional<PacketFormat> format, std::size_t channels) {
+LidarFile base_of_hesai(std::optional<PacketFormat> format, std::size_t channels) {
   if (format == PacketFormat::xt_32) return *read_library_lidar("hesai-pandarxt-32");
   if (format == PacketFormat::pandar_64) return *read_library_lidar("hesai-pandar64");
   // Also of a Pandar128E3X, whose packets are not supported.
@@ -263,7 +263,7 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
   auto times = firing_time_file(path);
   // A QT128's file has two sequences; they are the same for all units.
   if (times && is_hesai_start(read_file(*times))) times.reset();
-  LidarFile file = base_of(format, channels.size());
+  LidarFile file = base_of_hesai(format, channels.size());
   LidarFile base = file;
   file.clear_pattern();
   LidarModel& model = file.model;

@@ -81,6 +81,15 @@ MirrorAngles read_mirror(std::string_view text, const std::filesystem::path& pat
   return angles;
 }
 
+void check_beams_of_mirror(const MirrorAngles& mirror, const LidarModel& model,
+                           const std::filesystem::path& path) {
+  LidarModel beams = model;
+  for (const double azimuth : mirror.azimuths)
+    beams.azimuth_offsets_rad.push_back(-radians(azimuth));
+  for (const auto& fault : {angle_fault(beams), degrees_fault(beams)})
+    if (fault) throw data_error({path, {}, {}}, *fault);
+}
+
 /// The firings of one frame: a column every 41.666 us, 0.05 degrees of a mirror that turns 200
 /// times a minute.
 void add_frame(const MirrorAngles& mirror, LidarModel& model) {
@@ -143,6 +152,7 @@ LidarFile read_hesai_dat(std::string_view text, const std::filesystem::path& pat
     model.elevations_rad.push_back(radians(mirror->elevations[laser]));
     packets.laser_ids.push_back(static_cast<std::uint32_t>(laser));
   }
+  check_beams_of_mirror(*mirror, model, path);
   add_frame(*mirror, model);
   packets.mirror = std::move(mirror);
   return file;

@@ -15,6 +15,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/packets/capture_writer.h"
+#include "adasplats/sensors/hesai_packets_test.h"
 #include "adasplats/sensors/packet_encoder.h"
 
 namespace adasplats {
@@ -302,21 +303,7 @@ std::filesystem::path write_xt32(const TemporaryFolder& folder, bool with_pandar
   CaptureWriter writer(path);
   const UdpEndpoint from{{}, {10, 0, 0, kSender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
   for (unsigned k = 0; k < 500; ++k) {
-    std::string packet("\xEE\xFF\6\1\0\0\x20\x8\0\4\1\0", 12);
-    packet.resize(12 + 8 * 130 + 24);
-    const auto put = [&](std::size_t at, auto value) {
-      std::memcpy(packet.data() + at, &value, sizeof value);
-    };
-    for (unsigned block = 0; block < 8; ++block) {
-      put(12 + 130 * block, static_cast<std::uint16_t>((9000 + 18 * (8 * k + block)) % 36000));
-      for (unsigned laser = 0; laser < 32; ++laser)
-        put(12 + 130 * block + 2 + 4 * laser, std::uint16_t{2500});
-    }
-    packet[1052 + 10] = 0x37;
-    put(1052 + 11, std::uint16_t{600});
-    packet.replace(1052 + 13, 6, "\x7B\x0B\x0E\x16\x0D\x14");
-    put(1052 + 19, std::uint32_t{400 * k});
-    writer.add(1'700'000'000'000'000 + 400 * k, from, to, packet);
+    writer.add(1'700'000'000'000'000 + 400 * k, from, to, hesai_test::xt32_packet(k));
     if (with_pandar64)
       writer.add(1'700'000'000'000'000 + 400 * k, from, to,
                  std::string("\xEE\xFF\x40\6\0\4\0\0", 8) + std::string(1186, '\0'));
@@ -344,6 +331,44 @@ TEST(PacketDrive, RevolutionsOfAHesai) {
       EXPECT_EQ(source.revolutions[k].begin_ns,
                 1'700'000'000'000'000'000 + static_cast<std::int64_t>(k) * 100'000'000 - 344'000);
     }
+  }
+}
+
+// An AT128 measures during half of the time: frames of 60 degrees of its mirror, then pauses, here
+// less than half a period, so that they are not gaps in the capture.
+TEST(PacketDrive, FramesOfAnAt128) {
+  const TemporaryFolder folder;
+  const auto decoder = decoder_named(folder.write("my.dat", hesai_test::at128_angles()).string());
+  const std::filesystem::path path = folder.path() / "hesai.pcap";
+  CaptureWriter writer(path);
+  const UdpEndpoint from{{}, {10, 0, 0, kSender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+  constexpr unsigned kFrames = 4, kPackets = 600, kInPause = 3, kPeriod_us = 95'000;
+  for (unsigned frame = 0; frame < kFrames; ++frame)
+    for (unsigned k = 0; k < kPackets + kInPause; ++k) {
+      const unsigned column = 400 + 2400 * (frame % 3) + 2 * k + (k < kPackets ? 0 : 2);
+      const auto late_us = kPeriod_us * frame + static_cast<unsigned>(std::lround(2 * 41.666 * k));
+      writer.add(1'700'000'000'000'000 + late_us, from, to,
+                 hesai_test::at128_packet(column, late_us));
+    }
+  writer.finish();
+  ProgressSink quiet;
+  const PacketSurvey survey = survey_packets(path, decoder, quiet);
+  ASSERT_EQ(survey.sources.size(), 1U);
+  const PacketSource& source = survey.sources.begin()->second;
+  EXPECT_EQ(source.objection, "");
+  EXPECT_EQ(source.contradiction, "");
+  EXPECT_EQ(source.odd_turns, 0U);
+  EXPECT_EQ(source.gaps, 0U);
+  ASSERT_EQ(source.revolutions.size(), kFrames);
+  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+    const Revolution& turn = source.revolutions[frame];
+    EXPECT_EQ(turn.columns, 2 * kPackets) << frame;
+    EXPECT_NEAR(turn.share, 1, 2e-3) << frame;
+    EXPECT_TRUE(turn.has_points) << frame;
+    // The second column begins 50.915 us before the packet's time.
+    EXPECT_EQ(turn.begin_ns, 1'700'000'000'000'000'000 +
+                                 static_cast<std::int64_t>(frame) * 1000 * kPeriod_us - 50'915 -
+                                 41'666);
   }
 }
 
