@@ -48,7 +48,8 @@ constexpr FuzzTarget kTargets[] = {
      &survey_clouds, 4 * kKiB, kZstdWindow_mb},
     {"pcap", "a.pcap", "io/packets", &read_capture},
     {"packet", "",
-     "sensors/packet_decoder.cpp sensors/ouster_parser.cpp sensors/velodyne_parser.cpp",
+     "sensors/packet_decoder.cpp sensors/ouster_parser.cpp sensors/velodyne_parser.cpp "
+     "sensors/hesai_parser.cpp",
      &read_packet, 26 * kKiB},
     {"capture", "a.pcap", "cloud/load/packet_drive.cpp cloud/load/packet_file.cpp", &survey_capture,
      8 * kKiB},
@@ -95,6 +96,7 @@ constexpr FuzzTarget kTargets[] = {
     {"sensor-xml", "a.xml", "sensors/lidar_velodyne.cpp", &read_lidar_file},
     {"sensor-csv", "a_angle.csv a_firetime.csv", "sensors/lidar_csv.cpp sensors/lidar_hesai.cpp",
      &read_lidar_file},
+    {"sensor-dat", "a.dat", "sensors/lidar_hesai_mirror.cpp", &read_lidar_file, 48 * kKiB},
     {"ray-drop", "a.toml", "sensors/ray_drop_model.cpp", &read_ray_drop},
     {"labels", "a.toml", "cloud/labels/label_scheme_file.cpp", &read_labels},
     {"class-map", "a.txt", "jobs/segment/output_classes.cpp", &read_classes_of_network},

@@ -196,6 +196,18 @@ void add_packets(Seeds& seeds) {
                            "velodyne-vls-128", "ouster-os1-64", "ouster-os1-128"})
     seeds.add("packet",
               {std::string(1, static_cast<char>(choice++)) + packet_of(name).substr(0, kMost)});
+  // Heads of Hesai's packets; the tails, of zeros but for the return mode, are added below.
+  std::string pandar64("\xEE\xFF\x40\x06\0\x04", 6), xt32("\xEE\xFF\6\1\0\0\x20\x8\1\4\1\0", 12);
+  pandar64.resize(1194);
+  pandar64[1186] = 0x37;
+  xt32.resize(1076);
+  xt32[1062] = 0x39;
+  seeds.add("packet", {static_cast<char>(choice) + pandar64, static_cast<char>(choice + 1) + xt32});
+  std::string at128("\xEE\xFF\1\5\x80\3\3\1\2\4\0\0\0\0\0\2", 16);
+  at128.resize(47176);
+  for (std::size_t laser = 0; laser < 128; ++laser)  // elevations in steps of 0.02 degrees
+    at128[16 + 24 + 4 * (128 + laser) + 1] = static_cast<char>(laser);
+  seeds.add("sensor-dat", {at128});
   const std::string whole = udp_text(2368, "0123456789abcdef0123");
   const std::vector<FrameSample> frames = {
       {1'000'000'000, ip_frame(udp_text(2368, "one"), 1, 0)},

@@ -139,10 +139,15 @@ void read_capture(const Input& input) {
 }
 
 void read_packet(const Input& input) {
-  static const std::array kDecoders = {
-      decoder_named("velodyne-vlp-16"),        decoder_named("velodyne-hdl-32e"),
-      decoder_named("velodyne-hdl-64e-kitti"), decoder_named("velodyne-vls-128"),
-      decoder_named("ouster-os1-64"),          decoder_named("ouster-os1-128")};
+  static const std::array kDecoders = {decoder_named("velodyne-vlp-16"),
+                                       decoder_named("velodyne-hdl-32e"),
+                                       decoder_named("velodyne-hdl-64e-kitti"),
+                                       decoder_named("velodyne-vls-128"),
+                                       decoder_named("ouster-os1-64"),
+                                       decoder_named("ouster-os1-128"),
+                                       decoder_named("hesai-pandar64"),
+                                       decoder_named("hesai-pandarxt-32"),
+                                       decoder_named("hesai-ot128")};
   const auto [choice, bytes] = chosen(input.bytes);
   const PacketDecoder& decoder = *kDecoders[choice % kDecoders.size()];
   // Any payload that is too short is padded: the reader takes those of the right size alone.

@@ -167,6 +167,7 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
   const auto reject = [&](const std::string& why) {
     throw Error(ErrorKind::usage, "cannot write packets of sensor '" + model.name + "': " + why);
   };
+  if (is_hesai(sensor.format)) reject("Hesai's packets are only read");
   if (sensor.format > PacketFormat::ouster_legacy)
     reject("only the packet profile LEGACY can be written");
   if (options.returns > 1) reject("they hold one return per firing; use --returns 1");

@@ -291,7 +291,8 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
     if (first) {
       first = false;
       const std::string word = lower_case(fields_of(*line, ',').front());
-      if (word == "channel" || word.starts_with("laser") || word == "operational state")
+      if (word == "channel" || word.starts_with("laser") || word == "operational state" ||
+          word == "eeff")
         return read_hesai_csv(text, path);
       if (const auto header = read_header(*line, lines.place())) {
         columns = *header;

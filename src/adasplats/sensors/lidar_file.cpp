@@ -85,13 +85,14 @@ void check_size(const LidarFile& file) {
                                        std::to_string(max_rays));
 }
 
-enum class Format : std::uint8_t { toml, json, yaml, xml, csv };
+enum class Format : std::uint8_t { toml, json, yaml, xml, csv, dat };
 
 /// From the extension, else from the content.
 Format format_of(const fs::path& path, std::string_view text) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  if (extension == ".dat" || text.starts_with("\xEE\xFF")) return Format::dat;
   if (extension == ".toml") return Format::toml;
   if (extension == ".json") return Format::json;
   if (extension == ".yaml" || extension == ".yml") return Format::yaml;
@@ -112,7 +113,7 @@ LidarModel library_model(std::string_view name) {
 bool has_known_extension(const fs::path& path) {
   const std::string extension = path.extension().string();
   return extension == ".toml" || extension == ".json" || extension == ".yaml" ||
-         extension == ".yml" || extension == ".xml" || extension == ".csv";
+         extension == ".yml" || extension == ".xml" || extension == ".csv" || extension == ".dat";
 }
 
 }  // namespace
@@ -215,13 +216,14 @@ LidarFile read_lidar(const std::string& name_or_path, int nesting) {
         ErrorKind::usage,
         unknown_lidar_model(name_or_path,
                             " or a file: .toml, .json (Ouster), .yaml or .xml (Velodyne), .csv "
-                            "(rays, or Hesai's angles)"));
+                            "(rays, or Hesai's angles), .dat (Hesai AT128)"));
   const std::string text = read_file(path);
   switch (format_of(path, text)) {
     case Format::toml: return read_lidar_toml(text, path, nesting);
     case Format::json: return read_ouster_json(text, path);
     case Format::yaml: return read_velodyne_yaml(text, path);
     case Format::xml: return read_velodyne_xml(text, path);
+    case Format::dat: return read_hesai_dat(text, path);
     case Format::csv: break;
   }
   return read_lidar_csv(text, path);

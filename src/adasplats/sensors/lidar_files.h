@@ -49,6 +49,8 @@ LidarFile read_lidar_toml(std::string_view text, const std::filesystem::path& pa
 /// Rays, or Hesai's angle table, depending on the first line.
 LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& path);
 LidarFile read_hesai_csv(std::string_view text, const std::filesystem::path& path);
+/// The binary angle correction of an AT128.
+LidarFile read_hesai_dat(std::string_view text, const std::filesystem::path& path);
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path);
 /// "LEGACY, RNG15_RFL8_NIR8, ...": the supported profiles of an Ouster's packets.
 std::string ouster_profiles();

@@ -3,7 +3,9 @@
 
 // The correction files of Hesai sensors: a CSV of angles (Channel, Elevation, Azimuth) and, in the
 // same folder, a CSV of firing times with "firetime" instead of "angle" in its name: (Channel, fire
-// time(us)), or one column per azimuth state, "-" if a channel does not fire.
+// time(us)), or one column per azimuth state, "-" if a channel does not fire. A table of angles may
+// begin with a line "EEFF,..." and end with a SHA-256, which is not checked: editors change line
+// ends.
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include <string>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/sensors/hesai_models.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
 
@@ -70,10 +73,12 @@ bool is_digest(const std::vector<std::string_view>& fields) {
   return fields.size() == 1 && fields[0].size() == kDigits &&
          fields[0].find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
 }
+bool is_hesai_start(std::string_view line) { return lower_case(line).starts_with("eeff"); }
 
 std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
   FilledLines lines(text, path);
-  const std::string_view header = lines.next().value_or("");
+  std::string_view header = lines.next().value_or("");
+  if (is_hesai_start(header)) header = lines.next().value_or("");
   if (lower_case(header).starts_with("operational"))
     throw data_error(lines.place(), "a table of firing times: expected the table of angles");
   const AngleColumns columns = angle_columns(header, lines.place());
@@ -196,22 +201,69 @@ void add_firing_times(const fs::path& path, const std::vector<Channel>& channels
   model.first_azimuth_rad = -1e-6 * first_us * model.rotation_hz * 2 * std::numbers::pi;
 }
 
-/// The library's sensor with as many channels; Hesai also lists them from top to bottom.
-LidarFile base_of(std::size_t channels) {
-  switch (channels) {
-    case 32: return *read_library_lidar("hesai-pandarxt-32");
-    case 64: return *read_library_lidar("hesai-pandar64");
-    case 128: return *read_library_lidar("hesai-ot128");
-    default: return default_rotating_lidar();
+/// A model without a library sensor: its columns, ranges and firing times.
+LidarFile base_of_model(PacketFormat format) {
+  LidarFile file = default_rotating_lidar();
+  LidarModel& model = file.model;
+  constexpr double kCount_m = 0.004;
+  model.range_resolution_m = kCount_m;
+  model.max_returns = 2;
+  model.firing_times_s = hesai_firing_times_s(format);
+  switch (format) {
+    case PacketFormat::pandar_40p: model.max_range_m = 200; break;
+    case PacketFormat::pandar_qt:
+      model.columns = 600;
+      model.max_range_m = 60;
+      break;
+    case PacketFormat::xt_16: model.columns = 2000; break;
+    case PacketFormat::xt_32m:
+      model.columns = 2000;
+      model.max_range_m = 300;
+      break;
+    case PacketFormat::qt_128:
+      model.columns = 900;
+      model.max_range_m = 50;
+      for (std::size_t laser = 0; laser < 128; ++laser) {
+        const double first_s = late_s_of_qt128(0, laser), second_s = late_s_of_qt128(1, laser);
+        model.firing_times_s.push_back(first_s > 0 ? first_s : second_s);
+        file.column_steps.push_back(first_s > 0 && second_s > 0 ? 1 : 2);
+        file.column_phases.push_back(first_s > 0 ? 0 : 1);
+      }
+      break;
+    default: break;
   }
+  return file;
+}
+
+LidarFile base_of_hesai(std::optional<PacketFormat> format, std::size_t channels) {
+  if (format == PacketFormat::xt_32) return *read_library_lidar("hesai-pandarxt-32");
+  if (format == PacketFormat::pandar_64) return *read_library_lidar("hesai-pandar64");
+  // Also of a Pandar128E3X, whose packets are not supported.
+  if (format == PacketFormat::ot_128 || (!format && channels == 128))
+    return *read_library_lidar("hesai-ot128");
+  return format ? base_of_model(*format) : default_rotating_lidar();
+}
+
+std::optional<PacketFormat> model_of(const std::vector<Channel>& sorted) {
+  std::vector<double> elevations_deg, azimuths_deg;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (sorted[i].number != static_cast<int>(i + 1)) return std::nullopt;
+    elevations_deg.push_back(sorted[i].elevation_deg);
+    azimuths_deg.push_back(sorted[i].azimuth_deg);
+  }
+  return hesai_model_of(elevations_deg, azimuths_deg);
 }
 
 }  // namespace
 
 LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
-  const std::vector<Channel> channels = read_angles(text, path);
-  const auto times = firing_time_file(path);
-  LidarFile file = base_of(channels.size());
+  std::vector<Channel> channels = read_angles(text, path);
+  std::ranges::stable_sort(channels, {}, &Channel::number);
+  const std::optional<PacketFormat> format = model_of(channels);
+  auto times = firing_time_file(path);
+  // A QT128's file has two sequences; they are the same for all units.
+  if (times && is_hesai_start(read_file(*times))) times.reset();
+  LidarFile file = base_of_hesai(format, channels.size());
   LidarFile base = file;
   file.clear_pattern();
   LidarModel& model = file.model;
@@ -225,9 +277,14 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
   }
   for (const auto& fault : {angle_fault(model), degrees_fault(model)})
     if (fault) throw data_error({path, {}, {}}, *fault);
+  if (format) {
+    model.packets.emplace().format = *format;
+    for (const Channel& channel : channels)
+      model.packets->laser_ids.push_back(static_cast<std::uint32_t>(channel.number - 1));
+  }
   if (times) {
     add_firing_times(*times, channels, file);
-  } else if (base.has_beams() && std::ranges::is_sorted(channels, {}, &Channel::number)) {
+  } else if (base.model.firing_times_s.size() == channels.size()) {
     model.firing_times_s = std::move(base.model.firing_times_s);
     file.column_steps = std::move(base.column_steps);
     file.column_phases = std::move(base.column_phases);

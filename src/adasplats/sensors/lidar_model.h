@@ -140,7 +140,7 @@ LidarModel hdl_32_paper();
 /// - TOML: beams or a rosette, or `like` another sensor;
 /// - JSON: the metadata that an Ouster sensor writes;
 /// - YAML or XML: a Velodyne calibration; CSV: Hesai's angles, with firing times from the file next
-///   to them; the library's sensor with as many beams supplies the rest;
+///   to them; the model with such beams supplies the rest; DAT: Hesai's angles of an AT128;
 /// - CSV of rays: azimuth_deg, elevation_deg[, time_s[, ring]]; or Livox's tables, 10 scans a
 ///   second: Time/s, Azimuth/deg, Zenith/deg.
 /// Beams are sorted, topmost first; beams that skip columns become a free pattern.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -206,6 +207,11 @@ void read_packets(const TomlTable& table, std::size_t beams, LidarModel& model) 
       throw table.error("packets", "have an " + unknown_word("format", word, words));
     if (!model.packets) model.packets.emplace();
     model.packets->format = value_of(word, kPacketFormats);
+    // Hesai's channels, in the order of its angle correction files.
+    if (is_hesai(model.packets->format)) {
+      model.packets->laser_ids.resize(beams);
+      std::iota(model.packets->laser_ids.begin(), model.packets->laser_ids.end(), 0U);
+    }
   }
   if (!table.has("laser_ids")) return;
   if (!model.packets)

@@ -11,6 +11,7 @@ namespace adasplats {
 namespace {
 
 const PacketParser& parser_of(PacketFormat format) {
+  if (is_hesai(format)) return hesai_parser();
   return is_ouster(format) ? ouster_parser() : velodyne_parser();
 }
 
@@ -18,10 +19,21 @@ const PacketParser& parser_of(PacketFormat format) {
 
 void add_return(LaserReturns& returns, PacketReturn found) {
   if (found.counts == 0) return;
-  if (returns.count == 1 && returns.all[0].counts == found.counts) return;
-  returns.all[returns.count++] = found;
-  if (returns.count == 2 && returns.all[1].counts < returns.all[0].counts)
-    std::swap(returns.all[0], returns.all[1]);
+  for (std::size_t i = 0; i < returns.count; ++i)
+    if (returns.all[i].counts == found.counts) return;
+  std::size_t at = returns.count++;
+  for (; at > 0 && found.counts < returns.all[at - 1].counts; --at)
+    returns.all[at] = returns.all[at - 1];
+  returns.all[at] = found;
+}
+
+LaserShot PacketParser::shot_at(const PacketSensor& sensor, std::string_view /*payload*/,
+                                std::size_t /*k*/, const MeasuredColumn& column,
+                                std::size_t laser) const {
+  const LidarModel& model = sensor.model;
+  const std::size_t ring = sensor.ring_of_laser[laser];
+  const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
+  return {firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s), late_s};
 }
 
 PacketDecoder::PacketDecoder(PacketSensor sensor)
@@ -61,14 +73,12 @@ bool PacketDecoder::has_returns(std::string_view payload, std::size_t k) const {
 
 void PacketDecoder::add_points(std::string_view payload, std::size_t k,
                                const MeasuredColumn& column, PacketPoints& points) const {
-  const LidarModel& model = sensor_.model;
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser) {
     const std::size_t ring = sensor_.ring_of_laser[laser];
     if (ring == kNoRing) continue;
     const LaserReturns returns = parser_->returns_at(sensor_, payload, k, laser);
     if (returns.count == 0) continue;
-    const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
-    const Firing firing = firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s);
+    const auto [firing, late_s] = parser_->shot_at(sensor_, payload, k, column, laser);
     for (std::size_t number = 0; number < returns.count; ++number) {
       const PacketReturn& found = returns.all[number];
       const double range_m = found.counts * sensor_.facts.quantum_m + sensor_.range_offsets_m[ring];

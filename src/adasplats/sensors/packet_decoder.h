@@ -20,22 +20,24 @@ struct MeasuredColumn {
   std::int64_t time_ns =
       0;                ///< by the sensor's clock, or since the full hour (PacketTraits::is_hourly)
   double head_rad = 0;  ///< counter-clockwise from +x, when the first laser fires
-  double turn_rad_s = 0;    ///< angular velocity of the head, counter-clockwise
-  std::uint32_t step = 0;   ///< of steps_per_turn() since the start of the revolution
-  std::uint32_t frame = 0;  ///< with PacketTraits::has_frames
-  bool is_valid = true;     ///< the column was measured
+  double turn_rad_s = 0;      ///< angular velocity of the head, counter-clockwise
+  std::uint32_t step = 0;     ///< of steps_per_turn() since the start of the revolution
+  std::uint32_t frame = 0;    ///< with PacketTraits::has_frames
+  bool is_valid = true;       ///< the column was measured
+  std::int64_t lasts_ns = 0;  ///< until the next column; 0: column_s() of the decoder
 };
 
 /// Properties of a sensor's columns that depend on the manufacturer.
 struct PacketTraits {
   bool is_hourly = false;   ///< times count from the full hour
-  bool has_frames = false;  ///< columns have the number of their revolution
+  bool has_frames = false;  ///< columns have the number of their revolution or frame
+  bool has_pauses = false;  ///< nothing is measured between frames
   bool has_cut = false;     ///< revolutions begin at step 0, else anywhere
 };
 
-/// The returns of one laser in one column, the nearest first: none, one or two.
+/// The returns of one laser in one column, the nearest first: up to three.
 struct LaserReturns {
-  std::array<PacketReturn, 2> all;
+  std::array<PacketReturn, 3> all;
   std::size_t count = 0;
 };
 
@@ -51,8 +53,8 @@ struct PacketPoints {
 
 class PacketParser;
 
-/// Decodes the packets of one sensor, in any PacketFormat, with one return per firing or two (the
-/// last and the strongest; one point if they are equal).
+/// Decodes the packets of one sensor, in any PacketFormat, with one return per firing or several
+/// (one point if they are equal).
 class PacketDecoder {
  public:
   explicit PacketDecoder(PacketSensor sensor);
@@ -62,7 +64,7 @@ class PacketDecoder {
   double column_s() const { return sensor_.column_s(); }
   const PacketTraits& traits() const { return traits_; }
 
-  /// Whether a payload has the size of the sensor's packets.
+  /// Whether a payload has the size of the sensor's packets (Hesai: begins like them).
   bool has_size(std::string_view payload) const;
   /// Why a payload of that size cannot be a packet of the sensor ("have an azimuth of ..."). The
   /// other functions require a payload without objection.
@@ -74,7 +76,7 @@ class PacketDecoder {
   bool accepts(std::string_view payload) const {
     return has_size(payload) && !objection(payload) && !contradiction(payload);
   }
-  /// Whether a packet has two returns per firing.
+  /// Whether a packet has more than one return per firing.
   bool is_dual(std::string_view payload) const;
   /// The columns of a packet. A packet of a VLS-128 with two returns has only one; its head is
   /// assumed to rotate at the model's rate.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,6 +25,15 @@ enum class PacketFormat : std::uint8_t {
   ouster_low,     ///< Ouster, profile RNG15_RFL8_NIR8: 4 bytes per channel, in steps of 8 mm; read
                   ///< only
   ouster_low_dual,  ///< Ouster, profile RNG15_RFL8_NIR8_DUAL: 8 bytes per channel; read only
+  pandar_40p,       ///< Hesai, from here on: hesai_parser.cpp; read only
+  pandar_64,
+  pandar_qt,  ///< PandarQT, 64 channels
+  xt_16,
+  xt_32,
+  xt_32m,  ///< XT32M2X
+  qt_128,  ///< QT128C2X
+  ot_128,
+  at_128,  ///< AT128: angles depend on the mirror's azimuth (MirrorAngles)
 };
 inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vlp-16", PacketFormat::vlp_16},
@@ -35,11 +45,38 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single},
     {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual},
     {"ouster-rng15-rfl8-nir8", PacketFormat::ouster_low},
-    {"ouster-rng15-rfl8-nir8-dual", PacketFormat::ouster_low_dual}};
+    {"ouster-rng15-rfl8-nir8-dual", PacketFormat::ouster_low_dual},
+    {"pandar40p", PacketFormat::pandar_40p},
+    {"pandar64", PacketFormat::pandar_64},
+    {"pandarqt", PacketFormat::pandar_qt},
+    {"xt16", PacketFormat::xt_16},
+    {"xt32", PacketFormat::xt_32},
+    {"xt32m", PacketFormat::xt_32m},
+    {"qt128", PacketFormat::qt_128},
+    {"ot128", PacketFormat::ot_128},
+    {"at128", PacketFormat::at_128}};
 
 constexpr bool is_ouster(PacketFormat format) {
   return format >= PacketFormat::ouster_legacy && format <= PacketFormat::ouster_low_dual;
 }
+constexpr bool is_hesai(PacketFormat format) { return format >= PacketFormat::pandar_40p; }
+
+/// Angles of a sensor with a rotating mirror (Hesai AT128), degrees. While the encoder is between
+/// frame_starts[f] and frame_ends[f], facet f deflects the beams (manual, "Angle Correction").
+struct MirrorAngles {
+  std::vector<double> frame_starts, frame_ends;
+  std::vector<double> azimuths, elevations;  ///< one a laser
+  /// Corrections every 2 degrees of the encoder, 180 a laser.
+  std::vector<float> azimuth_adjustments, elevation_adjustments;
+
+  struct Angles {
+    double azimuth = 0;  ///< clockwise from the sensor's +y
+    double elevation = 0;
+  };
+  Angles at(std::size_t laser, std::size_t frame, double encoder) const;
+  /// The frame that contains an encoder angle; the number of frames if none does.
+  std::size_t frame_of(double encoder) const;
+};
 
 /// Positions of a sensor's beams in its packets.
 struct PacketLayout {
@@ -56,6 +93,7 @@ struct PacketLayout {
   std::size_t columns = 0;       ///< per packet; 0: as usual for the format
   bool has_safety_head = false;  ///< header type FUSA: frames are numbered with 32 bits
   std::uint64_t serial = 0;      ///< of the device, in every packet but LEGACY; 0: not given
+  std::shared_ptr<const MirrorAngles> mirror;  ///< at_128 only
 };
 
 }  // namespace adasplats

@@ -37,6 +37,12 @@ inline std::string hexadecimal(unsigned value) {
   return text.data();
 }
 
+/// The ray of one laser in one column.
+struct LaserShot {
+  Firing firing;
+  double late_s = 0;  ///< since the start of the column
+};
+
 /// The functions are documented in PacketDecoder.
 class PacketParser {
  public:
@@ -56,6 +62,9 @@ class PacketParser {
                                               std::string_view payload) const = 0;
   virtual LaserReturns returns_at(const PacketSensor& sensor, std::string_view payload,
                                   std::size_t k, std::size_t laser) const = 0;
+  /// By the model's beams and firing times.
+  virtual LaserShot shot_at(const PacketSensor& sensor, std::string_view payload, std::size_t k,
+                            const MeasuredColumn& column, std::size_t laser) const;
 
  protected:
   ~PacketParser() = default;
@@ -67,5 +76,9 @@ void add_return(LaserReturns& returns, PacketReturn found);
 // Static objects; parser_of() in packet_decoder.cpp chooses.
 const PacketParser& velodyne_parser();
 const PacketParser& ouster_parser();
+const PacketParser& hesai_parser();
+/// Without optional fields.
+std::size_t hesai_payload_bytes(PacketFormat format);
+std::size_t hesai_lasers(PacketFormat format);
 
 }  // namespace adasplats

@@ -9,6 +9,7 @@
 #include "adasplats/core/words.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/packet_bytes.h"
+#include "adasplats/sensors/packet_parser.h"
 
 namespace adasplats {
 namespace {
@@ -32,7 +33,9 @@ Error not_packets(const LidarModel& model, const std::string& why) {
 void check_beams(const LidarModel& model, PacketFormat format, std::size_t lasers) {
   const std::size_t beams = std::max(model.elevations_rad.size(), model.packets->lasers);
   const std::string name(word_of(format, kPacketFormats));
-  if (!model.free_pattern.empty() || model.rosette || model.elevations_rad.empty())
+  // Lasers of some Hesai models skip columns.
+  if ((!model.free_pattern.empty() && !is_hesai(format)) || model.rosette ||
+      model.elevations_rad.empty())
     throw not_packets(
         model, "does not fire all its beams in every column, which packets " + name + " require");
   const bool fits = lasers != 0
@@ -43,6 +46,11 @@ void check_beams(const LidarModel& model, PacketFormat format, std::size_t laser
                                  (lasers != 0 ? std::to_string(lasers) : "16, 32, 64 or 128"));
   if (!is_ouster(format) && model.packets->laser_ids.empty())
     throw not_packets(model, "has no laser_ids, the positions of its beams in packets " + name);
+  if (format == PacketFormat::at_128 && !model.packets->mirror)
+    throw not_packets(model,
+                      "lacks the angles of its mirror: give the sensor's correction file (.dat)");
+  if (format == PacketFormat::ot_128 && model.firing_times_s.empty())
+    throw not_packets(model, "has no firing times, which packets " + name + " require");
   if (!model.clockwise) throw not_packets(model, "rotates counter-clockwise");
 }
 
@@ -50,7 +58,9 @@ void check_beams(const LidarModel& model, PacketFormat format, std::size_t laser
 
 PacketFacts facts_of_packets(PacketFormat format) {
   constexpr std::uint32_t kSixteenBits = 65535;
-  constexpr std::uint16_t kVelodynePort = 2368, kOusterPort = 7502;
+  constexpr std::uint16_t kVelodynePort = 2368, kOusterPort = 7502, kHesaiPort = 2368;
+  constexpr double kMillimetre_m = 0.001;  // packets state their unit as a multiple
+  if (is_hesai(format)) return {hesai_lasers(format), kMillimetre_m, 65535 * 255, 0, kHesaiPort};
   switch (format) {
     case PacketFormat::vlp_16: return {16, 0.002, kSixteenBits, 24, kVelodynePort};
     case PacketFormat::hdl_32e: return {32, 0.002, kSixteenBits, 12, kVelodynePort};
@@ -60,13 +70,13 @@ PacketFacts facts_of_packets(PacketFormat format) {
     case PacketFormat::ouster_legacy: return {0, 0.001, (1U << 20) - 1, 16, kOusterPort};
     case PacketFormat::ouster_low:
     case PacketFormat::ouster_low_dual: return {0, 0.008, (1U << 15) - 1, 16, kOusterPort};
-    case PacketFormat::ouster_single:
-    case PacketFormat::ouster_dual: break;
+    default: break;
   }
   return {0, 0.001, (1U << 19) - 1, 16, kOusterPort};
 }
 
 std::size_t PacketSensor::payload_bytes() const {
+  if (is_hesai(format)) return hesai_payload_bytes(format);
   if (!is_ouster(format)) return kVelodyneBytes;
   return OusterBytes(format, lasers(), facts.columns, model.packets->has_safety_head).packet();
 }
@@ -96,6 +106,12 @@ PacketSensor packet_sensor(const LidarModel& model) {
     if (is_ouster(sensor.format) && !model.beam_origins_m.empty())
       std::ranges::transform(model.beam_origins_m, sensor.range_offsets_m.begin(),
                              [](const Vec3d& origin) { return -origin.x; });
+  }
+  // Hesai's blocks begin with the first shot; firing times of files begin anywhere.
+  std::vector<double>& times_s = sensor.model.firing_times_s;
+  if (is_hesai(sensor.format) && !times_s.empty()) {
+    const double first_s = std::ranges::min(times_s);
+    for (double& time_s : times_s) time_s -= first_s;
   }
   return sensor;
 }

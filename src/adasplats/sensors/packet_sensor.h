@@ -16,7 +16,7 @@ struct PacketFacts {
   std::size_t lasers = 0;  ///< 0: any of 16, 32, 64 and 128
   double quantum_m = 0;    ///< one count of a range
   std::uint32_t max_counts = 0;
-  std::size_t columns = 0;  ///< azimuth steps per packet
+  std::size_t columns = 0;  ///< azimuth steps per packet; 0: depends on the packet
   std::uint16_t port = 0;   ///< default UDP port
 };
 PacketFacts facts_of_packets(PacketFormat format);
@@ -35,6 +35,8 @@ struct PacketSensor {
   std::vector<double> range_offsets_m;
 
   std::size_t lasers() const { return ring_of_laser.size(); }
+  /// Null but for an AT128.
+  const MirrorAngles* mirror() const { return model.packets->mirror.get(); }
   std::size_t payload_bytes() const;
   double column_s() const { return 1.0 / (model.rotation_hz * model.columns); }
 };

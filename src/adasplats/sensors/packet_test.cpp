@@ -279,7 +279,7 @@ TEST(Packets, OtherSensorsAndUnknownModesAreRefused) {
 }
 
 TEST(Packets, SensorsWithoutAreRefusedWithThoseThatHaveSome) {
-  for (const char* name : {"hdl-64-paper", "hesai-pandar64", "livox-mid-40"})
+  for (const char* name : {"hdl-64-paper", "hdl-32-paper", "livox-mid-40"})
     expect_error(ErrorKind::usage, {name, "velodyne-vlp-16", "ouster-os2-128"},
                  [&] { packet_sensor(load_lidar_model(name)); });
 }

@@ -60,10 +60,11 @@ class RevolutionFinder {
         source_.revolutions.push_back({packet.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
       }
-      count_gap(time_ns);
+      if (!begins || !decoder_.traits().has_pauses) count_gap(time_ns);
       Revolution& now = source_.revolutions.back();
       ++now.columns;
       now.share = share_of_turn(columns[k]);
+      if (columns[k].lasts_ns != 0) column_ns_ = columns[k].lasts_ns;
       now.end_ns = time_ns + column_ns_;
       now.has_points = now.has_points || decoder_.has_returns(packet.bytes, k);
       last_ = columns[k];
@@ -97,7 +98,7 @@ class RevolutionFinder {
   /// Counts numbered revolutions whose end contradicts the columns per revolution: by the time
   /// since the last column, another number of columns is missing up to this one.
   void check_turn(const MeasuredColumn& column, std::int64_t time_ns) {
-    if (!decoder_.traits().has_frames) return;
+    if (!decoder_.traits().has_frames || decoder_.traits().has_pauses) return;
     const std::uint32_t turn = decoder_.steps_per_turn();
     const double missing = (column.step + turn - last_.step) % turn;
     const double passed = static_cast<double>(time_ns - last_ns_) / static_cast<double>(column_ns_);
@@ -266,7 +267,9 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
-    if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")))
+    const bool is_hesais = name.starts_with("correction") || name.starts_with("angle");
+    if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")) ||
+        (is_hesais && (name.ends_with(".csv") || name.ends_with(".dat"))))
       found.push_back(entry->path().string());
   }
   std::ranges::sort(found);
@@ -521,6 +524,12 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
   const auto& [name, source] = source_of(survey, drive.topic);
   warn_of_packets(survey, name, source, progress);
   warn_of_partial_turns(survey, name, source, progress);
+  const LidarModel& model = survey.decoder->sensor().model;
+  if (is_hesai(survey.decoder->sensor().format) &&
+      std::ranges::count(lidar_model_names(), model.name) > 0)
+    progress.warn(survey.path.string() + ": " + model.name +
+                  " has the nominal angles of its model; the angle correction file of the device "
+                  "as `packet_sensor` is more accurate");
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;

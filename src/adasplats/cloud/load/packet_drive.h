@@ -71,11 +71,11 @@ class SensorClock {
 };
 
 /// Reads a capture from front to back and finds the revolutions of a sensor: Ouster's by their
-/// numbers. Velodyne's end at the first azimuth of the sensor file; if that is 0 (unset), at the
-/// azimuth at which the capture starts, so all but the last are complete. After a gap of at least
-/// half a turn, the next azimuth replaces it. Without `decoder` it only counts datagrams. Memory:
-/// 90 bytes per revolution. Errors: those of DatagramReader; data (more than 256 sources; a jump of
-/// the sensor's clock).
+/// numbers, those of an AT128 by its mirror. Velodyne's and Hesai's end at the first azimuth of the
+/// sensor file; if that is 0 (unset), at the azimuth at which the capture starts, so all but the
+/// last are complete. After a gap of at least half a turn, the next azimuth replaces it. Without
+/// `decoder` it only counts datagrams. Memory: 90 bytes per revolution. Errors: those of
+/// DatagramReader; data (more than 256 sources; a jump of the sensor's clock).
 PacketSurvey survey_packets(const std::filesystem::path& path,
                             std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress);
 
@@ -89,7 +89,8 @@ PacketSurvey survey_packets(const RecordingSurvey& recording, const DriveSetting
                             ProgressSink& progress);
 
 /// The sensor of a capture: `stated`, else the only maker's file in its folder: STEM.json,
-/// metadata.json, calibration*.yaml. Empty: none. Errors: usage (several).
+/// metadata.json, calibration*.yaml, angle*.csv, correction*.csv or *.dat. Empty: none. Errors:
+/// usage (several).
 std::string sensor_of_capture(const std::filesystem::path& capture, const std::string& stated);
 
 /// The decoder for the sensor of a capture (sensor_of_capture()); null if it is unknown. Errors:

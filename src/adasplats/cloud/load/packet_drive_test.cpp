@@ -15,6 +15,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/packets/capture_writer.h"
+#include "adasplats/sensors/hesai_packets_test.h"
 #include "adasplats/sensors/packet_encoder.h"
 
 namespace adasplats {
@@ -294,6 +295,81 @@ TEST_F(OpenedCapture, BrokenPacketsEndInErrors) {
   }
   EXPECT_GT(opened, 2U);
   EXPECT_EQ(opened + refused, 30U);
+}
+
+/// Two turns of an XT32 from azimuth 90 degrees, at 1,700,000,000 s since 1970.
+std::filesystem::path write_xt32(const TemporaryFolder& folder, bool with_pandar64) {
+  std::filesystem::path path = folder.path() / "hesai.pcap";
+  CaptureWriter writer(path);
+  const UdpEndpoint from{{}, {10, 0, 0, kSender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+  for (unsigned k = 0; k < 500; ++k) {
+    writer.add(1'700'000'000'000'000 + 400 * k, from, to, hesai_test::xt32_packet(k));
+    if (with_pandar64)
+      writer.add(1'700'000'000'000'000 + 400 * k, from, to,
+                 std::string("\xEE\xFF\x40\6\0\4\0\0", 8) + std::string(1186, '\0'));
+  }
+  writer.finish();
+  return path;
+}
+
+TEST(PacketDrive, RevolutionsOfAHesai) {
+  const TemporaryFolder folder;
+  for (const bool with_pandar64 : {false, true}) {
+    ProgressSink quiet;
+    const PacketSurvey survey = survey_packets(write_xt32(folder, with_pandar64),
+                                               decoder_named("hesai-pandarxt-32"), quiet);
+    ASSERT_EQ(survey.sources.size(), 1U);
+    const PacketSource& source = survey.sources.begin()->second;
+    EXPECT_EQ(source.packets, 500U);
+    EXPECT_EQ(source.gaps, 0U);
+    EXPECT_EQ(source.objection.find("Pandar64") != std::string::npos, with_pandar64);
+    ASSERT_EQ(source.revolutions.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(source.revolutions[k].columns, 2000U);
+      EXPECT_NEAR(source.revolutions[k].share, 1, 1e-3);
+      // The last of 8 columns begins 5.632 us after the packet's time, its first shot 0.368 later.
+      EXPECT_EQ(source.revolutions[k].begin_ns,
+                1'700'000'000'000'000'000 + static_cast<std::int64_t>(k) * 100'000'000 - 344'000);
+    }
+  }
+}
+
+// An AT128 measures during half of the time: frames of 60 degrees of its mirror, then pauses, here
+// less than half a period, so that they are not gaps in the capture.
+TEST(PacketDrive, FramesOfAnAt128) {
+  const TemporaryFolder folder;
+  const auto decoder = decoder_named(folder.write("my.dat", hesai_test::at128_angles()).string());
+  const std::filesystem::path path = folder.path() / "hesai.pcap";
+  CaptureWriter writer(path);
+  const UdpEndpoint from{{}, {10, 0, 0, kSender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+  constexpr unsigned kFrames = 4, kPackets = 600, kInPause = 3, kPeriod_us = 95'000;
+  for (unsigned frame = 0; frame < kFrames; ++frame)
+    for (unsigned k = 0; k < kPackets + kInPause; ++k) {
+      const unsigned column = 400 + 2400 * (frame % 3) + 2 * k + (k < kPackets ? 0 : 2);
+      const auto late_us = kPeriod_us * frame + static_cast<unsigned>(std::lround(2 * 41.666 * k));
+      writer.add(1'700'000'000'000'000 + late_us, from, to,
+                 hesai_test::at128_packet(column, late_us));
+    }
+  writer.finish();
+  ProgressSink quiet;
+  const PacketSurvey survey = survey_packets(path, decoder, quiet);
+  ASSERT_EQ(survey.sources.size(), 1U);
+  const PacketSource& source = survey.sources.begin()->second;
+  EXPECT_EQ(source.objection, "");
+  EXPECT_EQ(source.contradiction, "");
+  EXPECT_EQ(source.odd_turns, 0U);
+  EXPECT_EQ(source.gaps, 0U);
+  ASSERT_EQ(source.revolutions.size(), kFrames);
+  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+    const Revolution& turn = source.revolutions[frame];
+    EXPECT_EQ(turn.columns, 2 * kPackets) << frame;
+    EXPECT_NEAR(turn.share, 1, 2e-3) << frame;
+    EXPECT_TRUE(turn.has_points) << frame;
+    // The second column begins 50.915 us before the packet's time.
+    EXPECT_EQ(turn.begin_ns, 1'700'000'000'000'000'000 +
+                                 static_cast<std::int64_t>(frame) * 1000 * kPeriod_us - 50'915 -
+                                 41'666);
+  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/packets/capture_writer.h"
+#include "adasplats/sensors/hesai_packets_test.h"
 #include "adasplats/sensors/packet_encoder.h"
 
 namespace adasplats {
@@ -24,8 +25,13 @@ using bags_test::Said;
 constexpr std::int64_t kSent_ns = 1'700'000'000'000'000'000;
 constexpr std::size_t kPerMessage = 50;
 
+struct SentPackets {
+  std::vector<std::string> payloads;
+  std::vector<std::int64_t> times_ns;
+};
+
 /// Three revolutions of a sensor around which everything is 10 m away, as packets.
-struct SentTurns {
+struct SentTurns : SentPackets {
   explicit SentTurns(const std::string& name) : sensor(packet_sensor(load_lidar_model(name))) {
     const auto counts = static_cast<std::uint32_t>(std::lround(10 / sensor.facts.quantum_m));
     const std::vector<PacketReturn> returns(sensor.lasers(), PacketReturn{counts, 257 * 9});
@@ -42,8 +48,6 @@ struct SentTurns {
     }
   }
   PacketSensor sensor;
-  std::vector<std::string> payloads;
-  std::vector<std::int64_t> times_ns;
 };
 
 class RecordedPacketsTest : public testing::Test {
@@ -66,7 +70,7 @@ class RecordedPacketsTest : public testing::Test {
     return *open_drive(drive, Executor(1), quiet);
   }
   /// Oracle: the same packets as a capture.
-  KittiSequence opened_capture(const SentTurns& sent, const std::string& sensor) const {
+  KittiSequence opened_capture(const SentPackets& sent, const std::string& sensor) const {
     CaptureWriter writer(folder_.path() / "sent.pcap");
     for (std::size_t k = 0; k < sent.payloads.size(); ++k)
       writer.add(static_cast<std::uint64_t>(sent.times_ns[k]) / 1000, {{}, {10, 0, 0, 9}, 2368},
@@ -177,6 +181,56 @@ TEST_F(RecordedPacketsTest, OustersMetadataAreInTheBag) {
   drive.topic = "/left/imu_packets";
   expect_error(ErrorKind::usage, {"drive.bag", "/left/imu_packets", "/left/lidar_packets"},
                [&] { open(drive); });
+}
+
+/// A message of a driver for Hesai sensors, with packets of `fixed_bytes` or of their size.
+std::string hesai_scan(const SentPackets& sent, std::size_t first, bool cdr,
+                       std::size_t fixed_bytes, bool has_size) {
+  const std::size_t count = std::min(kPerMessage, sent.payloads.size() - first);
+  MessageComposer message(cdr);
+  message.header(sent.times_ns[first], "hesai").put(static_cast<std::uint32_t>(count));
+  for (std::size_t k = first; k < first + count; ++k) {
+    message.put(static_cast<std::uint32_t>(sent.times_ns[k] / 1'000'000'000));
+    message.put(static_cast<std::uint32_t>(sent.times_ns[k] % 1'000'000'000));
+    std::string bytes = sent.payloads[k];
+    bytes.resize(std::max(fixed_bytes, bytes.size()));
+    if (fixed_bytes == 0) message.raw(bytes);
+    if (fixed_bytes != 0)
+      for (const char byte : bytes) message.put(byte);
+    if (has_size) message.put(static_cast<std::uint32_t>(sent.payloads[k].size()));
+  }
+  return message.get();
+}
+
+TEST_F(RecordedPacketsTest, ScansOfHesaisDriversAreReadAsACapture) {
+  const std::string sensor = "hesai-pandarxt-32";
+  SentPackets sent;
+  for (unsigned k = 0; k < 500; ++k) {
+    sent.payloads.push_back(hesai_test::xt32_packet(k));
+    sent.times_ns.push_back(kSent_ns + 400'000 * static_cast<std::int64_t>(k));
+  }
+  const KittiSequence capture = opened_capture(sent, sensor);
+  ASSERT_EQ(capture.scans.size(), 2U);
+  const auto expect_read = [&](const std::string& package, const std::string& type,
+                               std::size_t fixed_bytes, bool has_size) {
+    for (const bool cdr : {false, true}) {
+      SCOPED_TRACE(package + (cdr ? " in MCAP" : " in a bag"));
+      std::vector<Said> messages;
+      for (std::size_t first = 0; first < sent.payloads.size(); first += kPerMessage)
+        messages.push_back({"/hesai/packets", package + (cdr ? "/msg/" : "/") + type, 5,
+                            hesai_scan(sent, first, cdr, fixed_bytes, has_size)});
+      const std::string name = cdr ? "drive.mcap" : "drive.bag";
+      folder_.write(name, cdr ? bags_test::mcap_of(messages) : bags_test::bag_of(messages));
+      DriveInput drive = drive_of_file(name);
+      drive.packets_of = sensor;
+      drive.trajectory = trajectory();
+      expect_same(open(drive), capture);
+    }
+  };
+  expect_read("nebula_msgs", "NebulaPackets", 0, false);
+  expect_read("pandar_msgs", "PandarScan", 1500, true);
+  expect_read("hesai_lidar", "PandarScan", 0, true);
+  expect_read("hesai_ros_driver", "UdpFrame", 0, true);
 }
 
 TEST_F(RecordedPacketsTest, ASensorWithoutPacketsIsAnError) {
