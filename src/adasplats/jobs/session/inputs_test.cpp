@@ -47,6 +47,15 @@ TEST(LabelSchemeFor, LasOfOtherProgramsHasClassesOfTheSpecification) {
   EXPECT_EQ(scheme_of(folder.path() / "tiles"), "asprs");
 }
 
+TEST(LabelSchemeFor, FilesMayBeNamedWithoutAFolder) {
+  const TemporaryFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  save_cloud_ply("a.ply", two_points());
+  EXPECT_EQ(scheme_of("a.ply"), "none");
+  fs::current_path(before);
+}
+
 TEST(LabelSchemeFor, FilesOfThisProgramStateTheirs) {
   const TemporaryFolder folder;
   PointCloud cloud = two_points();
