@@ -312,6 +312,9 @@ class Captures(ProgramTest):
             self.run_bad(64, *chosen, "--topic", "10.0.0.8:2368",
                          says=["10.0.0.8:2368", "192.168.1.201:2368"])
             result = run(*chosen, "--topic", "10.0.0.7:2368")
+            if command == "calibrate":  # the street is too short for it
+                self.assertIn("too few planes", result.stderr)
+                continue
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertTrue((self.folder / name).exists())
         report = self.folder / "r.json"

@@ -78,26 +78,14 @@ std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Tra
 
 std::string motion_ends_note(std::span<const TimedPose> poses, const Trajectory& motion,
                              double duration_s) {
-  constexpr double kRounding = 1e-6;  // of times in seconds since an epoch
   const double begin_s = motion.front().time_s, end_s = motion.back().time_s;
-  const double half_s = 0.5 * duration_s;
-  std::size_t partly = 0, wholly = 0;
-  for (const TimedPose& pose : poses) {
-    const double beyond_s = std::max(begin_s - pose.time_s, pose.time_s - end_s);
-    wholly += beyond_s > half_s ? 1 : 0;
-    partly += beyond_s <= half_s && beyond_s > -half_s + kRounding ? 1 : 0;
-  }
-  const std::string of = " of " + std::to_string(poses.size()) + " scans ";
-  std::string note;
-  if (partly > 0)
-    note = std::to_string(partly) + of +
-           "begin before the first pose or end after the last one; their motion there is "
-           "extrapolated at constant velocity, by at most " +
-           decimal_text(half_s) + " s";
-  if (wholly > 0)
-    note += (note.empty() ? "" : "; ") + std::to_string(wholly) + of + "are outside the poses (" +
-            decimal_text(begin_s) + " to " + decimal_text(end_s) + " s) and at rest";
-  return note;
+  const auto outside = std::ranges::count_if(poses, [&](const TimedPose& pose) {
+    return std::max(begin_s - pose.time_s, pose.time_s - end_s) > 0.5 * duration_s;
+  });
+  if (outside == 0) return {};
+  return std::to_string(outside) + " of " + std::to_string(poses.size()) +
+         " scans are outside the poses (" + decimal_text(begin_s) + " to " + decimal_text(end_s) +
+         " s) and at rest";
 }
 
 RigidTransform pose_at(const ScanMotion& motion, double share) {

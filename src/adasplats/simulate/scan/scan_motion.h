@@ -28,13 +28,13 @@ std::vector<ScanMotion> still_scans(std::span<const TimedPose> poses);
 
 /// Scans that last `duration_s` around the time of each pose and move as `motion`, relative to its
 /// pose at that time, so its frame may differ from that of the poses. For half a scan before and
-/// after `motion` its velocity stays constant (motion_ends_note()). A scan has enough knots (at
+/// after `motion` its velocity stays constant. A scan has enough knots (at
 /// most 64) for each segment to turn by less than half a degree and to contain at most one pose of
 /// `motion`. Errors: usage (a duration that is not positive).
 std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& motion,
                                      double duration_s);
 
-/// A warning with the number of scans that begin before or end after `motion`; empty: none do.
+/// A warning with the number of scans that are wholly before or after `motion`; empty: none are.
 std::string motion_ends_note(std::span<const TimedPose> poses, const Trajectory& motion,
                              double duration_s);
 

@@ -82,10 +82,7 @@ TEST(ScanMotion, GoesOnForHalfAScanBeyondThePoses) {
               1e-3);
   EXPECT_NEAR(length(pose_at(scans[2], 1).translation - pose_at(scans[2], 0.5).translation), 0.5,
               1e-3);
-  const std::string note = motion_ends_note(poses, motion, 0.1);
-  EXPECT_NE(note.find("2 of 3 scans begin before"), std::string::npos) << note;
-  EXPECT_NE(note.find("at most 0.05 s"), std::string::npos) << note;
-  EXPECT_EQ(motion_ends_note({&poses[1], 1}, motion, 0.1), "");
+  EXPECT_EQ(motion_ends_note(poses, motion, 0.1), "");
   const std::vector<TimedPose> far = {{9.0, {}}};
   EXPECT_NE(motion_ends_note(far, motion, 0.1).find("1 of 1 scans are outside"), std::string::npos);
 }
