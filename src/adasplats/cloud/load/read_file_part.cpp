@@ -341,7 +341,7 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
     part.world_sensors = read_vectors(file, *columns);
     used.insert(used.end(), columns->begin(), columns->end());
   }
-  if (const Column* const time = use(find_column(table, PointColumn::time))) {
+  if (const Column* const time = find_column(table, PointColumn::time)) {
     const double unit_s = time_unit_of_name(time->name);
     part.times_s.resize(table.rows);
     for_each_value(*time, [&](std::size_t i, auto value) {
