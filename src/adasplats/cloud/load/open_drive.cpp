@@ -133,6 +133,7 @@ FrameVerdict frame_of_single(const SensorFrames& frames, const Executor& executo
   const CloudPart part = read_file_part(frames.files.front(), {}, silent);
   if (!part.world_sensors.empty()) return {PointsIn::world, "it has sensor positions"};
   if (part.sensor_frame) return {PointsIn::sensor, part.sensor_frame->because};
+  if (frames.poses.by_order) return {PointsIn::found, "a single pose is no evidence"};
   return find_frame(frames, executor);
 }
 

@@ -271,9 +271,10 @@ std::optional<PosesOfFiles> poses_of_files(const std::vector<fs::path>& files,
   if (auto matched = poses_by_number(files, given))
     return poses_in_order(std::move(*matched), known, "by the numbers in the names of the scans",
                           timed);
-  if (given.size() == files.size())
-    return poses_in_order(given, known, "one per scan in order", timed);
-  return std::nullopt;
+  if (given.size() != files.size()) return std::nullopt;
+  PosesOfFiles poses = poses_in_order(given, known, "one per scan in order", timed);
+  poses.by_order = true;
+  return poses;
 }
 
 }  // namespace adasplats

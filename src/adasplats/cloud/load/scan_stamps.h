@@ -32,6 +32,7 @@ struct PosesOfFiles {
   Trajectory track;        ///< interpolated between scans; empty without times
   std::string by;          ///< how they were found, for messages
   bool has_times = false;  ///< else of_scans has placeholder times, 0.1 s apart
+  bool by_order = false;   ///< neither times nor names match scans and poses, only their number
 };
 
 /// Finds the pose of each scan: at its time (from `times_file`, else from the stamps in the names,
