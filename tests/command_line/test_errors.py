@@ -73,7 +73,7 @@ class Input(ProgramTest):
         for command in (["info", broken], ["model", broken, "-o", self.folder / "m.ply"]):
             self.run_bad(65, *command, says=["broken.ply"])
         self.run_bad(65, "simulate", self.cloud, "--trajectory", self.poses, "-o",
-                     self.folder / "scans", says=["radius"])
+                     self.folder / "scans", says=["not a model", "adasplats model"])
         empty = self.folder / "empty.ply"
         write_cloud(empty, [])
         self.run_bad(65, "model", empty, "-o", self.folder / "m.ply", says=["no points"])

@@ -137,27 +137,31 @@ FrameVerdict frame_of_single(const SensorFrames& frames, const Executor& executo
   return find_frame(frames, executor);
 }
 
+/// Opens files with points in world coordinates.
+std::optional<KittiSequence> open_as_world(const DriveInput& drive,
+                                           const std::vector<std::filesystem::path>& files,
+                                           const Executor& executor, ProgressSink& progress) {
+  // With a stated mount the sensor need not be recognised.
+  if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
+  WorldFrames frames;
+  frames.files = files;
+  frames.vehicle = read_trajectory(drive.trajectory);
+  for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
+  frames.poses_file = drive.trajectory;
+  auto sequence = open_world_frames(drive, frames, executor, progress);
+  if (sequence) sequence->facts.crs = crs_of_files(files, progress);
+  return sequence;
+}
+
 /// Opens a folder of files, one per scan, or a file that is one.
 std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor& executor,
                                         ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
-  const auto open_as_world = [&]() -> std::optional<KittiSequence> {
-    // With a stated mount the sensor need not be recognised.
-    if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
-    WorldFrames frames;
-    frames.files = files;
-    frames.vehicle = read_trajectory(drive.trajectory);
-    for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
-    frames.poses_file = drive.trajectory;
-    auto sequence = open_world_frames(drive, frames, executor, progress);
-    if (sequence) sequence->facts.crs = crs_of_files(files, progress);
-    return sequence;
-  };
   const bool is_single = files.size() == 1 && drive.points_in == PointsIn::found;
   if (is_single && !can_be_scan(files.front())) return std::nullopt;
   if (files.size() < 2 && !is_single && drive.points_in != PointsIn::sensor) return std::nullopt;
   if (drive.points_in == PointsIn::world) {
-    auto sequence = open_as_world();
+    auto sequence = open_as_world(drive, files, executor, progress);
     if (sequence) {
       sequence->facts.points_in = "world (as stated)";
       report_drive(*sequence, progress);
@@ -178,7 +182,8 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
               ", and neither the file names nor times of points match them; give `scan_times`");
   } else {
     if (is_single && !(frames && frames->times.fits)) return std::nullopt;
-    if (!frames) return open_as_world();  // reports what is wrong with the times
+    // This reports what is wrong with the times.
+    if (!frames) return open_as_world(drive, files, executor, progress);
     progress.begin_step("frame of the points", 0);
     verdict = is_single ? frame_of_single(*frames, executor) : find_frame(*frames, executor);
     progress.end_step();
@@ -194,7 +199,7 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
                                      verdict.because +
                                      "); check the units, axes and clock of the poses, or set "
                                      "`points_in` to sensor or world");
-  auto sequence = open_as_world();
+  auto sequence = open_as_world(drive, files, executor, progress);
   if (sequence) {
     sequence->facts.points_in = "world (" + verdict.because + ")";
     report_drive(*sequence, progress);
