@@ -150,7 +150,7 @@ class Pipeline(ProgramTest):
         rows = [[float(v) for v in line.split(",")] for line in poses if line[0].isdigit()]
         self.assertEqual([row[1:4] for row in rows], [[5, 1, 1.5], [9, 1, 1.5]])
         self.assertEqual(sorted(p.name for p in scans.glob("*.ply")), ["000000.ply", "000001.ply"])
-        self.run_bad(65, "evaluate", "c2c", scans, self.cloud, says=["--format semantickitti"])
+        self.run_bad(65, "evaluate", "c2c", scans, self.cloud, says=["adasplats export", "--trajectory"])
 
     def test_formats(self):
         model = self.model()
