@@ -297,7 +297,7 @@ void warn_about_columns(const PointFile& file, const CloudPart& part, const Load
   if (!options.trajectory.empty() && part.times_s.empty() && part.world_sensors.empty() &&
       has_times(options.trajectory))
     progress.warn(start + "no column of times (found " + file.column_list() +
-                  "), which sensor positions on the trajectory need");
+                  "); sensor positions on the trajectory need one");
 }
 
 /// Only LAS declares its clock: adjusted GPS time if a note reports it, else seconds of the week.
