@@ -71,7 +71,8 @@ struct LoadOptions : DriveSettings {
   /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
   /// orient points without a sensor position (OriginKind::guessed).
   KeptColumns other_columns = KeptColumns::none;
-  /// Accept files that are one scan in the sensor frame of a known pose, to describe them.
+  /// Accept files that are one scan in the sensor frame of a known pose: to describe or segment
+  /// them.
   bool accept_sensor_frame = false;
 };
 

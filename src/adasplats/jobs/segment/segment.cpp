@@ -132,6 +132,7 @@ class PointSegmenter {
 
   void segment_cloud_of_files(bool as_las) {
     LoadOptions load = job_.load;
+    load.accept_sensor_frame = true;  // networks segment single scans, too
     load.own_body_m = 0;
     load.driven_path_m = 0;
     const Stopwatch watch;
