@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kMicrosecond_in_s = 1e-6;
 
-constexpr double k40pTimes_us[40] = {12.45, 26.2,  38.63, 51.05, 9.18,  22.93, 7.21,  0,
-                                     34.05, 20.96, 13.76, 46.48, 34.05, 27.51, 3.94,  46.48,
-                                     39.93, 17.69, 9.18,  1.97,  30.78, 22.93, 15.72, 43.2,
-                                     36.02, 29.48, 5.91,  48.44, 41.9,  19.66, 32.75, 45.17,
-                                     11.15, 24.9,  37.32, 49.75, 12.45, 26.2,  38.63, 51.05};
+constexpr double kTimesOf40p_us[40] = {12.45, 26.2,  38.63, 51.05, 9.18,  22.93, 7.21,  0,
+                                       34.05, 20.96, 13.76, 46.48, 34.05, 27.51, 3.94,  46.48,
+                                       39.93, 17.69, 9.18,  1.97,  30.78, 22.93, 15.72, 43.2,
+                                       36.02, 29.48, 5.91,  48.44, 41.9,  19.66, 32.75, 45.17,
+                                       11.15, 24.9,  37.32, 49.75, 12.45, 26.2,  38.63, 51.05};
 
 /// Lasers (from 1) in the order in which the two sequences of a QT128 fire them.
 constexpr std::uint8_t kQt128Sequences[2][96] = {
@@ -47,10 +47,12 @@ constexpr std::string_view kAt128Lasers =
 
 std::array<double, 128> qt128_times_s(unsigned sequence) {
   std::array<double, 128> times_s{};
-  for (std::size_t i = 0; i < 96; ++i)
+  for (std::size_t i = 0; i < 96; ++i) {
+    const std::size_t group = i / 3;
     times_s[kQt128Sequences[sequence][i] - 1U] =
         kMicrosecond_in_s *
-        (0.6 + 0.856 * static_cast<double>(i % 3) + 3.168 * static_cast<double>(i / 3));
+        (0.6 + 0.856 * static_cast<double>(i % 3) + 3.168 * static_cast<double>(group));
+  }
   return times_s;
 }
 
@@ -60,14 +62,17 @@ std::vector<double> hesai_firing_times_s(PacketFormat format) {
   std::vector<double> times_s;
   const auto add = [&](double time_us) { times_s.push_back(kMicrosecond_in_s * time_us); };
   if (format == PacketFormat::pandar_40p)
-    for (const double time_us : k40pTimes_us) add(time_us);
+    for (const double time_us : kTimesOf40p_us) add(time_us);
   if (format == PacketFormat::xt_16)
     for (int i = 0; i < 16; ++i) add(3.024 * i);
   if (format == PacketFormat::xt_32m)
     for (int i = 0; i < 32; ++i) add(2.888 * (i % 16));
   if (format == PacketFormat::pandar_qt) {
     constexpr double kOfGroup_us[] = {0, 2.06, 4.12, 6.18, 8.23, 10.29, 12.35, 14.4};
-    for (int i = 0; i < 64; ++i) add(kOfGroup_us[i % 8] + 16.845 * (i / 8 % 2) + 34.295 * (i / 16));
+    for (int i = 0; i < 64; ++i) {
+      const int half = i / 8 % 2, quarter = i / 16;
+      add(kOfGroup_us[i % 8] + 16.845 * half + 34.295 * quarter);
+    }
   }
   return times_s;
 }
