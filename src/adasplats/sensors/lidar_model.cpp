@@ -45,7 +45,8 @@ std::vector<Firing> continued_firings(const LidarModel& model, std::uint64_t sca
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = first + i;
     Firing firing = pattern[place % pattern.size()];
-    const double round_s = model.pattern_s * static_cast<double>(place / pattern.size());
+    const std::size_t round = place / pattern.size();
+    const double round_s = model.pattern_s * static_cast<double>(round);
     firing.column = static_cast<std::uint32_t>(i);
     firing.time_s = static_cast<float>(static_cast<double>(firing.time_s) + round_s - begin_s);
     firings.push_back(firing);
