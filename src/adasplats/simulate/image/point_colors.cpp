@@ -3,6 +3,7 @@
 #include "adasplats/simulate/image/point_colors.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "adasplats/core/error.h"
 #include "adasplats/simulate/image/class_colors.h"
@@ -65,7 +66,8 @@ template <class T>
 bool has_several_values(std::span<const T> values) {
   const T* first = nullptr;
   for (const T& value : values) {
-    if (value != value) continue;
+    if constexpr (std::is_floating_point_v<T>)
+      if (std::isnan(value)) continue;
     if (first != nullptr && value != *first) return true;
     if (first == nullptr) first = &value;
   }
