@@ -37,7 +37,8 @@ std::pair<std::uint8_t, std::string_view> chosen(std::string_view bytes) {
 }  // namespace
 
 void read_recording(const Input& input) {
-  read_mcap_metadata(input.file, kMcapMetadataName, kMcapLabelsKey);
+  if (input.file.extension() == ".mcap")
+    read_mcap_metadata(input.file, kMcapMetadataName, kMcapLabelsKey);
   const Recording recording(input.file);
   constexpr std::size_t kAgain = 8;
   std::vector<std::pair<MessagePosition, std::string>> first;
