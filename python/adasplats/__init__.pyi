@@ -697,6 +697,9 @@ class Model:
     def intensities(self) -> NDArray[np.float32] | None:
         """(N,) float32: reflectances if there is a response, else as measured; or None."""
     @property
+    def colors(self) -> NDArray[np.uint8] | None:
+        """(N, 3) uint8, sRGB of the points, or None."""
+    @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
@@ -1071,7 +1074,7 @@ class Scene:
         height: int = 1440,
         fov: float | None = None,
         color: Literal[
-            "auto", "semantic", "shading", "normal", "intensity", "range", "height"
+            "auto", "semantic", "shading", "normal", "intensity", "range", "height", "rgb"
         ] = "auto",
         samples: int = 2,
         relief: bool = True,

@@ -50,6 +50,7 @@ void fields(Archive& archive, SplatModel& model) {
   archive("classes", model.classes);
   archive("groups", model.groups);
   archive("intensities", model.intensities);
+  archive("colors", model.colors);
   archive("response", model.response);
   archive("label_scheme", model.label_scheme);
   archive("network_sha256", model.network_sha256);
@@ -200,6 +201,13 @@ py::object groups(const py::object& self) {
                     {static_cast<py::ssize_t>(model.groups.size())}, {1}, self);
 }
 
+py::object colors(const py::object& self) {
+  const SplatModel& model = model_of(self);
+  if (model.colors.empty()) return py::none();
+  return array_view(py::dtype::of<std::uint8_t>(), model.colors.data(),
+                    {static_cast<py::ssize_t>(model.colors.size()), 3}, {3, 1}, self);
+}
+
 py::object response(const py::object& self) {
   const IntensityResponse& response = model_of(self).response;
   if (response.empty()) return py::none();
@@ -260,7 +268,8 @@ void add_arrays(ModelClass& type) {
           [](const py::object& self) {
             return optional_view(model_of(self).intensities, model_of(self).size(), self);
           },
-          "(N,) float32: reflectances if there is a response, else as measured; or None.");
+          "(N,) float32: reflectances if there is a response, else as measured; or None.")
+      .def_property_readonly("colors", &colors, "(N, 3) uint8, sRGB of the points, or None.");
 }
 
 void add_properties(ModelClass& type) {

@@ -14,8 +14,8 @@ eye, target: (3,) world coordinates, m. target: None for the middle of the scene
 point above, on the side that shows most. birds_eye: look straight down, north up. trajectory (a
 path) and pose (its index): look ahead from a pose. width, height: pixels. fov: horizontal, degrees;
 None: 45 from outside the scene, else 70. color: 'semantic', 'shading', 'normal', 'intensity',
-'range', 'height', or 'auto': semantic if most of the model has classes, else intensity, else
-height. samples: rays per pixel and axis, 1 to 64. relief: darken corners and gaps and blend
+'range', 'height', 'rgb', or 'auto': rgb if the model has colours, else semantic if most of it has
+classes, else intensity, else height. samples: rays per pixel and axis, 1 to 64. relief: darken corners and gaps and blend
 splats; False: every sample has only its own colour. Raises TypeError, ValueError, OSError.)";
 
 using Color = std::optional<ImageColor>;
@@ -25,7 +25,8 @@ constexpr std::pair<std::string_view, Color> kColors[] = {{"auto", std::nullopt}
                                                           {"normal", ImageColor::normal},
                                                           {"intensity", ImageColor::intensity},
                                                           {"range", ImageColor::range},
-                                                          {"height", ImageColor::height}};
+                                                          {"height", ImageColor::height},
+                                                          {"rgb", ImageColor::rgb}};
 
 struct RenderArguments {
   ViewChoice view;

@@ -88,6 +88,27 @@ class Export(ProgramTest):
             self.assertIn(name, said)
         self.assertNotIn("red", said)
 
+    def test_models_keep_colours(self):
+        cloud = self.folder / "colored.csv"
+        cloud.write_text("x,y,z,red,green,blue\n" + "".join(
+            f"{k % 40 * 0.05},{k // 40 * 0.05},0,{200 if k % 40 < 20 else 10},60,70\n"
+            for k in range(1600)))
+        model = self.folder / "colored.ply"
+        self.run_warned("sensor positions", "model", cloud, "-o", model)
+        self.assertIn("property uchar red", self.header(model))
+        self.run_good("render", model, "-o", self.folder / "a.png", "--width", "64", "--height", "48")
+        for color in ("rgb", "height"):
+            self.run_good("render", model, "-o", self.folder / f"{color}.png", "--width", "64", "--height", "48",
+                          "--color", color)
+        self.assertEqual((self.folder / "a.png").read_bytes(),
+                         (self.folder / "rgb.png").read_bytes())
+        self.assertNotEqual((self.folder / "a.png").read_bytes(),
+                            (self.folder / "height.png").read_bytes())
+        self.assertNotEqual(self.export(model, "a.glb").read_bytes(),
+                            self.export(model, "b.glb", "--color", "height").read_bytes())
+        self.run_bad(64, "render", self.model(), "-o", self.folder / "b.png", "--color", "rgb",
+                     says=["has no colours", "'adasplats model'"])
+
     def test_label_schemes_are_kept(self):
         sequence = self.simulate(self.model()) / "sequences" / "00"
         for name in ("s.ply", "s.las", "s.laz"):

@@ -235,10 +235,6 @@ class Loading {
     load.other_columns = KeptColumns::colors;
     const PointCloud cloud =
         load_cloud(std::span(&path, 1), load, session_.executor, session_.progress).first;
-    if (!cloud.others.columns.empty())
-      session_.progress.warn(path.string() +
-                             ": the viewer does not show its colours (red, green, blue); 'render' "
-                             "does");
     if (cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
     crs_.add(path, cloud.crs);
     add_points(name_of(path), cloud, {});

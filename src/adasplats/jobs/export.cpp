@@ -140,6 +140,11 @@ PointCloud centers_of(SplatModel& model) {
   for (const Disk& disk : model.disks) cloud.positions.push_back(disk.center);
   cloud.classes = std::move(model.classes);
   cloud.intensities = std::move(model.intensities);
+  for (std::size_t k = 0; !model.colors.empty() && k < kRgbColumns.size(); ++k) {
+    std::vector<std::uint8_t> values;
+    for (const ColorBytes& color : model.colors) values.push_back(color[k]);
+    cloud.others.columns.push_back({kRgbColumns[k], std::move(values)});
+  }
   return cloud;
 }
 
@@ -165,7 +170,7 @@ void warn_of_dropped(const fs::path& output, const PointCloud& cloud, ProgressSi
   std::vector<std::string> names;
   const bool has_colors = !file_colors(cloud).empty();
   for (const Column& column : cloud.others.columns) {
-    const bool is_color = column.name == "red" || column.name == "green" || column.name == "blue";
+    const bool is_color = std::ranges::count(kRgbColumns, column.name) > 0;
     if (!has_colors || !is_color) names.push_back(column.name);
   }
   std::string list;

@@ -34,17 +34,24 @@ float ElementValues::error_m(std::size_t k) const {
   return errors_m.empty() ? std::numeric_limits<float>::quiet_NaN() : errors_m[sources[k]];
 }
 
+Vec3f ElementValues::color(std::size_t k) const {
+  if (colors.empty()) return {};
+  const auto& [red, green, blue] = colors[sources[k]];
+  return {static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)};
+}
+
 ElementValues ElementValues::run(std::size_t begin, std::size_t end) const {
-  return {classes, intensities, errors_m, sources.subspan(begin, end - begin)};
+  return {classes, intensities, errors_m, colors, sources.subspan(begin, end - begin)};
 }
 
 LevelSample sample_of(const Disk& disk, const ElementValues& values, std::size_t k) {
-  return {disk.center,        disk.radius,         disk.normal,
-          values.class_id(k), values.intensity(k), values.error_m(k)};
+  return {disk.center,         disk.radius,       disk.normal,    values.class_id(k),
+          values.intensity(k), values.error_m(k), values.color(k)};
 }
 
 LevelSample sample_of(Vec3f position, const ElementValues& values, std::size_t k) {
-  return {position, 0, {0, 0, 1}, values.class_id(k), values.intensity(k), values.error_m(k)};
+  return {position,       0, {0, 0, 1}, values.class_id(k), values.intensity(k), values.error_m(k),
+          values.color(k)};
 }
 
 void CellMerger::find_facings(std::span<const Disk> disks) {
@@ -107,6 +114,7 @@ LevelSample CellMerger::merged_facing(std::size_t facing, std::span<const Disk> 
   const Vec3d center = sums.center_sum / sums.area;
   const Vec3d direction = normalized(sums.normal_sum);
   double reach = 0, intensity = 0, error_m = 0, known = 0;
+  Vec3d color;
   for (std::size_t k = 0; k < disks.size(); ++k) {
     if (facing_of_[k] != facing) continue;
     const Vec3d offset = vec_cast<double>(disks[k].center) - center;
@@ -114,6 +122,7 @@ LevelSample CellMerger::merged_facing(std::size_t facing, std::span<const Disk> 
     reach = std::max(reach, length(across) + static_cast<double>(disks[k].radius));
     const double area = area_of(disks[k]);
     intensity += area * static_cast<double>(values.intensity(k));
+    color = color + area * vec_cast<double>(values.color(k));
     if (std::isnan(values.error_m(k))) continue;
     known += area;
     error_m += area * static_cast<double>(values.error_m(k));
@@ -125,6 +134,7 @@ LevelSample CellMerger::merged_facing(std::size_t facing, std::span<const Disk> 
   sample.normal = vec_cast<float>(against ? -direction : direction);
   sample.class_id = class_of_most_area(facing, disks, values);
   sample.intensity = static_cast<float>(intensity / sums.area);
+  sample.color = vec_cast<float>(color / sums.area);
   sample.error_m =
       known > 0 ? static_cast<float>(error_m / known) : std::numeric_limits<float>::quiet_NaN();
   return sample;

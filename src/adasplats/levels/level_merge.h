@@ -18,11 +18,13 @@ struct ElementValues {
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;
   std::span<const float> errors_m;
+  std::span<const std::array<std::uint8_t, 3>> colors;
   std::span<const std::uint32_t> sources;
 
   std::uint16_t class_id(std::size_t k) const { return classes.empty() ? 0 : classes[sources[k]]; }
   float intensity(std::size_t k) const;  ///< NaN: 0
   float error_m(std::size_t k) const;    ///< NaN: unknown
+  Vec3f color(std::size_t k) const;      ///< 0 to 255; black without colours
   ElementValues run(std::size_t begin, std::size_t end) const;
 };
 
@@ -34,7 +36,7 @@ LevelSample sample_of(Vec3f position, const ElementValues& values, std::size_t k
 /// wall are one facing. Disks at least 45 degrees apart form two facings if each has a tenth of the
 /// area. The disk of a facing has the mean center and normal, weighted by area; the sum of the
 /// areas, limited by the circle around the disks; the class with the largest area; the mean
-/// intensity; and the mean of the known errors.
+/// intensity and colour; and the mean of the known errors.
 class CellMerger {
  public:
   /// Appends the merged disks of a cell with at least one disk.

@@ -98,4 +98,17 @@ std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange
   return elements;
 }
 
+std::vector<LevelColor> encode_colors(std::span<const LevelSample> samples) {
+  std::vector<LevelColor> colors;
+  colors.reserve(samples.size());
+  for (const LevelSample& sample : samples) {
+    LevelColor color = {0, 0, 0, 255};
+    for (int k = 0; k < 3; ++k)
+      color[static_cast<std::size_t>(k)] =
+          quantized<std::uint8_t>(static_cast<double>(sample.color[k]) / 255, 255);
+    colors.push_back(color);
+  }
+  return colors;
+}
+
 }  // namespace adasplats

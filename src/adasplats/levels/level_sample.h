@@ -19,11 +19,15 @@ struct LevelSample {
   std::uint16_t class_id = 0;
   float intensity = 0;
   float error_m = 0;  ///< signed; NaN: unknown
+  Vec3f color;        ///< RGB, 0 to 255
 };
 
 /// Encodes the samples of a node, and sets its box and largest radius. Positions are rounded to
 /// 1/65535 of the box, radii to 1/65535 of the largest; a radius is at least one step.
 std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange intensities,
                                  ByteRange errors_m, LevelNode& node);
+
+/// The colours of samples, rounded.
+std::vector<LevelColor> encode_colors(std::span<const LevelSample> samples);
 
 }  // namespace adasplats

@@ -29,7 +29,7 @@ void check(const LevelInput& input, const LevelOptions& options) {
   const std::size_t size = input.disks.size() + input.positions.size();
   const auto fits = [size](std::size_t values) { return values == 0 || values == size; };
   if ((!input.disks.empty() && !input.positions.empty()) || !fits(input.classes.size()) ||
-      !fits(input.intensities.size()) || !fits(input.errors_m.size()))
+      !fits(input.intensities.size()) || !fits(input.errors_m.size()) || !fits(input.colors.size()))
     throw std::logic_error(
         "level tree: the size of an attribute differs from the number of elements");
   if (options.leaf_size < 1 || options.cells_per_side < 2)
@@ -95,7 +95,7 @@ class NodeMaker {
 
  private:
   ElementValues values_of(std::size_t begin, std::size_t end) const {
-    return {values_.classes, values_.intensities, values_.errors_m,
+    return {values_.classes, values_.intensities, values_.errors_m, values_.colors,
             order_.sources().subspan(begin, end - begin)};
   }
 
@@ -192,23 +192,33 @@ LevelTree::LevelTree(const LevelInput& input, const LevelOptions& options, const
       nodes_.resize(blocks.size(), LevelNode{.level = nodes_[n].level + 1});
     }
     std::vector<std::vector<LevelElement>> made(last - first);
+    std::vector<std::vector<LevelColor>> colors(made.size());
     executor.for_chunks(made.size(), 1, [&](std::size_t k, std::size_t) {
       LevelNode& node = nodes_[first + k];
       const LevelBlock& block = blocks[first + k];
       const std::vector<LevelSample> samples =
           node.child_count == 0 ? maker.leaf(block) : maker.inner(block, node.spacing_m);
       made[k] = encode(samples, intensity_range_, error_range_m_, node);
+      if (!input.colors.empty()) colors[k] = encode_colors(samples);
     });
+    for (const std::vector<LevelColor>& of_node : colors)
+      colors_.insert(colors_.end(), of_node.begin(), of_node.end());
     for (const std::vector<LevelElement>& elements : made) {
       elements_.insert(elements_.end(), elements.begin(), elements.end());
       firsts_.push_back(elements_.size());
     }
   }
   elements_.shrink_to_fit();
+  colors_.shrink_to_fit();
 }
 
 std::span<const LevelElement> LevelTree::elements(std::size_t n) const {
   return std::span(elements_).subspan(firsts_[n], firsts_[n + 1] - firsts_[n]);
+}
+
+std::span<const LevelColor> LevelTree::colors(std::size_t n) const {
+  if (colors_.empty()) return {};
+  return std::span(colors_).subspan(firsts_[n], firsts_[n + 1] - firsts_[n]);
 }
 
 LevelPiece merged_node(const LevelInput& input, const LevelOptions& options,

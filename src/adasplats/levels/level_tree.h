@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,7 +22,8 @@ struct LevelInput {
   std::span<const Vec3f> positions;  ///< points; else empty
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;
-  std::span<const float> errors_m;  ///< signed; NaN: unknown
+  std::span<const float> errors_m;                      ///< signed; NaN: unknown
+  std::span<const std::array<std::uint8_t, 3>> colors;  ///< RGB
 };
 
 /// Range of an attribute's bytes: intensities from 0 to 255, errors from 1 to 255 (0: unknown).
@@ -67,6 +69,9 @@ struct LevelElement {
 };
 static_assert(sizeof(LevelElement) == 16);
 
+/// The colour of an element, RGB and 255, in the layout of the viewer's page.
+using LevelColor = std::array<std::uint8_t, 4>;
+
 /// An octree with level of detail by replacement: a node's elements represent those of all its
 /// leaves. Leaves hold the input's elements. An inner node has elements for every occupied cell of
 /// a grid over its cube: for splats the merged disks of the cell (CellMerger; two at corners), for
@@ -80,13 +85,16 @@ class LevelTree {
  public:
   /// Gives the same bytes on any number of threads, and one empty leaf for an empty input.
   /// Positions and radii must be finite, normals of unit length. Memory in addition to the input:
-  /// about 60 bytes per splat and 45 per point; about 20 of them remain. Errors: std::logic_error
-  /// if the size of an attribute is wrong, or both disks and positions are given.
+  /// about 60 bytes per splat and 45 per point; about 20 of them remain (25 with colours). Errors:
+  /// std::logic_error if the size of an attribute is wrong, or both disks and positions are given.
   LevelTree(const LevelInput& input, const LevelOptions& options, const Executor& executor);
 
   std::span<const LevelNode> nodes() const { return nodes_; }
   /// Elements of node `n` (< nodes().size()).
   std::span<const LevelElement> elements(std::size_t n) const;
+  bool has_colors() const { return !colors_.empty(); }
+  /// Colours of the elements of node `n`; empty without colours.
+  std::span<const LevelColor> colors(std::size_t n) const;
   /// Elements of all nodes, one node after another.
   std::span<const LevelElement> elements() const { return elements_; }
   std::size_t input_size() const { return input_size_; }
@@ -98,6 +106,7 @@ class LevelTree {
   std::vector<LevelNode> nodes_;
   std::vector<std::size_t> firsts_;  ///< first element of each node, and the end
   std::vector<LevelElement> elements_;
+  std::vector<LevelColor> colors_;
   ByteRange intensity_range_;
   /// From 0 to the 98th percentile of the errors' magnitudes, at least 1 mm. If any error is
   /// negative: symmetric and at most 0.5 m, so that a few ghosts do not use up the colours.

@@ -308,7 +308,9 @@ TEST(LevelTree, AMergedDiskHasTheClassWithTheLargestAreaAndMeans) {
     intensities[i] = 1;
     errors_m[i] = -0.2F;
   }
-  const LevelTree tree({disks, {}, classes, intensities, errors_m}, kSmall, Executor(1));
+  std::vector<std::array<std::uint8_t, 3>> colors(300, {0, 30, 90});
+  for (std::size_t i = 0; i < 100; ++i) colors[i] = {255, 30, 0};
+  const LevelTree tree({disks, {}, classes, intensities, errors_m, colors}, kSmall, Executor(1));
   ASSERT_GT(tree.nodes()[0].child_count, 0U);
   const std::vector<Decoded> root = decode(tree, 0);
   ASSERT_EQ(root.size(), 1U);
@@ -318,6 +320,15 @@ TEST(LevelTree, AMergedDiskHasTheClassWithTheLargestAreaAndMeans) {
   EXPECT_EQ(root[0].class_id, 9);
   EXPECT_NEAR(root[0].intensity, 170, 1);
   EXPECT_EQ(root[0].error, 1);  // -0.2 m is the largest known error
+  ASSERT_EQ(tree.colors(0).size(), 1U);
+  EXPECT_EQ(tree.colors(0)[0], (LevelColor{170, 30, 30, 255}));
+  std::size_t of_leaves = 0;
+  for (std::size_t n = 1; n < tree.nodes().size(); ++n) {
+    ASSERT_EQ(tree.colors(n).size(), tree.elements(n).size());
+    for (const LevelColor& color : tree.colors(n)) of_leaves += color[0] == 255 ? 1 : 0;
+  }
+  EXPECT_EQ(of_leaves, 100U);
+  EXPECT_TRUE(LevelTree({disks}, kSmall, Executor(1)).colors(0).empty());
 }
 
 TEST(LevelTree, EmptyAndSingleElement) {

@@ -224,6 +224,26 @@ void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud
                    report);
 }
 
+struct ColoredPoints {
+  std::vector<Vec3f> positions;
+  std::vector<ColorBytes> colors;
+};
+
+/// The colours of the points that stay, out of `cloud`; none if all are equal.
+ColoredPoints take_colors(PointCloud& cloud, const ClassTables& tables) {
+  ColoredPoints colored;
+  const std::vector<ColorBytes> colors = file_colors(cloud);
+  cloud.others = {};
+  if (!has_several(colors)) return colored;
+  const bool removes = !tables.removed.empty() && !cloud.classes.empty();
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (removes && tables.removed[cloud.classes[i]] != 0) continue;
+    colored.positions.push_back(cloud.positions[i]);
+    colored.colors.push_back(colors[i]);
+  }
+  return colored;
+}
+
 std::size_t count_of(const OriginCounts& counts, OriginKind kind) {
   return counts[static_cast<std::size_t>(kind)];
 }
@@ -291,6 +311,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   }
   const ClassTables tables =
       class_tables(cloud, labels, options, method == SplatMethod::semantic, report);
+  const ColoredPoints colored = take_colors(cloud, tables);
   {
     StepClock clock(report.steps, progress);
     const auto step = [&](std::string_view name, int passes) { clock.begin(name, passes); };
@@ -299,6 +320,10 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
           run(chosen, *engine, std::move(cloud), tables, options, step, model, report);
         },
         options.recipe);
+    if (!colored.colors.empty()) {
+      clock.begin("colors", 1);
+      model.colors = colors_of_disks(model.disks, colored.positions, colored.colors, executor);
+    }
     clock.end();
   }
   if (report.consistent && report.consistent->origins) {

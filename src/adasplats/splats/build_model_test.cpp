@@ -149,6 +149,37 @@ TEST(BuildModel, RemovesDynamicObjectsByLabel) {
   EXPECT_EQ(build(cloud, options, 2, DynamicRemoval::none).second.points_dynamic, 0U);
 }
 
+// Oracle: the colours that the classes were given. Points of removed classes give none.
+TEST(BuildModel, KeepsTheColoursOfThePoints) {
+  PointCloud cloud = small_place(5000, 0.005);
+  std::vector<std::uint16_t> red(cloud.size()), green(cloud.size()), blue(cloud.size(), 256 * 9);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.classes[i] == 80) cloud.classes[i] = 10;  // a car
+    red[i] = cloud.classes[i] == 40 ? 256 * 200 : 0;
+    green[i] = cloud.classes[i] == 10 ? 256 * 255 : 0;
+  }
+  cloud.others.columns = {{"red", red}, {"green", green}, {"blue", blue}};
+  PaperOptions paper;
+  paper.variant = PaperVariant::semantic;
+  ProgressSink quiet;
+  for (const MethodOptions& method : {MethodOptions(paper), MethodOptions(ConsistentOptions())}) {
+    const SplatModel model =
+        build_model(cloud, &semantickitti_labels(), {method}, Executor(2), quiet).first;
+    ASSERT_EQ(model.colors.size(), model.size());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      EXPECT_EQ(model.colors[i][1], 0) << i;
+      EXPECT_EQ(model.colors[i][2], 9) << i;
+      wrong += model.colors[i][0] != (model.classes[i] == 40 ? 200 : 0) ? 1 : 0;
+    }
+    EXPECT_LT(wrong, model.size() / 5) << "only where floor and wall meet";
+  }
+  cloud.others.columns = {{"red", red}, {"green", green}};
+  EXPECT_TRUE(build(cloud, paper).first.colors.empty());
+  cloud.others.columns = {{"red", blue}, {"green", blue}, {"blue", blue}};
+  EXPECT_TRUE(build(cloud, paper).first.colors.empty()) << "all points have the same";
+}
+
 TEST(BuildModel, DenoisingRemovesPlantedNoise) {
   PointCloud cloud = small_place(20000, 0.002);
   for (std::size_t i = 0; i < cloud.size(); i += 200)  // floor points 6 cm above the floor
@@ -321,9 +352,12 @@ TEST(SplatModelFile, RoundTrip) {
   SplatModel model = build(small_place(3000, 0.005), options).first;
   EXPECT_EQ(model.network_sha256, "");
   model.network_sha256 = "0123abcd";
+  for (std::size_t i = 0; i < model.size(); ++i)
+    model.colors.push_back({static_cast<std::uint8_t>(i), 255, static_cast<std::uint8_t>(i / 7)});
   save_model(path, model);
   const SplatModel near = load_model(path);
   EXPECT_TRUE(same_bytes(model, near));
+  EXPECT_EQ(near.colors, model.colors);
   EXPECT_EQ(near.network_sha256, "0123abcd");
   EXPECT_EQ(near.label_scheme, "semantickitti");
   EXPECT_EQ(near.method, "semantic");

@@ -41,6 +41,7 @@ Json layer_json(const ViewLayer& layer, std::size_t id) {
           {"has_classes", layer.has_classes},
           {"has_intensities", layer.has_intensities},
           {"has_errors", layer.has_errors},
+          {"has_colors", layer.tree.has_colors()},
           {"part", layer.part},
           {"intensity_range", json_of(intensity_range_of(layer))},
           {"error_range_m", json_of(layer.tree.error_range_m())},

@@ -74,10 +74,13 @@ std::span<const LevelNode> nodes_of(const ViewLayer& layer) {
 
 std::string node_bytes(const ViewLayer& layer, std::size_t node) {
   if (layer.city) return layer.city->node_bytes(node);
-  const std::span<const std::byte> bytes = layer.mesh ? std::as_bytes(layer.mesh->elements(node))
-                                                      : std::as_bytes(layer.tree.elements(node));
   // As characters, for the body of a reply.
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  const auto text_of = [](std::span<const std::byte> bytes) {
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  if (layer.mesh) return text_of(std::as_bytes(layer.mesh->elements(node)));
+  return text_of(std::as_bytes(layer.tree.elements(node))) +
+         text_of(std::as_bytes(layer.tree.colors(node)));
 }
 
 ByteRange intensity_range_of(const ViewLayer& layer) {
@@ -109,7 +112,8 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
                    .positions = {},
                    .classes = model.classes,
                    .intensities = model.intensities,
-                   .errors_m = errors_m};
+                   .errors_m = errors_m,
+                   .colors = model.colors};
   const Vec3d shift = model.origin - origin;
   if (shift.x != 0 || shift.y != 0 || shift.z != 0) {
     storage = model.disks;
@@ -148,12 +152,15 @@ ViewLayer model_layer(std::string name, const AnyModel& model, Vec3d origin,
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor) {
   std::vector<Vec3f> storage;
+  std::vector<ColorBytes> colors = file_colors(cloud);
+  if (!has_several(colors)) colors.clear();
   const LevelInput input{
       .disks = {},
       .positions = relative_to_origin(cloud.positions, cloud.origin, origin, storage),
       .classes = cloud.classes,
       .intensities = cloud.intensities,
-      .errors_m = errors_m};
+      .errors_m = errors_m,
+      .colors = colors};
   return {std::move(name),
           false,
           has_nonzero_class(cloud.classes),

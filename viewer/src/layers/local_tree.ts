@@ -3,7 +3,7 @@
 
 // The tree of a local layer in the format of docs/viewer_protocol.md. Inner nodes are samples.
 
-import { kElementBytes, type TreeNode } from '../server/binary';
+import { kColorBytes, kElementBytes, type TreeNode } from '../server/binary';
 import type { LayerInfo, Vec3 } from '../server/protocol';
 import type { FilePoints } from './ply_file';
 
@@ -91,7 +91,9 @@ class Encoder {
     let largest = 0;
     if (points.radii) for (const row of rows) largest = Math.max(largest, points.radii[row]);
     largest *= enlarge;
-    const view = new DataView(new ArrayBuffer(rows.length * kElementBytes));
+    const { colors } = points;
+    const size = kElementBytes + (colors ? kColorBytes : 0);
+    const view = new DataView(new ArrayBuffer(rows.length * size));
     const axes = [points.x, points.y, points.z];
     rows.forEach((row, k) => {
       const at = k * kElementBytes;
@@ -101,6 +103,8 @@ class Encoder {
         view.setUint16(at + 2 * i, Math.round(65535 * share), true);
       }
       this.attributes(view, at, row, largest > 0 ? enlarge / largest : 0);
+      const colorAt = rows.length * kElementBytes + k * kColorBytes;
+      colors?.forEach((channel, i) => view.setUint8(colorAt + i, channel[row]));
     });
     const node: TreeNode = {
       low,
@@ -185,6 +189,7 @@ export function makeLocalTree(
     has_classes: points.classes?.some((c) => c !== 0) ?? false,
     has_intensities: points.intensities !== null,
     has_errors: false,
+    has_colors: points.colors !== null,
     intensity_range: range,
     error_range_m: [0, 1],
     part: '',

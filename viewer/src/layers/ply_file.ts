@@ -14,6 +14,8 @@ export interface FilePoints {
   z: Float64Array;
   classes: Uint16Array | null;
   intensities: Float32Array | null;
+  /** Red, green and blue, 0 to 255. */
+  colors: [Uint8Array, Uint8Array, Uint8Array] | null;
   /** Null for points; splats have radii and normals. */
   radii: Float32Array | null;
   normals: [Float32Array, Float32Array, Float32Array] | null;
@@ -124,7 +126,7 @@ function textColumns(buffer: ArrayBuffer, header: Header): Column {
   };
 }
 
-function filled<T extends Float64Array | Float32Array | Uint16Array>(
+function filled<T extends Float64Array | Float32Array | Uint16Array | Uint8Array>(
   values: T,
   column: (row: number) => number,
 ): T {
@@ -144,6 +146,9 @@ export function parsePly(buffer: ArrayBuffer): FilePoints {
   const [x, y, z] = axes.map((a) => filled(new Float64Array(count), a!));
   const classes = column(['class', 'label', 'classification', 'scalar_label', 'scalar_class']);
   const intensities = column(['intensity', 'reflectance', 'scalar_intensity']);
+  const bytes = ['red', 'green', 'blue'].map((name) =>
+    header.properties.some((p) => p.name === name && p.size === 1) ? column([name]) : null,
+  );
   const radius = column(['radius']);
   const normals = ['nx', 'ny', 'nz'].map((name) => column([name]));
   const isSplats = radius !== null && normals.every((n) => n !== null);
@@ -154,6 +159,9 @@ export function parsePly(buffer: ArrayBuffer): FilePoints {
     z,
     classes: classes && filled(new Uint16Array(count), classes),
     intensities: intensities && filled(new Float32Array(count), intensities),
+    colors: bytes.every((c) => c !== null)
+      ? (bytes.map((c) => filled(new Uint8Array(count), c!)) as FilePoints['colors'])
+      : null,
     radii: isSplats ? filled(new Float32Array(count), radius) : null,
     normals: isSplats
       ? (normals.map((n) => filled(new Float32Array(count), n!)) as FilePoints['normals'])

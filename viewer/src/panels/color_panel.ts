@@ -16,11 +16,13 @@ const kNames: Record<ColorMode, string> = {
   shading: 'Shading',
   height: 'Height',
   error: 'Error',
+  rgb: 'Colour (RGB)',
 };
 
 function available(layers: LayerInfo[], mode: ColorMode): boolean {
   if (mode === 'class') return layers.some((l) => l.has_classes);
   if (mode === 'intensity') return layers.some((l) => l.has_intensities);
+  if (mode === 'rgb') return layers.some((l) => l.has_colors);
   if (mode === 'error') return layers.some((l) => l.has_errors);
   return true;
 }
@@ -30,6 +32,7 @@ export function firstMode({ layers, classes }: SceneInfo): ColorMode {
   const [first] = layers;
   if (!first) return 'shading';
   if (first.kind === 'points' && first.has_errors) return 'error';
+  if (first.has_colors) return 'rgb';
   if (first.has_classes && classes.length > 0) return 'class';
   return first.has_intensities ? 'intensity' : 'height';
 }

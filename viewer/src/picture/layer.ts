@@ -19,7 +19,14 @@ import {
 } from 'three';
 import type { Tree } from './lod';
 import { NodeTable } from './node_table';
-import { elementBytes, kTriangleBytes, parseElements, parseNodes } from '../server/binary';
+import {
+  elementBytes,
+  kColorBytes,
+  kTriangleBytes,
+  parseElements,
+  parseNodes,
+  type Elements,
+} from '../server/binary';
 import { fetchBytes } from '../server/early';
 import type { LayerInfo } from '../server/protocol';
 import {
@@ -90,13 +97,14 @@ export class Layer implements Tree {
     /** The bytes of each node of a layer that is not on the server. */
     private readonly local: ArrayBuffer[] | null = null,
   ) {
-    const { has_classes, has_intensities, has_errors } = info;
+    const { has_classes, has_intensities, has_errors, has_colors } = info;
     this.has_bits =
       (has_classes ? 1 : 0) |
       (has_intensities ? 2 : 0) |
       (has_errors ? 4 : 0) |
       (info.error_range_m[0] < 0 ? 8 : 0) |
-      (info.kind === 'points' ? 16 : 0);
+      (info.kind === 'points' ? 16 : 0) |
+      (has_colors ? 32 : 0);
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
       ...kShaders[info.kind],
@@ -158,11 +166,11 @@ export class Layer implements Tree {
     if (this.loaded.has(node)) return;
     const count = this.table.node(node).count;
     const { kind, has_classes } = this.info;
-    const elements = parseElements(bytes, count, kind);
-    const words = elementBytes(kind) / 4;
+    const elements = parseElements(bytes, count, this.info);
+    const { words } = elements;
+    const size = elementBytes(kind) / 4;
     if (has_classes)
-      for (let i = words - 1; i < elements.length; i += words)
-        this.classes.add(elements[i] & 0xffff);
+      for (let i = size - 1; i < words.length; i += size) this.classes.add(words[i] & 0xffff);
     const object = this.make(elements);
     object.frustumCulled = false;
     object.matrixAutoUpdate = false;
@@ -185,7 +193,9 @@ export class Layer implements Tree {
 
   /** A dummy element that compiles the layer's shaders. */
   sample(): Mesh | Points {
-    const object = this.make(new Uint32Array(elementBytes(this.info.kind) / 4));
+    const { kind, has_colors } = this.info;
+    const words = new Uint32Array(elementBytes(kind) / 4);
+    const object = this.make({ words, colors: has_colors ? new Uint8Array(kColorBytes) : null });
     object.frustumCulled = false;
     return object;
   }
@@ -226,9 +236,9 @@ export class Layer implements Tree {
     return `layers/${this.info.id}/${path}`;
   }
 
-  private make(elements: Uint32Array): Mesh | Points {
+  private make(elements: Elements): Mesh | Points {
     if (this.info.kind === 'points') return this.points(elements);
-    return this.info.kind === 'mesh' ? this.triangles(elements) : this.disks(elements);
+    return this.info.kind === 'mesh' ? this.triangles(elements.words) : this.disks(elements);
   }
 
   private setNode(node: number, oneClass: number | null) {
@@ -243,14 +253,19 @@ export class Layer implements Tree {
     this.material.uniformsNeedUpdate = true;
   }
 
-  private disks(elements: Uint32Array): Mesh {
+  private disks({ words, colors }: Elements): Mesh {
     const geometry = new InstancedBufferGeometry();
     geometry.setIndex(new BufferAttribute(kTriangles, 1));
     geometry.setAttribute('corner', new BufferAttribute(kCorners, 2));
-    const attribute = new InstancedBufferAttribute(elements, 4);
+    const attribute = new InstancedBufferAttribute(words, 4);
     freeAfterUpload(attribute);
     geometry.setAttribute('element', attribute);
-    geometry.instanceCount = elements.length / 4;
+    if (colors) {
+      const rgb = new InstancedBufferAttribute(colors, kColorBytes, true);
+      freeAfterUpload(rgb);
+      geometry.setAttribute('rgb', rgb);
+    }
+    geometry.instanceCount = words.length / 4;
     return new Mesh(geometry, this.material);
   }
 
@@ -270,12 +285,17 @@ export class Layer implements Tree {
     return new Mesh(geometry, this.material);
   }
 
-  private points(elements: Uint32Array): Points {
+  private points({ words, colors }: Elements): Points {
     const geometry = new BufferGeometry();
-    const attribute = new BufferAttribute(elements, 4);
+    const attribute = new BufferAttribute(words, 4);
     freeAfterUpload(attribute);
     geometry.setAttribute('element', attribute);
-    geometry.setDrawRange(0, elements.length / 4);
+    if (colors) {
+      const rgb = new BufferAttribute(colors, kColorBytes, true);
+      freeAfterUpload(rgb);
+      geometry.setAttribute('rgb', rgb);
+    }
+    geometry.setDrawRange(0, words.length / 4);
     return new Points(geometry, this.material);
   }
 }

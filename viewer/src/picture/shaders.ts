@@ -4,7 +4,15 @@
 // Shaders of disks, triangles, points and scans, and of the final picture.
 
 /** Values of the uniform color_mode. */
-export const kColorModes = ['class', 'intensity', 'normal', 'shading', 'height', 'error'] as const;
+export const kColorModes = [
+  'class',
+  'intensity',
+  'normal',
+  'shading',
+  'height',
+  'error',
+  'rgb',
+] as const;
 export type ColorMode = (typeof kColorModes)[number];
 
 /** Values of the uniform scan_mode. */
@@ -33,11 +41,13 @@ uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 cameraPosition;
 uniform sampler2D classes, maps;
 uniform int color_mode;
-uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed errors, 16: holes
+uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed errors, 16: holes,
+                            // 32: colours
 uniform vec2 height_range_m;
 uniform int one_class;      // class of all elements of an object; -1: class per element
 uniform vec3 low, size;
 in uvec4 element;
+in vec4 rgb;
 flat out vec3 color;
 
 // World position: modelMatrix places objects, and is the identity for layers of the scene.
@@ -77,6 +87,7 @@ vec3 base_color(vec3 position, vec3 normal) {
     return (has & 2) != 0 ? map_color(2, 0.12 + 0.88 * float((element.w >> 16) & 255u) / 255.0)
                           : kUnknown;
   if (color_mode == 2) return 0.5 + 0.5 * normal;
+  if (color_mode == 6) return (has & 32) != 0 ? rgb.rgb : kPlain;
   if (color_mode == 4)
     return map_color(0, (position.z - height_range_m.x) / (height_range_m.y - height_range_m.x));
   if (color_mode == 5) {

@@ -21,6 +21,8 @@ const kNodeBytes = 48;
 export const kBlockNodes = 1024;
 export const kElementBytes = 16;
 export const kTriangleBytes = 40;
+/** Of the colour of an element, after the elements of a node. */
+export const kColorBytes = 4;
 
 /** Size of an element of a node. */
 export function elementBytes(kind: LayerKind): number {
@@ -61,11 +63,26 @@ export function parseNodes(bytes: ArrayBuffer, block: number, nodes: number): Tr
   return Array.from({ length: count }, (_, i) => treeNode(view, i, first + i, nodes));
 }
 
-/** Parses nodes/N.bin: 4 words per element, 10 per triangle. */
-export function parseElements(bytes: ArrayBuffer, count: number, kind: LayerKind): Uint32Array {
-  if (bytes.byteLength !== count * elementBytes(kind))
+export interface Elements {
+  /** 4 words per element, 10 per triangle. */
+  words: Uint32Array;
+  /** Red, green, blue and 255 per element; null without colours. */
+  colors: Uint8Array | null;
+}
+
+/** Parses nodes/N.bin. */
+export function parseElements(
+  bytes: ArrayBuffer,
+  count: number,
+  { kind, has_colors }: { kind: LayerKind; has_colors: boolean },
+): Elements {
+  const size = count * elementBytes(kind);
+  if (bytes.byteLength !== size + (has_colors ? count * kColorBytes : 0))
     throw new ProtocolError(`node: ${bytes.byteLength} bytes for ${count} elements`);
-  return new Uint32Array(bytes);
+  return {
+    words: new Uint32Array(bytes, 0, size / 4),
+    colors: has_colors ? new Uint8Array(bytes, size) : null,
+  };
 }
 
 export interface ScanPacket {

@@ -22,6 +22,7 @@ export interface LayerInfo {
   has_classes: boolean;
   has_intensities: boolean;
   has_errors: boolean;
+  has_colors: boolean;
   intensity_range: [number, number];
   error_range_m: [number, number];
   /** Part of the beams with errors: 'early', 'late', 'ghosts', 'holes'; '': all, or no errors. */
@@ -199,6 +200,7 @@ function layer(value: unknown, what: string): LayerInfo {
     has_classes: v.has_classes === true,
     has_intensities: v.has_intensities === true,
     has_errors: v.has_errors === true,
+    has_colors: v.has_colors === true,
     intensity_range: range(v.intensity_range, `${what}.intensity_range`),
     error_range_m: range(v.error_range_m, `${what}.error_range_m`),
     part: typeof v.part === 'string' ? v.part : '',

@@ -91,13 +91,13 @@ async function nodesOf(
 }
 
 function pointsOf(layer: Layer, node: number, bytes: ArrayBuffer, frame: SliceFrame): SlicePoint[] {
-  const { low, high } = layer.table.node(node);
+  const { low, high, count } = layer.table.node(node);
   const halves = new Uint16Array(bytes);
   const all = new Uint8Array(bytes);
   const scale = [0, 1, 2].map((i) => (high[i] - low[i]) / 65535);
   const { name, has_classes, has_intensities } = layer.info;
   const points: SlicePoint[] = [];
-  for (let k = 0; k < bytes.byteLength / kElementBytes; ++k) {
+  for (let k = 0; k < count; ++k) {
     const at = k * (kElementBytes / 2);
     const x = low[0] + scale[0] * halves[at];
     const y = low[1] + scale[1] * halves[at + 1];

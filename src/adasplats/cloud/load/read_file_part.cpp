@@ -234,14 +234,13 @@ void use_copies(const PointFile& file, const PointCloud& cloud, std::vector<cons
 void keep_others(const PointFile& file, std::span<const Column* const> used, KeptColumns kept,
                  CloudPart& part) {
   if (kept == KeptColumns::none) return;
-  constexpr std::array<const char*, 3> kNames = {"red", "green", "blue"};
   std::vector<Column>& others = part.cloud.others.columns;
   const auto colors = find_triple(file, kColorNames);
   const Column* packed = colors ? nullptr : file.find("rgb");
   if (!colors && packed == nullptr) packed = file.find("rgba");
   if (packed != nullptr) others = unpacked_colors(*packed);
-  for (std::size_t k = 0; colors && k < kNames.size(); ++k)
-    others.push_back({kNames[k], (*colors)[k]->values});
+  for (std::size_t k = 0; colors && k < kRgbColumns.size(); ++k)
+    others.push_back({kRgbColumns[k], (*colors)[k]->values});
   if (kept == KeptColumns::colors) return;
   for (const Column& column : file.table.columns) {
     const bool is_color = &column == packed || (colors && std::ranges::count(*colors, &column) > 0);

@@ -137,15 +137,13 @@ unsigned factor_of_bytes(std::span<const Column* const> colors) {
   return 0;
 }
 
-constexpr std::array<std::string_view, 3> kColorColumns = {"red", "green", "blue"};
-
 std::vector<const Column*> colors_in(const OtherColumns& others) {
   std::vector<const Column*> colors;
-  for (const std::string_view name : kColorColumns) {
+  for (const std::string_view name : kRgbColumns) {
     const auto found = std::ranges::find(others.columns, name, &Column::name);
     if (found != others.columns.end()) colors.push_back(&*found);
   }
-  return colors.size() == kColorColumns.size() ? colors : std::vector<const Column*>();
+  return colors.size() == kRgbColumns.size() ? colors : std::vector<const Column*>();
 }
 
 /// Properties of PLY have no blanks and at most 32 bits, or are doubles. Colours are bytes where
@@ -250,7 +248,7 @@ void add_others_las(const OtherColumns& others, OtherViews& views) {
     const bool is_reserved = is_las_field<std::uint8_t>(name) ||
                              is_las_field<std::uint16_t>(name) || name == "gps_time" ||
                              name == "scan_angle" || name == "nir" || name == "classification" ||
-                             name == "red" || name == "green" || name == "blue";
+                             std::ranges::count(kRgbColumns, name) > 0;
     views.add({column.name.substr(0, kMaxName - 1) + (is_reserved ? "_" : ""), column.values});
   }
 }

@@ -87,16 +87,15 @@ std::string describe_origins(const OriginCounts& counts) {
   return text;
 }
 
-std::vector<std::array<std::uint8_t, 3>> file_colors(const PointCloud& cloud) {
+std::vector<ColorBytes> color_bytes(std::span<const Column> columns, std::size_t rows) {
   std::array<const Column*, 3> channels{};
-  constexpr std::array<std::string_view, 3> kNames = {"red", "green", "blue"};
   double most = 0;
   bool are_whole = true;
   for (std::size_t k = 0; k < channels.size(); ++k) {
-    const auto found = std::ranges::find(cloud.others.columns, kNames[k], &Column::name);
-    if (found == cloud.others.columns.end() || found->size() != cloud.size()) return {};
+    const auto found = std::ranges::find(columns, std::string_view(kRgbColumns[k]), &Column::name);
+    if (found == columns.end() || found->size() != rows) return {};
     channels[k] = &*found;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t i = 0; i < rows; ++i) {
       const double value = found->as_double(i);
       if (!std::isfinite(value)) continue;
       most = std::max(most, value);
@@ -105,8 +104,8 @@ std::vector<std::array<std::uint8_t, 3>> file_colors(const PointCloud& cloud) {
   }
   constexpr double kMost = 255, kOfByte = 256;
   const double scale = most > kMost ? 1 / kOfByte : most <= 1 && !are_whole ? kMost : 1;
-  std::vector<std::array<std::uint8_t, 3>> colors(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i)
+  std::vector<ColorBytes> colors(rows);
+  for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t k = 0; k < channels.size(); ++k) {
       const double value = scale * channels[k]->as_double(i);
       colors[i][k] =

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -119,10 +120,24 @@ OriginCounts count_origins(const PointCloud& cloud);
 /// origin.
 std::string describe_origins(const OriginCounts& counts);
 
-/// 8-bit colours of the points from the columns red, green and blue of `others`; empty without
-/// them. Values up to 255 are used as they are, whole numbers up to 65535 divided by 256, fractions
-/// up to 1 multiplied by 255.
-std::vector<std::array<std::uint8_t, 3>> file_colors(const PointCloud& cloud);
+/// 8-bit RGB.
+using ColorBytes = std::array<std::uint8_t, 3>;
+/// Names of the columns of colours.
+inline constexpr std::array<const char*, 3> kRgbColumns = {"red", "green", "blue"};
+
+/// 8-bit colours from the columns red, green and blue; empty if one of them is missing or does not
+/// have `rows` values. Values up to 255 are used as they are, whole numbers up to 65535 divided by
+/// 256, fractions up to 1 multiplied by 255.
+std::vector<ColorBytes> color_bytes(std::span<const Column> columns, std::size_t rows);
+/// The same of the points of a cloud, from `others`.
+inline std::vector<ColorBytes> file_colors(const PointCloud& cloud) {
+  return color_bytes(cloud.others.columns, cloud.size());
+}
+
+/// Whether colours differ; files often have a column of black for colours that were not measured.
+inline bool has_several(std::span<const ColorBytes> colors) {
+  return std::ranges::any_of(colors, [&](const ColorBytes& c) { return c != colors.front(); });
+}
 
 /// The points of `cloud` with all attributes, in the order of `indices`; empty beams stay.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);

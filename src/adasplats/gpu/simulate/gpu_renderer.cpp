@@ -73,6 +73,7 @@ GpuRenderer::GpuRenderer(const SceneParts& parts, const ImageScene& scene,
   classes_ = gpu::moved_table(tables_.classes, primitives, stream);
   groups_ = gpu::moved_table(tables_.groups, primitives, stream);
   intensities_ = gpu::moved_table(tables_.intensities, primitives, stream);
+  colors_ = gpu::moved_table(tables_.colors, primitives, stream);
   class_colors_ = gpu::moved_table(tables_.class_colors, tables_.class_color_count, stream);
   stream_.wait("copy the colours of the scene to the GPU");
 }

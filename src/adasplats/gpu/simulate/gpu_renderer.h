@@ -45,6 +45,7 @@ class GpuRenderer final : public ImageRenderer {
   gpu::DeviceBuffer<std::uint16_t> classes_;
   gpu::DeviceBuffer<SemanticGroup> groups_;
   gpu::DeviceBuffer<float> intensities_;
+  gpu::DeviceBuffer<ColorBytes> colors_;
   gpu::DeviceBuffer<Vec3f> class_colors_;
   std::array<std::unique_ptr<gpu::RenderSlot>, 2> slots_;
   std::mutex mutex_;  ///< of the slots

@@ -211,7 +211,9 @@ TEST_P(OnGpu, PicturesMatchTheCpu) {
   std::vector<std::uint16_t> classes;
   std::vector<SemanticGroup> groups;
   std::vector<float> intensities;
+  std::vector<ColorBytes> colors;
   for (std::size_t i = 0; i < disks_.size(); ++i) {
+    colors.push_back({static_cast<std::uint8_t>(i % 251), static_cast<std::uint8_t>(i % 13), 77});
     classes.push_back(i % 3 == 0 ? 40 : 50);
     groups.push_back(static_cast<SemanticGroup>(i % 4));
     intensities.push_back(i % 7 == 0 ? NAN : 0.001F * static_cast<float>(i % 1000));
@@ -222,13 +224,14 @@ TEST_P(OnGpu, PicturesMatchTheCpu) {
   scene.attributes.classes = classes;
   scene.attributes.intensities = intensities;
   scene.groups = groups;
+  scene.colors = colors;
   scene.labels = &labels;
   scene.origin = kOrigin;
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{3, 1, 0.3});
   camera.width = 93;  // no multiples of a tile
   camera.height = 61;
   for (const ImageColor color : {ImageColor::shading, ImageColor::semantic, ImageColor::normal,
-                                 ImageColor::intensity, ImageColor::range}) {
+                                 ImageColor::intensity, ImageColor::range, ImageColor::rgb}) {
     for (const int samples : {1, 2, 3}) {
       ImageOptions options;
       options.color = color;

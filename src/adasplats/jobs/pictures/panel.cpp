@@ -108,8 +108,10 @@ void Panel::prepare(const PanelLook& look, SharedRange& range) {
   }
   color_ = look.color.value_or(model_ ? model_->default_color()
                                       : default_color(cloud_, labels_ ? &*labels_ : nullptr));
-  if (model_ && color_ == ImageColor::rgb)
-    throw Error(ErrorKind::usage, "color rgb is for points: a model has no colours of points");
+  if (model_ && color_ == ImageColor::rgb && model_->image_scene().colors.empty())
+    throw Error(ErrorKind::usage,
+                "color rgb: the model has no colours (those of files with red, "
+                "green and blue are kept by 'adasplats model')");
   if (!has_values(color_) || !point_errors_m_.empty()) return;
   const float lift = color_ == ImageColor::height ? static_cast<float>(origin_z()) : 0.0F;
   if (!range.contains(color_)) {

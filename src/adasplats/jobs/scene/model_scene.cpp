@@ -123,7 +123,10 @@ ImageScene ModelScene::image_scene() const {
   ImageScene scene;
   scene.view = view();
   scene.attributes = model_attributes();
-  if (const SplatModel* model = splats()) scene.groups = model->groups;
+  if (const SplatModel* model = splats()) {
+    scene.groups = model->groups;
+    scene.colors = model->colors;
+  }
   scene.labels = labels_ ? &*labels_ : nullptr;
   scene.origin = origin();
   return scene;
@@ -131,6 +134,7 @@ ImageScene ModelScene::image_scene() const {
 
 ImageColor ModelScene::default_color() const {
   const ImageScene scene = image_scene();
+  if (!scene.colors.empty()) return ImageColor::rgb;
   if (const auto color = adasplats::default_color(scene.attributes.classes,
                                                   scene.attributes.intensities, scene.labels))
     return *color;

@@ -69,8 +69,8 @@ class ModelScene final : public ScanScene {
   const LabelScheme* labels() const override { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
-  /// The first that the model has: classes with a colour for most of it, intensities, the paper's
-  /// groups, heights.
+  /// The first that the model has: colours, classes with a colour for most of it, intensities, the
+  /// paper's groups, heights.
   ImageColor default_color() const;
   /// A picture of image_scene().
   Image render(const Camera& camera, const ImageOptions& options) const;

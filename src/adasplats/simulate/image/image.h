@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/sensors/camera.h"
@@ -29,7 +30,7 @@ enum class ImageColor : std::uint8_t {
   intensity,  ///< measured intensity, 2nd to 98th percentile; grey if there is none
   range,      ///< distance, on a logarithmic scale from 1 m to 100 m
   height,     ///< world z, 2nd to 98th percentile
-  rgb,        ///< colours in the file of points; of models, which have none, grey
+  rgb,        ///< colours of the points in their file; grey if there are none
   error,      ///< the intensities are signed errors: blue, white, red; grey if unknown
 };
 
@@ -60,6 +61,7 @@ struct ImageScene {
   SceneView view;
   PrimitiveAttributes attributes;
   std::span<const SemanticGroup> groups;  ///< one per primitive, or empty
+  std::span<const ColorBytes> colors;  ///< of the points in their file; one per primitive, or empty
   const LabelScheme* labels = nullptr;
   Vec3d origin;
 };

@@ -112,7 +112,7 @@ ValueRange shown_range(const PointCloud& cloud, ImageColor color) {
 }
 
 ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels) {
-  if (has_several_values<Rgb>(file_colors(cloud))) return ImageColor::rgb;
+  if (has_several(file_colors(cloud))) return ImageColor::rgb;
   return default_color(cloud.classes, cloud.intensities, labels).value_or(ImageColor::height);
 }
 

@@ -42,6 +42,7 @@ Shading::Shading(const ImageScene& scene, const ImageOptions& options) {
   const std::size_t primitives = scene.view.primitive_count();
   check_size(scene.attributes.classes.size(), primitives, "classes");
   check_size(scene.attributes.intensities.size(), primitives, "intensities");
+  check_size(scene.colors.size(), primitives, "colors");
   check_size(scene.groups.size(), primitives, "groups");
   tables_.disks = scene.view.disks.data();
   tables_.disk_count = static_cast<std::uint32_t>(scene.view.disk_count());
@@ -52,6 +53,7 @@ Shading::Shading(const ImageScene& scene, const ImageOptions& options) {
   tables_.classes = data_or_null(scene.attributes.classes);
   tables_.groups = data_or_null(scene.groups);
   tables_.intensities = data_or_null(scene.attributes.intensities);
+  tables_.colors = data_or_null(scene.colors);
   tables_.color = options.color;
   tables_.range = options.range.value_or(shown_range(scene, options.color));
   if (scene.labels == nullptr) return;

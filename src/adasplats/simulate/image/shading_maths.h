@@ -25,6 +25,7 @@ struct ShadingTables {
   const std::uint16_t* classes = nullptr;
   const SemanticGroup* groups = nullptr;
   const float* intensities = nullptr;
+  const ColorBytes* colors = nullptr;   ///< as in the file
   const Vec3f* class_colors = nullptr;  ///< by class id; negative: none
   std::uint32_t class_color_count = 0;
   ImageColor color = ImageColor::semantic;
@@ -95,6 +96,13 @@ ADASPLATS_HD inline Vec3f intensity_color(const ShadingTables& tables, std::uint
   return color_in(tables.range, intensity);
 }
 
+ADASPLATS_HD inline Vec3f file_color(const ShadingTables& tables, std::uint32_t primitive) {
+  if (tables.colors == nullptr) return kNeutral;
+  const std::uint8_t* rgb = &tables.colors[primitive][0];
+  return {static_cast<float>(rgb[0]) / 255, static_cast<float>(rgb[1]) / 255,
+          static_cast<float>(rgb[2]) / 255};
+}
+
 ADASPLATS_HD inline Vec3f error_color(const ShadingTables& tables, std::uint32_t primitive) {
   constexpr Vec3f kNotKnown = {0.59F, 0.59F, 0.59F};
   const float error = tables.intensities == nullptr ? 0.0F : tables.intensities[primitive];
@@ -124,6 +132,8 @@ ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, con
   const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
   switch (tables.color) {
     case ImageColor::rgb:
+      return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
+             shading::file_color(tables, hit.primitive);
     case ImageColor::shading:
       return shading::light(normal, ray.direction) * Vec3f{0.92F, 0.92F, 0.92F};
     case ImageColor::semantic:

@@ -263,6 +263,9 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
     columns.push_back({"group", ColumnType::u8, model.groups.data(), sizeof(SemanticGroup)});
   if (!model.intensities.empty())
     columns.push_back({"intensity", ColumnType::f32, model.intensities.data(), sizeof(float)});
+  if (!model.colors.empty())
+    for (std::size_t k = 0; k < kRgbColumns.size(); ++k)
+      columns.push_back({kRgbColumns[k], ColumnType::u8, &model.colors[0][k], sizeof(ColorBytes)});
   std::vector<std::string> comments = {kFormatComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty())
@@ -301,6 +304,7 @@ SplatModel load_model(const std::filesystem::path& path) {
   if (const Column* intensities = table.find("intensity"))
     for (std::size_t i = 0; i < table.rows; ++i)
       model.intensities.push_back(static_cast<float>(intensities->as_double(i)));
+  model.colors = color_bytes(table.columns, table.rows);
   model.method = comment_value(table, kMethodComment);
   model.label_scheme = comment_value(table, kLabelsComment);
   model.network_sha256 = comment_value(table, kNetworkComment);

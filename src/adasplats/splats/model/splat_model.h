@@ -13,6 +13,7 @@
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
 #include "adasplats/scene/scene.h"
+#include "adasplats/splats/model/splat_colors.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 
 namespace adasplats {
@@ -27,11 +28,12 @@ struct SplatModel {
   /// Reflectances if there is a `response`, else measured intensities of the seed point; empty if
   /// the points have none.
   std::vector<float> intensities;
-  IntensityResponse response;  ///< of the sensor that measured the intensities; empty: unknown
-  std::string label_scheme;    ///< name or path for load_label_scheme; may be empty
-  std::string network_sha256;  ///< of the network that labelled the points; empty: none
-  std::string method;          ///< how it was made
-  Calibration calibration;     ///< that corrected the points; empty: uncorrected
+  std::vector<ColorBytes> colors;  ///< of the points (colors_of_disks()); empty if they have none
+  IntensityResponse response;      ///< of the sensor that measured the intensities; empty: unknown
+  std::string label_scheme;        ///< name or path for load_label_scheme; may be empty
+  std::string network_sha256;      ///< of the network that labelled the points; empty: none
+  std::string method;              ///< how it was made
+  Calibration calibration;         ///< that corrected the points; empty: uncorrected
 
   std::size_t size() const { return disks.size(); }
   SceneView view() const { return {disks, nullptr}; }
@@ -41,13 +43,13 @@ struct SplatModel {
 std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 
 /// Writes a PLY file with one vertex per splat: x y z nx ny nz radius [class] [group] [intensity]
-/// (x y z as doubles in world coordinates if the origin is not zero). Everything else is in
-/// comments "adasplats.KEY VALUE", the coordinate system in crs_comments(), the label scheme in
-/// "labels"; the response in "response_ranges_m", "response_range_gains", "response_cosines" and
-/// "response_cosine_gains"; the calibration in "calibration_range_offsets_m",
-/// "calibration_elevation_offsets_rad", "calibration_mount" (rotation vector, shift),
-/// "calibration_smooth_s" and, one per scan, "calibration_pose": time, given position, rotation
-/// vector, shift.
+/// [red green blue] (x y z as doubles in world coordinates if the origin is not zero). Everything
+/// else is in comments "adasplats.KEY VALUE", the coordinate system in crs_comments(), the label
+/// scheme in "labels"; the response in "response_ranges_m", "response_range_gains",
+/// "response_cosines" and "response_cosine_gains"; the calibration in
+/// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
+/// (rotation vector, shift), "calibration_smooth_s" and, one per scan, "calibration_pose": time,
+/// given position, rotation vector, shift.
 void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads the files of save_model, and any other PLY file with x y z nx ny nz radius. Errors: data
