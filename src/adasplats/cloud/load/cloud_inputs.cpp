@@ -181,11 +181,6 @@ void reject_foreign(const fs::path& folder) {
     reject(
         "a Potree 1 octree, which is not read; give the LAS or LAZ files that it was made from, "
         "or convert it to LAS or LAZ");
-  if (has("city_SE3_egovehicle.feather") || has("sensors/lidar"))
-    reject(
-        "an Argoverse 2 log, whose Feather files are not read; convert each sweep of "
-        "sensors/lidar to PLY (in Python: pyarrow.feather.read_table) named by its stamp, and "
-        "city_SE3_egovehicle to CSV, and give the CSV as trajectory");
 }
 
 std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {

@@ -191,9 +191,10 @@ TEST(CloudInputs, FoldersOfOtherProgramsSayWhatToDo) {
   folder.write("potree/octree.bin", "x");
   expect_error(ErrorKind::data, {"Potree 2", "LAZ"},
                [&] { cloud_inputs(folder.path() / "potree"); });
-  folder.write("av2/city_SE3_egovehicle.feather", "ARROW1");
-  expect_error(ErrorKind::data, {"Argoverse 2", "pyarrow"},
-               [&] { cloud_inputs(folder.path() / "av2"); });
+  // Not every folder named sensors/lidar is an Argoverse 2 log.
+  folder.write("rig/sensors/lidar/a.ply", kCloud);
+  expect_error(ErrorKind::no_input, {"neither a folder 'velodyne' nor point files"},
+               [&] { cloud_inputs(folder.path() / "rig"); });
 }
 
 TEST(CloudInputs, WhatIsNoPoints) {
