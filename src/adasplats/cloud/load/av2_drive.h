@@ -11,7 +11,7 @@ namespace adasplats {
 /// True for a folder with sensors/lidar/*.feather or city_SE3_egovehicle.feather.
 bool is_av2_log(const std::filesystem::path& folder);
 
-/// Opens a log of the Argoverse 2 sensor, lidar or map change data set (Wilson et al., "Argoverse
+/// Opens a log of the Argoverse 2 sensor data set (Wilson et al., "Argoverse
 /// 2", 2021; columns as in its av2-api) as a drive: sensors/lidar/STAMP.feather, in the vehicle
 /// frame at the stamp, with the poses of city_SE3_egovehicle.feather. Each beam starts where its
 /// LiDAR (laser_number 0-31 up_lidar, 32-63 down_lidar, mounts of

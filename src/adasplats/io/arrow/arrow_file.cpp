@@ -81,6 +81,7 @@ class ArrowReader {
     const FlatBytes footer(footer_bytes(), path_ + ": the footer");
     const FlatTable root = FlatTable::root(footer);
     read_schema(root.table(kFooterSchema));
+    if (fields_.empty()) throw fault("has no columns");
     const auto [blocks, count] = root.elements(kFooterBatches, kBlockBytes);
     const FlatBytes places(blocks, path_ + ": the footer");
     for (std::size_t k = 0; k < count; ++k) {
