@@ -26,7 +26,7 @@ ENTRY = re.compile(r'\{"[\w-]+",\s*"[^"]*",\s*"([^"]*)"')
 NOT_FUZZED = {
     "city/passing_rays.cpp": "rays of tiles that our own unfinished run wrote",
     "city/tile_points.cpp": "points and classes of tiles that our own unfinished run wrote",
-    "cloud/load/cloud_inputs.cpp": "searches ept.json for two values, in any bytes",
+    "cloud/load/cloud_inputs.cpp": "searches ept.json for a value, in any bytes",
     "cloud/load/sensor_frame.cpp": "searches manifests for the name of a command, in any bytes",
     "core/child_process.cpp": "/proc, and the output of our own programs",
     "evaluate/error_points.cpp": "uses the headers and tables of io/ply",

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/load/av2_drive.h"
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
@@ -71,6 +72,13 @@ void open_pandaset(const Input& input) {
   drive.folder = input.folder;
   ProgressSink quiet;
   require_sound(open_pandaset_drive(drive, Executor(1), quiet));
+}
+
+void open_av2(const Input& input) {
+  DriveInput drive;
+  drive.folder = input.folder;
+  ProgressSink quiet;
+  require_sound(open_av2_drive(drive, Executor(1), quiet));
 }
 
 void open_nuscenes(const Input& input) {

@@ -18,6 +18,8 @@ void read_e57_xml(const Input& input);
 void read_wkt(const Input& input);
 void read_text_file(const Input& input);
 void read_pickle(const Input& input);
+void read_arrow(const Input& input);
+void read_ept(const Input& input);
 void read_gzip(const Input& input);
 void read_label_file(const Input& input);
 
@@ -48,6 +50,7 @@ void read_boxes(const Input& input);
 void open_kitti(const Input& input);
 void open_kitti_raw(const Input& input);
 void open_pandaset(const Input& input);
+void open_av2(const Input& input);
 void open_nuscenes(const Input& input);
 
 // settings.cpp

@@ -34,6 +34,9 @@ constexpr FuzzTarget kTargets[] = {
     {"ptx", "a.ptx", "io/text/ptx.cpp", &read_text_file},
     {"pickle", "", "io/pickle", &read_pickle},
     {"gzip", "", "io/pickle/gzip.cpp", &read_gzip},
+    {"arrow", "", "io/arrow", &read_arrow, 4 * kKiB, kZstdWindow_mb},
+    {"potree", "octree.bin metadata.json", "io/ept/potree_octree.cpp", &read_point_file},
+    {"ept", "ept.json ept-data/0-0-0-0.bin", "io/ept", &read_ept},
     {"kitti-label", "a.label", "cloud/sequence/kitti_sequence.cpp", &read_label_file},
     // Recordings
     {"mcap", "a.mcap", "io/bags io/mcap/mcap_file.cpp", &read_recording, 4 * kKiB, kZstdWindow_mb},
@@ -83,6 +86,10 @@ constexpr FuzzTarget kTargets[] = {
      "lidar/poses.json lidar/timestamps.json lidar/00.pkl.gz annotations/semseg/classes.json "
      "annotations/semseg/00.pkl.gz",
      "cloud/load/pandaset_drive.cpp cloud/load/json_rows.cpp", &open_pandaset, 8 * kKiB},
+    {"av2",
+     "city_SE3_egovehicle.feather calibration/egovehicle_SE3_sensor.feather "
+     "sensors/lidar/315966265259836000.feather",
+     "cloud/load/av2_drive.cpp io/arrow", &open_av2, 8 * kKiB, kZstdWindow_mb},
     {"nuscenes",
      "v1.0-mini/scene.json v1.0-mini/sample.json v1.0-mini/sample_data.json "
      "v1.0-mini/sensor.json v1.0-mini/calibrated_sensor.json v1.0-mini/ego_pose.json "

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/arrow/arrow_writer_test.h"
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/bags/ros_values.h"
 #include "adasplats/io/base/base64.h"
@@ -72,6 +73,17 @@ void add_points(Seeds& seeds) {
     rings += bytes_of(value);
   seeds.add("nuscenes-bin", {rings});
   seeds.add("kitti-label", {bytes_of(0x00010028U) + bytes_of(30U)});
+  seeds.add(
+      "potree",
+      {joined({bytes_of(100) + bytes_of(-3) + bytes_of(7) + bytes_of(2.5),
+               R"({"points":1,"offset":[1000,2000,0],"scale":[0.001,0.001,0.01],"encoding":)"
+               R"("DEFAULT","attributes":[{"name":"position","numElements":3,"type":"int32"},)"
+               R"({"name":"gps-time","numElements":1,"type":"double"}],"projection":"a[b]"})"})});
+  seeds.add("ept",
+            {joined({R"({"dataType":"binary","points":1,"schema":[{"name":"X","type":"signed",)"
+                     R"("size":4,"scale":0.01,"offset":5},{"name":"Y","type":"float","size":8},)"
+                     R"({"name":"Z","type":"signed","size":4}],"srs":{"wkt":"LOCAL_CS[\"a\"]"}})",
+                     bytes_of(100) + bytes_of(2.5) + bytes_of(-3)})});
   seeds.add("e57-xml",
             {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" "
              "xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\"><!-- c --><a b='&lt;1&#65;'>"
@@ -330,6 +342,29 @@ void add_poses(Seeds& seeds) {
                               bytes_of(40U) + bytes_of(0x0001000AU)})});
 }
 
+void add_av2(Seeds& seeds) {
+  using arrow_test::arrow_file;
+  using arrow_test::numbers;
+  const auto poses = [](arrow_test::ArrowColumn first, std::size_t rows) {
+    std::vector<arrow_test::ArrowColumn> columns = {std::move(first),
+                                                    numbers("qw", std::vector<double>(rows, 1))};
+    for (const char* name : {"qx", "qy", "qz", "tx_m", "ty_m", "tz_m"})
+      columns.push_back(numbers(name, std::vector<double>(rows, 0)));
+    return arrow_file({columns});
+  };
+  const std::vector<std::int64_t> stamps = {315'966'265'259'836'000, 315'966'265'360'032'000};
+  const std::string sweep = arrow_file(
+      {{arrow_test::halves("x", {0x4900}), numbers<float>("y", {1}), numbers<double>("z", {0}),
+        numbers<std::uint8_t>("intensity", {9}), numbers<std::uint8_t>("laser_number", {9}),
+        numbers<std::int32_t>("offset_ns", {2'654'000})}});
+  seeds.add("av2", {joined({poses(numbers("timestamp_ns", stamps), 2),
+                            poses(arrow_test::texts("sensor_name", {"up_lidar", "down_lidar"}), 2),
+                            sweep})});
+  seeds.add(
+      "arrow",
+      {sweep, arrow_file({{arrow_test::texts("t", {"a", "bc"})}, {arrow_test::texts("t", {""})}})});
+}
+
 void add_drives(Seeds& seeds) {
   const std::string day = "2011-09-26 13:02:";
   seeds.add(
@@ -347,6 +382,7 @@ void add_drives(Seeds& seeds) {
             {joined({R"([{"position":{"x":1,"y":2,"z":3},"heading":{"w":1,"x":0,"y":0,"z":0}}])",
                      "[0.05]", gzipped(pickled_data_frame(points)), R"({"7":"Road","8":"Car"})",
                      gzipped(pickled_data_frame(classes))})});
+  add_av2(seeds);
   const std::string pose = R"("rotation":[1,0,0,0],"translation":[1,2,3]}])";
   seeds.add(
       "nuscenes",

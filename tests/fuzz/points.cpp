@@ -7,9 +7,11 @@
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/arrow/arrow_file.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/base/wkt.h"
 #include "adasplats/io/e57/e57_file_test.h"
+#include "adasplats/io/ept/ept_tile.h"
 #include "adasplats/io/pickle/data_frame.h"
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/io/ply/ply.h"
@@ -94,6 +96,22 @@ void read_text_file(const Input& input) {
 
 void read_pickle(const Input& input) {
   require_sound(data_frame_of("a.pkl", std::string(input.bytes)), input.bytes.size());
+}
+
+void read_arrow(const Input& input) {
+  const ArrowTable table = arrow_table_of("a.feather", input.bytes);
+  for (const Column& column : table.numbers.columns)
+    require(column.size() == table.numbers.rows, "columns as long as the table");
+  for (const auto& [name, texts] : table.texts)
+    require(texts.size() == table.numbers.rows, "columns as long as the table");
+}
+
+void read_ept(const Input& input) {
+  const std::filesystem::path tile = input.folder / "ept-data" / "0-0-0-0.bin";
+  require(is_ept_tile(tile), "a tile");
+  const Table table = read_ept_tile(tile);
+  require_sound(table, input.bytes.size());
+  require(ept_tile_points(tile) == table.rows, "the points of the tile");
 }
 
 void read_gzip(const Input& input) {

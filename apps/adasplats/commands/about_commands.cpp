@@ -56,8 +56,8 @@ std::string input_help() {
              "export, view, evaluate presence): point files (" +
                  point_format_names() + "), SemanticKITTI sequence folders, recordings (" +
                  recording_format_names() +
-                 ", PCAP), folders of scans with --trajectory, and sequences of PandaSet and "
-                 "nuScenes.",
+                 ", PCAP), folders of scans with --trajectory, and drives of PandaSet, nuScenes "
+                 "and Argoverse 2.",
              0) +
          "\n\nInput options:\n" + options_text(entries) +
          "\nExamples:\n"

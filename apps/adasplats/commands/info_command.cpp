@@ -128,7 +128,7 @@ class InfoCommand final : public Command {
     if (!kinds.contains("recording")) reject({"--packet-sensor"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
-        kinds.contains("nuScenes scene"))
+        kinds.contains("nuScenes scene") || kinds.contains("Argoverse 2 log"))
       return;
     reject(
         {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",

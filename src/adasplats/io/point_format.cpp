@@ -9,6 +9,8 @@
 
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ept/ept_tile.h"
+#include "adasplats/io/ept/potree_octree.h"
 #include "adasplats/io/las/las.h"
 #include "adasplats/io/ply/ply.h"
 
@@ -69,6 +71,19 @@ constexpr PointFormat kFormats[] = {
      .read = [](const Path& path, const Options&) { return read_ptx(path); }},
 };
 
+/// Known by the folder, not by the extension.
+constexpr PointFormat kEptTile = {
+    .name = "EPT tile",
+    .extensions = {},
+    .read = [](const Path& path, const Options&) { return read_ept_tile(path); },
+    .read_crs = &read_ept_crs};
+
+constexpr PointFormat kPotreeOctree = {
+    .name = "Potree octree",
+    .extensions = {},
+    .read = [](const Path& path, const Options&) { return read_potree_octree(path); },
+    .read_crs = &read_potree_crs};
+
 const PointFormat* format_of_first_bytes(const Path& path) {
   InputFile file(path);
   const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(8, file.size_bytes()));
@@ -120,6 +135,8 @@ std::string conversion_of(const Path& path) {
 
 std::span<const PointFormat> point_formats() { return kFormats; }
 
+bool is_octree_part(const Path& path) { return is_ept_tile(path) || is_potree_octree(path); }
+
 const PointFormat* format_of_extension(const Path& path) {
   const std::string extension = lower_case(path.extension().string());
   for (const PointFormat& format : kFormats)
@@ -129,6 +146,8 @@ const PointFormat* format_of_extension(const Path& path) {
 }
 
 const PointFormat& format_of_file(const Path& path) {
+  if (is_ept_tile(path)) return kEptTile;
+  if (is_potree_octree(path)) return kPotreeOctree;
   const PointFormat* const by_bytes = format_of_first_bytes(path);
   const PointFormat* const by_extension = format_of_extension(path);
   if (by_bytes != nullptr && by_extension != nullptr && by_bytes != by_extension)

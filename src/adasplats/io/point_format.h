@@ -38,6 +38,10 @@ struct PointFormat {
 
 std::span<const PointFormat> point_formats();
 
+/// Whether a file is a tile of an Entwine folder or the points of a Potree octree, which are known
+/// by the files around them; a .bin of these is no scan.
+bool is_octree_part(const std::filesystem::path& path);
+
 /// By the extension, in any case; null if unknown.
 const PointFormat* format_of_extension(const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,8 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
+#include "adasplats/io/ept/ept_tile.h"
+#include "adasplats/io/ept/potree_octree.h"
 #include "adasplats/io/packets/capture_reader.h"
 
 namespace adasplats {
@@ -141,26 +144,30 @@ std::string json_word(const std::string& text, const std::string& key) {
 }
 
 /// The tiles of an Entwine point tile folder: each point is in one of them. Errors: data (tiles
-/// that are not LAZ, or fewer points in them than ept.json states).
+/// of an unknown type, or fewer points in them than ept.json states).
 std::vector<CloudInput> ept_tiles(const fs::path& folder) {
   const std::string facts = read_file(folder / "ept.json");
   const std::string type = json_word(facts, "dataType");
   const std::string name = folder.string() + ": is an Entwine point tile (EPT) folder ";
-  if (type != "laszip")
+  const bool is_laz = type == "laszip";
+  if (!is_laz && type != "binary" && type != "zstandard")
     throw Error(ErrorKind::data, name + "with tiles of type '" + type +
-                                     "', only laszip is read; convert it: 'pdal translate " +
+                                     "', read are laszip, binary and zstandard; convert it: 'pdal "
+                                     "translate " +
                                      (folder / "ept.json").string() + " points.laz'");
+  const char* const extension = is_laz ? ".laz" : type == "binary" ? ".bin" : ".zst";
   std::vector<CloudInput> tiles;
   std::uint64_t points = 0;
-  for (const fs::path& tile : files_by_name(folder / "ept-data", ".laz")) {
+  for (const fs::path& tile : files_by_name(folder / "ept-data", extension)) {
     tiles.push_back({tile, false});
-    points += read_las_facts(tile).points;
+    points += is_laz ? read_las_facts(tile).points : ept_tile_points(tile);
   }
-  const auto stated = parse_number<std::uint64_t>(json_word(facts, "points"));
+  const std::optional<std::uint64_t> stated = ept_stated_points(folder);
   if (tiles.empty() || (stated && *stated != points))
     throw Error(ErrorKind::data, name + "whose " + std::to_string(tiles.size()) + " tiles hold " +
-                                     std::to_string(points) + " points, but ept.json states " +
-                                     json_word(facts, "points") + "; copy the complete ept-data");
+                                     std::to_string(points) + " points, expected " +
+                                     std::to_string(stated.value_or(0)) +
+                                     "; copy the complete ept-data");
   return tiles;
 }
 
@@ -173,19 +180,10 @@ void reject_foreign(const fs::path& folder) {
   const auto reject = [&folder](const std::string& what) {
     throw Error(ErrorKind::data, folder.string() + ": is " + what);
   };
-  if (has("octree.bin") && has("metadata.json"))
-    reject(
-        "a Potree 2 octree, which is not read; give the LAS or LAZ files that it was made from, "
-        "or convert it to LAS or LAZ");
   if (has("cloud.js"))
     reject(
         "a Potree 1 octree, which is not read; give the LAS or LAZ files that it was made from, "
         "or convert it to LAS or LAZ");
-  if (has("city_SE3_egovehicle.feather") || has("sensors/lidar"))
-    reject(
-        "an Argoverse 2 log, whose Feather files are not read; convert each sweep of "
-        "sensors/lidar to PLY (in Python: pyarrow.feather.read_table) named by its stamp, and "
-        "city_SE3_egovehicle to CSV, and give the CSV as trajectory");
 }
 
 std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
@@ -200,10 +198,12 @@ std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
-    throw Error(ErrorKind::no_input, folder.path.string() +
-                                         ": contains neither a folder 'velodyne' nor point files" +
-                                         (others == 0 ? "" : ", only " + list_of(folder)) +
-                                         "; give the folder that contains the scans");
+    const fs::path drive = drive_in(folder.path);
+    throw Error(ErrorKind::no_input,
+                folder.path.string() + ": contains neither a folder 'velodyne' nor point files" +
+                    (others == 0 ? "" : ", only " + list_of(folder)) +
+                    (drive.empty() ? "; give the folder that contains the scans"
+                                   : "; give a drive in it, for example " + drive.string()));
   }
   const std::vector<fs::path>& files = folder.files.at(FileKind::points);
   const std::size_t poses =
@@ -241,6 +241,7 @@ std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   if (!fs::is_directory(path, ignored) || is_self_contained_drive(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
   if (fs::exists(path / "ept.json", ignored)) return ept_tiles(path);
+  if (is_potree_octree(path / "octree.bin")) return {{path / "octree.bin", false}};
   reject_foreign(path);
   const Folder folder = read_folder(path);
   if (folder.sequences.empty()) return files_of(folder, scans);

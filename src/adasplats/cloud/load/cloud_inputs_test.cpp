@@ -180,20 +180,26 @@ TEST(CloudInputs, ScansOfASensorThatMovesHaveNoPlace) {
 
 TEST(CloudInputs, FoldersOfOtherProgramsSayWhatToDo) {
   const TemporaryFolder folder;
-  folder.write("ept/ept.json", "{\"dataType\": \"binary\", \"points\": 1}");
-  folder.write("ept/ept-data/0-0-0-0.bin", std::vector<float>{1, 2, 3, 0});
-  expect_error(ErrorKind::data, {"EPT", "'binary'", "pdal translate"},
+  folder.write("ept/ept.json", "{\"dataType\": \"entwine\", \"points\": 1}");
+  expect_error(ErrorKind::data, {"EPT", "'entwine'", "pdal translate"},
                [&] { cloud_inputs(folder.path() / "ept"); });
   folder.write("lost/ept.json", "{\"dataType\": \"laszip\", \"points\": 5}");
-  expect_error(ErrorKind::data, {"0 tiles", "states 5"},
+  expect_error(ErrorKind::data, {"0 tiles", "expected 5"},
                [&] { cloud_inputs(folder.path() / "lost"); });
   folder.write("potree/metadata.json", "{}");
   folder.write("potree/octree.bin", "x");
-  expect_error(ErrorKind::data, {"Potree 2", "LAZ"},
-               [&] { cloud_inputs(folder.path() / "potree"); });
-  folder.write("av2/city_SE3_egovehicle.feather", "ARROW1");
-  expect_error(ErrorKind::data, {"Argoverse 2", "pyarrow"},
-               [&] { cloud_inputs(folder.path() / "av2"); });
+  EXPECT_EQ(names_of(folder.path() / "potree"), std::vector<std::string>{"octree.bin"});
+  folder.write("potree1/cloud.js", "{}");
+  expect_error(ErrorKind::data, {"Potree 1", "LAZ"},
+               [&] { cloud_inputs(folder.path() / "potree1"); });
+  folder.write("split/log/city_SE3_egovehicle.feather", "ARROW1");
+  EXPECT_EQ(names_of(folder.path() / "split/log"), std::vector<std::string>{"."});
+  expect_error(ErrorKind::no_input, {"give a drive in it", "split/log"},
+               [&] { cloud_inputs(folder.path() / "split"); });
+  // Not every folder named sensors/lidar is an Argoverse 2 log.
+  folder.write("rig/sensors/lidar/a.ply", kCloud);
+  expect_error(ErrorKind::no_input, {"neither a folder 'velodyne' nor point files"},
+               [&] { cloud_inputs(folder.path() / "rig"); });
 }
 
 TEST(CloudInputs, WhatIsNoPoints) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "adasplats/cloud/load/av2_drive.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
 #include "adasplats/cloud/load/pandaset_drive.h"
 #include "adasplats/core/error.h"
@@ -15,7 +16,8 @@ namespace {
 constexpr std::array kDataTrees = {
     DataTree{"PandaSet sequence", &is_pandaset_sequence, &open_pandaset_drive,
              &pandaset_class_names},
-    DataTree{"nuScenes scene", &is_nuscenes_root, &open_nuscenes_drive, &nuscenes_class_names}};
+    DataTree{"nuScenes scene", &is_nuscenes_root, &open_nuscenes_drive, &nuscenes_class_names},
+    DataTree{"Argoverse 2 log", &is_av2_log, &open_av2_drive, &av2_class_names}};
 
 /// The first class that a scheme does not have under that name.
 const ClassNames::value_type* first_other(const ClassNames& names, const LabelScheme& scheme) {

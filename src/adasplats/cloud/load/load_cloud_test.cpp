@@ -719,5 +719,30 @@ TEST(OtherColumns, OfSeveralInputs) {
   EXPECT_EQ(load({a}, options).first.others.columns.size(), 3U);
 }
 
+TEST(LoadCloud, OneFrameOfKittisObjectBenchmarkFromItsSensor) {
+  const TemporaryFolder folder;
+  std::vector<float> points;
+  for (int k = 0; k < 400; ++k) {
+    const float turn = 0.0157F * static_cast<float>(k);
+    points.insert(points.end(), {9 * std::cos(turn), 9 * std::sin(turn), -1.7F, 0.5F});
+  }
+  for (const char* name : {"000000", "000001"}) {
+    folder.write("training/velodyne/" + std::string(name) + ".bin", points);
+    folder.write("training/calib/" + std::string(name) + ".txt", "P0: 1 0 0 0\n");
+  }
+  // Frames are independent, so they are no drive.
+  const auto frame = folder.path() / "training/velodyne/000000.bin";
+  expect_error(ErrorKind::no_input, {"`viewpoint` 0,0,0", frame.string()},
+               [&] { load({folder.path() / "training"}); });
+  LoadOptions options;
+  options.viewpoint = Vec3d{0, 0, 0};
+  const auto [cloud, report] = load({frame}, options);
+  ASSERT_EQ(cloud.size(), 400U);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_EQ(cloud.origin_kind(i), OriginKind::stated);
+    EXPECT_LT(length(cloud.origin + vec_cast<double>(cloud.sensor_positions[i])), 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace adasplats

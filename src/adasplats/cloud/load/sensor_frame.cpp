@@ -18,6 +18,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/point_format.h"
 
 namespace adasplats {
 namespace {
@@ -131,7 +132,8 @@ std::optional<SensorFrame> sensor_frame_of(const fs::path& file, const Table& ta
     frame.because = "its column '" + ranges->name + "' has the distances from the origin";
   else if (rings != nullptr && are_on_cones(*rings, positions))
     frame.because = "the points of each '" + rings->name + "' have one elevation above the origin";
-  else if (lower_case(file.extension().string()) == ".bin" && are_around_origin(positions))
+  else if (lower_case(file.extension().string()) == ".bin" && !is_octree_part(file) &&
+           are_around_origin(positions))
     frame.because = "a .bin file is a scan, and its points are around the origin";
   else
     return std::nullopt;

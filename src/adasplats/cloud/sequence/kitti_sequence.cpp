@@ -141,11 +141,13 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   if (!sequence.labels.empty()) require_labels_of_scans(sequence);
   const std::filesystem::path poses_file = folder / "poses.txt";
   if (!std::filesystem::exists(poses_file) && !files_by_name(folder / "calib", ".txt").empty())
-    throw Error(ErrorKind::no_input,
-                folder.string() +
-                    ": contains frames of KITTI's object benchmark (calib, no poses.txt), which "
-                    "have no common world; give one of them, for example " +
-                    sequence.scans.front().string());
+    throw Error(
+        ErrorKind::no_input,
+        folder.string() +
+            ": contains frames of KITTI's object benchmark (calib, no poses.txt), which "
+            "have no common world; give one of them with `viewpoint` 0,0,0 (the sensor), for "
+            "example " +
+            sequence.scans.front().string());
   if (!std::filesystem::exists(poses_file))
     throw Error(ErrorKind::no_input,
                 poses_file.string() +

@@ -62,6 +62,9 @@ constexpr Name kNormalsX[] = {"nx", "normalx", "normalsx", "normx"};
 constexpr Name kNormalsY[] = {"ny", "normaly", "normalsy", "normy"};
 constexpr Name kNormalsZ[] = {"nz", "normalz", "normalsz", "normz"};
 
+/// Of PDAL and Entwine, near to names above.
+constexpr Name kUnrelatedNames[] = {"originid", "pointid", "clusterid", "deviation", "reliability"};
+
 constexpr std::pair<PointColumn, std::span<const Name>> kColumnNames[] = {
     {PointColumn::time, kTimeNames},
     {PointColumn::intensity, kIntensityNames},
@@ -134,7 +137,7 @@ double time_unit_of_name(std::string_view name) {
 std::optional<std::string> likely_column_name(std::string_view name) {
   constexpr std::size_t kShortest = 5;  // shorter words are near to too many others
   const std::string plain = split_time_unit(letters_of_name(name)).first;
-  if (plain.size() < kShortest) return std::nullopt;
+  if (plain.size() < kShortest || is_name_among(plain, kUnrelatedNames)) return std::nullopt;
   std::vector<std::string> known;
   for (const auto& [meaning, names] : kColumnNames) {
     if (is_name_among(plain, names)) return std::nullopt;

@@ -62,7 +62,8 @@ TEST(ColumnNames, MisspeltNames) {
   EXPECT_EQ(likely_column_name("time_stmp"), "timestamp");
   EXPECT_EQ(likely_column_name("Clasification"), "classification");
   for (const char* const name : {"intensity", "GpsTime", "sensor_x", "red", "user_data", "point",
-                                 "scan_angle", "column_4", "origin_kind", "laser", "curvature"})
+                                 "scan_angle", "column_4", "origin_kind", "laser", "curvature",
+                                 "OriginId", "PointId", "ClusterID", "Deviation", "Reliability"})
     EXPECT_EQ(likely_column_name(name), std::nullopt) << name;
 }
 

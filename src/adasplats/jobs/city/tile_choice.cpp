@@ -11,6 +11,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/point_format.h"
 #include "adasplats/jobs/city/tile_workers.h"
 #include "adasplats/jobs/provenance/machine.h"
 
@@ -30,7 +31,7 @@ double max_points_of_file(const fs::path& file) {
   const auto bytes = static_cast<double>(fs::file_size(file, problem));
   if (problem) return 0;
   const std::string extension = lower_case(file.extension().string());
-  if (extension == ".bin") return bytes / 16;
+  if (extension == ".bin" && !is_octree_part(file)) return bytes / 16;
   if (extension == ".las" || extension == ".ply") return bytes / 12;
   return bytes / 2;
 }

@@ -19,6 +19,7 @@
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/io/point_format.h"
 
 namespace adasplats {
 
@@ -77,6 +78,8 @@ std::optional<LabelScheme> scheme_of_file(const fs::path& file, const std::strin
     const LasFacts las = read_las_facts(file);
     if (!las.labels.empty()) return stated_scheme(las.labels);
     if (has_las_classes(las, label_field)) return asprs_labels();
+  } else if (is_octree_part(file)) {
+    if (label_field.empty()) return asprs_labels();  // made from LAS
   } else if (extension == ".ply") {
     for (const std::string& comment : read_ply_comments(file))
       if (comment.starts_with(kLabelsComment))

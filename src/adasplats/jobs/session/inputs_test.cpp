@@ -47,6 +47,15 @@ TEST(LabelSchemeFor, LasOfOtherProgramsHasClassesOfTheSpecification) {
   EXPECT_EQ(scheme_of(folder.path() / "tiles"), "asprs");
 }
 
+TEST(LabelSchemeFor, OctreesAreMadeFromLas) {
+  const TemporaryFolder folder;
+  folder.write("ept.json", R"({"dataType": "binary", "points": 1, "schema": [
+      {"name": "X", "type": "signed", "size": 4}, {"name": "Y", "type": "signed", "size": 4},
+      {"name": "Z", "type": "signed", "size": 4}]})");
+  folder.write("ept-data/0-0-0-0.bin", std::vector<std::int32_t>{1, 2, 3});
+  EXPECT_EQ(scheme_of(folder.path()), "asprs");
+}
+
 TEST(LabelSchemeFor, FilesMayBeNamedWithoutAFolder) {
   const TemporaryFolder folder;
   const fs::path before = fs::current_path();

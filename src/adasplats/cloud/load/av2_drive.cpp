@@ -1,0 +1,370 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/av2_drive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/load/file_scan.h"
+#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/sensor_drive.h"
+#include "adasplats/cloud/poses/rotation.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/cloud/sequence/sensor_cones.h"
+#include "adasplats/core/constants.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/arrow/arrow_file.h"
+#include "adasplats/io/base/number_text.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNanosecond_s = 1e-9;
+constexpr std::size_t kLasersOfUnit = 32;
+constexpr const char* kUnitModel = "velodyne-vlp-32c";  // both LiDARs
+constexpr std::array<const char*, 2> kUnitNames = {"up_lidar", "down_lidar"};
+
+/// The beam of each laser number, topmost 0 in the frame of its LiDAR: points of a laser lie on
+/// this beam's cone of the sensor's table.
+constexpr std::array<std::uint16_t, kLasersOfUnit> kBeamOfLaser = {
+    2,  16, 6,  13, 0,  12, 4,  9,  7,  11, 8,  5,  10, 14, 3,  1,
+    26, 30, 20, 17, 23, 28, 24, 21, 19, 25, 15, 27, 22, 29, 18, 31};
+
+Error av2_fault(const fs::path& file, const std::string& what) {
+  return {ErrorKind::data, file.string() + ": " + what};
+}
+
+/// A table of a log. Errors: no_input if it is missing.
+ArrowTable read_log_table(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    throw Error(ErrorKind::no_input,
+                file.string() +
+                    ": is missing; an Argoverse 2 log contains sensors/lidar, "
+                    "calibration/egovehicle_SE3_sensor.feather and city_SE3_egovehicle.feather");
+  return read_arrow_file(file);
+}
+
+const Column& av2_column(const fs::path& file, const ArrowTable& table, std::string_view name) {
+  const Column* const column = table.numbers.find(name);
+  if (column == nullptr)
+    throw av2_fault(file, "has no column of numbers '" + std::string(name) + "'");
+  return *column;
+}
+
+/// The poses of a table, one in each row.
+std::vector<RigidTransform> poses_of_rows(const fs::path& file, const ArrowTable& table) {
+  const Column& qw = av2_column(file, table, "qw");
+  const Column& qx = av2_column(file, table, "qx");
+  const Column& qy = av2_column(file, table, "qy");
+  const Column& qz = av2_column(file, table, "qz");
+  const Column& x = av2_column(file, table, "tx_m");
+  const Column& y = av2_column(file, table, "ty_m");
+  const Column& z = av2_column(file, table, "tz_m");
+  constexpr double kTolerance = 1e-3;
+  std::vector<RigidTransform> poses;
+  for (std::size_t row = 0; row < table.numbers.rows; ++row) {
+    const Quaternion q = {qw.as_double(row), qx.as_double(row), qy.as_double(row),
+                          qz.as_double(row)};
+    const Vec3d place = {x.as_double(row), y.as_double(row), z.as_double(row)};
+    const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    const std::string where = "row " + std::to_string(row) + " (from 0): ";
+    if (!(std::fabs(norm - 1) <= kTolerance))
+      throw av2_fault(file, where + "the quaternion qw, qx, qy, qz has length " + exact_text(norm) +
+                                ", expected 1");
+    if (!is_finite(place)) throw av2_fault(file, where + "tx_m, ty_m, tz_m is not finite");
+    poses.push_back(
+        {rotation_from_quaternion(q.w / norm, q.x / norm, q.y / norm, q.z / norm), place});
+  }
+  return poses;
+}
+
+std::int64_t whole_ns(const fs::path& file, const ArrowTable& table, std::size_t row) {
+  const Column& stamps = av2_column(file, table, "timestamp_ns");
+  if (const auto* const exact = std::get_if<std::vector<std::int64_t>>(&stamps.values))
+    return (*exact)[row];
+  throw av2_fault(file, "column 'timestamp_ns' is not of 64-bit integers");
+}
+
+/// The poses of the vehicle by their exact stamps, and over time.
+struct Av2Poses {
+  fs::path file;
+  std::map<std::int64_t, RigidTransform> by_stamp_ns;
+  Trajectory track;  ///< seconds resolve 60 ns; of nearer stamps the first
+};
+
+Av2Poses read_av2_poses(const fs::path& folder) {
+  Av2Poses poses;
+  poses.file = folder / "city_SE3_egovehicle.feather";
+  const ArrowTable table = read_log_table(poses.file);
+  const std::vector<RigidTransform> city_from_vehicle = poses_of_rows(poses.file, table);
+  for (std::size_t row = 0; row < city_from_vehicle.size(); ++row)
+    poses.by_stamp_ns.emplace(whole_ns(poses.file, table, row), city_from_vehicle[row]);
+  if (poses.by_stamp_ns.empty()) throw av2_fault(poses.file, "holds no poses");
+  for (const auto& [stamp_ns, pose] : poses.by_stamp_ns) {
+    const double time_s = kNanosecond_s * static_cast<double>(stamp_ns);
+    if (poses.track.empty() || time_s > poses.track.back().time_s)
+      poses.track.push_back({time_s, pose});
+  }
+  // The points of the last sweep are later than its stamp.
+  constexpr double kSweepOfAv2_s = 0.1;
+  poses.track = with_extrapolated_ends(std::move(poses.track), kSweepOfAv2_s);
+  return poses;
+}
+
+std::array<RigidTransform, 2> read_av2_mounts(const fs::path& folder) {
+  const fs::path file = folder / "calibration" / "egovehicle_SE3_sensor.feather";
+  const ArrowTable table = read_log_table(file);
+  const std::vector<RigidTransform> mounts = poses_of_rows(file, table);
+  const auto names = table.texts.find("sensor_name");
+  if (names == table.texts.end()) throw av2_fault(file, "has no column of text 'sensor_name'");
+  std::array<RigidTransform, 2> of_units;
+  for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
+    const auto row = std::ranges::find(names->second, kUnitNames[unit]);
+    if (row == names->second.end())
+      throw av2_fault(file, std::string("has no row for the sensor '") + kUnitNames[unit] + "'");
+    of_units[unit] = mounts[static_cast<std::size_t>(row - names->second.begin())];
+  }
+  return of_units;
+}
+
+/// A sweep as in its file; the times of the points are offsets to the stamp, s.
+struct Av2Sweep {
+  FileScan points;
+  std::vector<std::size_t> lasers;
+};
+
+Av2Sweep read_av2_sweep(const fs::path& file) {
+  const ArrowTable table = read_arrow_file(file);
+  const Column& x = av2_column(file, table, "x");
+  const Column& y = av2_column(file, table, "y");
+  const Column& z = av2_column(file, table, "z");
+  const Column& intensity = av2_column(file, table, "intensity");
+  const Column& laser = av2_column(file, table, "laser_number");
+  const Column& offset_ns = av2_column(file, table, "offset_ns");
+  constexpr double kMaxOffset_s = 1;
+  Av2Sweep sweep;
+  for (std::size_t row = 0; row < table.numbers.rows; ++row) {
+    const double number = laser.as_double(row);
+    const double offset_s = kNanosecond_s * offset_ns.as_double(row);
+    const std::string where = " of point " + std::to_string(row) + " (from 0) is ";
+    if (!(number >= 0 && number < 2 * kLasersOfUnit) || number != std::trunc(number))
+      throw av2_fault(file, "laser_number" + where + exact_text(number) + ", expected 0 to 63");
+    if (!(std::fabs(offset_s) <= kMaxOffset_s))
+      throw av2_fault(file, "offset_ns" + where + exact_text(offset_ns.as_double(row)) +
+                                ", expected at most a second (1e9)");
+    sweep.points.positions.push_back({x.as_double(row), y.as_double(row), z.as_double(row)});
+    sweep.points.intensities.push_back(static_cast<float>(intensity.as_double(row)));
+    sweep.points.times.push_back(offset_s);
+    sweep.lasers.push_back(static_cast<std::size_t>(number));
+  }
+  return sweep;
+}
+
+class Av2Points final : public ScanSource {
+ public:
+  FileScan read(const fs::path& file) const override { return read_av2_sweep(file).points; }
+};
+
+/// Reads sweeps, with the beams of their points.
+class Av2Reader final : public ScanReader {
+ public:
+  Av2Reader(Trajectory track, std::map<fs::path, TimedPose> poses,
+            std::array<RigidTransform, 2> mounts, IntensityScale scale, MovingBoxes boxes)
+      : track_(std::move(track)),
+        poses_(std::move(poses)),
+        mounts_(mounts),
+        scale_(std::move(scale)),
+        boxes_(std::move(boxes)) {
+    for (SensorCones& cones : library_cones())
+      if (cones.sensor == kUnitModel) cones_ = std::move(cones);
+  }
+
+  KittiScan read(const fs::path& file) const override {
+    Av2Sweep sweep = read_av2_sweep(file);
+    const TimedPose& pose = poses_.at(file);
+    KittiScan scan;
+    for (std::size_t i = 0; i < sweep.lasers.size(); ++i) {
+      const Vec3d point = sweep.points.positions[i];
+      const double time_s = pose.time_s + sweep.points.times[i];
+      const AtFiring at = at_firing(pose, time_s, point, sweep.lasers[i]);
+      scan.positions.push_back(vec_cast<float>(point));
+      scan.origins.push_back(vec_cast<float>(at.vehicle_from_unit * at.origin));
+      scan.lasers.push_back(at.ring);
+      if (!boxes_.empty())
+        scan.in_boxes.push_back(boxes_.contains(time_s, pose.world_from_sensor * point) ? 1 : 0);
+    }
+    scan.intensities = scale_.scaled(std::move(sweep.points.intensities), file);
+    return scan;
+  }
+
+  /// Angles between points and the beams of their lasers, rad.
+  std::vector<double> residuals_rad(const fs::path& file) const {
+    constexpr std::size_t kEvery = 17;
+    constexpr double kNear_m = 8;  // coordinates of 16 bits are too coarse for near points
+    const Av2Sweep sweep = read_av2_sweep(file);
+    const TimedPose& pose = poses_.at(file);
+    std::vector<double> angles_rad;
+    for (std::size_t i = 0; i < sweep.lasers.size(); i += kEvery) {
+      const Vec3d point = sweep.points.positions[i];
+      const double time_s = pose.time_s + sweep.points.times[i];
+      const AtFiring at = at_firing(pose, time_s, point, sweep.lasers[i]);
+      const Vec3d along = at.point - at.origin;
+      if (!is_finite(point) || length(along) < kNear_m) continue;
+      const double elevation_rad = std::asin(along.z / length(along));
+      angles_rad.push_back(std::fabs(elevation_rad - cones_.cones.at(at.beam).elevation_rad));
+    }
+    return angles_rad;
+  }
+
+ private:
+  /// A point and the start of its beam in the frame of its LiDAR, when it was measured.
+  struct AtFiring {
+    RigidTransform vehicle_from_unit;  ///< vehicle at the stamp of the sweep
+    Vec3d point, origin;
+    std::uint16_t beam, ring;
+  };
+
+  AtFiring at_firing(const TimedPose& pose, double time_s, Vec3d point, std::size_t laser) const {
+    const std::size_t unit = laser / kLasersOfUnit;
+    const std::uint16_t beam = kBeamOfLaser[laser % kLasersOfUnit];
+    AtFiring at;
+    at.vehicle_from_unit =
+        pose.world_from_sensor.inverse() * interpolate(track_, time_s) * mounts_[unit];
+    at.point = at.vehicle_from_unit.inverse() * point;
+    if (is_finite(point)) at.origin = cones_.origin_of(beam, at.point);
+    at.beam = beam;
+    // down_lidar is mounted upside down: its topmost beam points down.
+    const bool is_upright = mounts_[unit].rotation.rows[2].z > 0;
+    const auto from_top = static_cast<std::uint16_t>(is_upright ? beam : kLasersOfUnit - 1 - beam);
+    at.ring = static_cast<std::uint16_t>(unit * kLasersOfUnit + from_top);
+    return at;
+  }
+
+  Trajectory track_;
+  std::map<fs::path, TimedPose> poses_;
+  std::array<RigidTransform, 2> mounts_;
+  IntensityScale scale_;
+  MovingBoxes boxes_;
+  SensorCones cones_;
+};
+
+/// The sweeps with their poses, by time. Errors: data for sweeps without a pose.
+std::vector<std::pair<fs::path, TimedPose>> sweeps_of_log(const fs::path& folder,
+                                                          const Av2Poses& poses) {
+  const fs::path lidar = folder / "sensors" / "lidar";
+  std::map<std::int64_t, fs::path> files;
+  for (const fs::path& file : files_by_name(lidar, ".feather")) {
+    const auto stamp_ns = parse_number<std::int64_t>(file.stem().string());
+    if (!stamp_ns) throw av2_fault(file, "its name is not a stamp in nanoseconds");
+    files.emplace(*stamp_ns, file);
+  }
+  if (files.empty())
+    throw Error(ErrorKind::no_input, lidar.string() + ": contains no .feather sweeps");
+  std::vector<std::pair<fs::path, TimedPose>> sweeps;
+  for (const auto& [stamp_ns, file] : files) {
+    const auto pose = poses.by_stamp_ns.find(stamp_ns);
+    if (pose == poses.by_stamp_ns.end())
+      throw av2_fault(file, "this sweep has no pose: " + poses.file.string() +
+                                " has no row with its stamp (" +
+                                std::to_string(poses.by_stamp_ns.begin()->first) + " to " +
+                                std::to_string(poses.by_stamp_ns.rbegin()->first) + ")");
+    sweeps.emplace_back(file,
+                        TimedPose{kNanosecond_s * static_cast<double>(stamp_ns), pose->second});
+  }
+  return sweeps;
+}
+
+/// Checks that points lie on the beams of their lasers; the median angle, rad. Errors: data.
+double require_beams(const DriveInput& drive, const Av2Reader& reader,
+                     const std::vector<fs::path>& files) {
+  std::vector<double> angles_rad;
+  for (const std::size_t k : {std::size_t{0}, files.size() / 2}) {
+    const std::vector<double> some = reader.residuals_rad(files[k]);
+    angles_rad.insert(angles_rad.end(), some.begin(), some.end());
+  }
+  if (angles_rad.empty()) return 0;
+  const auto middle = angles_rad.begin() + static_cast<std::ptrdiff_t>(angles_rad.size() / 2);
+  std::ranges::nth_element(angles_rad, middle);
+  constexpr double kMaxMedian_rad = 0.3 * kDegree;  // beams are a third of a degree apart
+  if (*middle <= kMaxMedian_rad) return *middle;
+  std::array<char, 320> text{};
+  std::snprintf(text.data(), text.size(),
+                ": its points are %.2f deg (median) from the beams of their laser_number, expected "
+                "less than %.1f; calibration/egovehicle_SE3_sensor.feather belongs to another log, "
+                "or the sensors are not two VLP-32C",
+                *middle / kDegree, kMaxMedian_rad / kDegree);
+  throw Error(ErrorKind::data, drive.folder.string() + text.data());
+}
+
+MovingBoxes boxes_of_sweeps(const DriveInput& drive, const Trajectory& sweeps) {
+  if (drive.boxes.empty()) return {};
+  MovingBoxes boxes(drive.boxes);
+  if (!boxes.overlaps(sweeps.front().time_s, sweeps.back().time_s))
+    throw Error(ErrorKind::data, drive.boxes.string() +
+                                     ": no box has a time within the scans; the clocks differ, or "
+                                     "the boxes belong to another drive");
+  return boxes;
+}
+
+}  // namespace
+
+bool is_av2_log(const fs::path& folder) {
+  std::error_code ignored;  // an unreadable folder is not a log
+  if (fs::is_regular_file(folder / "city_SE3_egovehicle.feather", ignored)) return true;
+  fs::directory_iterator entry(folder / "sensors" / "lidar", ignored);
+  return std::any_of(entry, fs::directory_iterator(), [](const fs::directory_entry& file) {
+    return file.path().extension() == ".feather";
+  });
+}
+
+ClassNames av2_class_names(const fs::path&) { return {}; }
+
+KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
+                             ProgressSink& progress) {
+  if (drive.given_mount() || drive.time_offset_s)
+    throw Error(ErrorKind::usage, drive.folder.string() +
+                                      ": is an Argoverse 2 log, which defines mounts and times; "
+                                      "`mount` and `time_offset` do not apply");
+  const Av2Poses poses = read_av2_poses(drive.folder);
+  KittiSequence sequence;
+  sequence.folder = drive.folder;
+  std::map<fs::path, TimedPose> pose_of_file;
+  for (auto& [file, pose] : sweeps_of_log(drive.folder, poses)) {
+    sequence.scans.push_back(file);
+    sequence.trajectory.push_back(pose);
+    pose_of_file.emplace(file, pose);
+  }
+  const IntensityScale scale = scale_of_scans(Av2Points(), sequence.scans);
+  const auto reader = std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file),
+                                                  read_av2_mounts(drive.folder), scale,
+                                                  boxes_of_sweeps(drive, sequence.trajectory));
+  const double median_rad = require_beams(drive, *reader, sequence.scans);
+  sequence.reader = reader;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "up_lidar and down_lidar (two %s; points %.3f deg from the cones of their beams, "
+                "each at its own time)",
+                kUnitModel, median_rad / kDegree);
+  sequence.beams.recognised = text.data();
+  sequence.facts.points_in = "vehicle's frame (as Argoverse 2 has them)";
+  sequence.facts.poses = "of city_SE3_egovehicle at the stamps of the sweeps";
+  sequence.facts.motion = "already compensated in the points (frame of the stamp of the sweep)";
+  sequence.facts.unchecked = verify_poses(sequence, executor);
+  sequence.facts.intensities = scale.description();
+  report_drive(sequence, progress);
+  return sequence;
+}
+
+}  // namespace adasplats
