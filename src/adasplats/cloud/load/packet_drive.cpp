@@ -459,28 +459,30 @@ void warn_of_packets(const PacketSurvey& survey, const std::string& name,
 
 /// The part of a turn that whole revolutions have: sensors set to part of the view never have full
 /// ones.
-double usual_share(const PacketSource& source) {
+double usual_share(const PacketSource& source, const LidarModel& model) {
   const std::vector<Revolution>& turns = source.revolutions;
-  double usual = turns.size() < 3 ? 1 : 0;
+  const double window = model.window_end - model.window_begin;  // of an Ouster
+  double usual = turns.size() < 3 ? (window > 0 ? window : 1) : 0;
   for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
   return usual;
 }
 
 /// Whether the start or end of the capture left next to nothing of a revolution.
-bool is_rest(const PacketSource& source, const Revolution& turn) {
+bool is_rest(const PacketSource& source, const LidarModel& model, const Revolution& turn) {
   constexpr double kRest = 0.01;
   const bool is_end = &turn == &source.revolutions.front() || &turn == &source.revolutions.back();
-  return is_end && source.revolutions.size() > 1 && turn.share < kRest * usual_share(source);
+  return is_end && source.revolutions.size() > 1 && turn.share < kRest * usual_share(source, model);
 }
 
 /// Warns of revolutions cut by the start or end of the capture.
 void warn_of_partial_turns(const PacketSurvey& survey, const std::string& name,
                            const PacketSource& source, ProgressSink& progress) {
   constexpr double kWhole = 0.95;
+  const LidarModel& model = survey.decoder->sensor().model;
   const std::vector<Revolution>& turns = source.revolutions;
   const auto warn = [&](const Revolution& turn, const std::string& what) {
-    if (!turn.has_points || turn.share >= kWhole * usual_share(source)) return;
-    const bool is_skipped = is_rest(source, turn);
+    if (!turn.has_points || turn.share >= kWhole * usual_share(source, model)) return;
+    const bool is_skipped = is_rest(source, model, turn);
     std::array<char, 32> percent{};
     std::snprintf(percent.data(), percent.size(), is_skipped ? "%.2f" : "%.0f", 100 * turn.share);
     progress.warn(survey.path.string() + ": " + what + " revolution of " + name + " is " +
@@ -505,7 +507,7 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
   for (std::size_t k = 0; k < source.revolutions.size(); ++k) {
     const Revolution& turn = source.revolutions[k];
     if (!turn.has_points) ++empty;
-    if (!turn.has_points || is_rest(source, turn)) continue;
+    if (!turn.has_points || is_rest(source, survey.decoder->sensor().model, turn)) continue;
     std::array<char, 32> number{};
     std::snprintf(number.data(), number.size(), "%06zu", k);
     const fs::path scan = survey.path / number.data();

@@ -288,6 +288,19 @@ TEST_F(OpenedCapture, PartsOfRevolutionsAreSaid) {
   EXPECT_TRUE(std::ranges::none_of(warnings, says("the first revolution")));
 }
 
+TEST_F(OpenedCapture, ScansOfAWindowAreWhole) {
+  LidarModel model = load_lidar_model("ouster-os1-64");
+  model.window_begin = 1.0 / 1024;
+  model.window_end = 512.0 / 1024;
+  const SentDrive sent(model, 1024);
+  sent.write(folder_);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(open(sent, "", &warnings).scans.size(), 1U);
+  EXPECT_TRUE(std::ranges::none_of(warnings, [](const std::string& warning) {
+    return warning.find("cut by the capture") != std::string::npos;
+  }));
+}
+
 TEST_F(OpenedCapture, RestsOfRevolutionsAreSkipped) {
   const SentDrive sent("velodyne-vlp-16", 2 * 1808 + 8);
   sent.write(folder_);
