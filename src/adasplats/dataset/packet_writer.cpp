@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/dataset/writer_with_poses.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/packets/capture_writer.h"
@@ -39,7 +40,7 @@ PacketSensor sensor_of(const PacketOptions& options) {
         "packets need the sensor that measured the scans; only a simulation can write them, "
         "not a conversion of scans");
   require_packets(*options.sensor, options);
-  return packet_sensor(*options.sensor);
+  return written_sensor(*options.sensor);
 }
 
 class PacketWriter final : public WriterWithPoses {
@@ -136,8 +137,14 @@ class PacketWriter final : public WriterWithPoses {
         static_cast<std::uint64_t>(std::llround(column_s_ * kNanosecondsInSecond));
     const std::uint64_t sent_us = (columns_.back().time_ns + column_ns) / kNanosecondsInMicrosecond;
     sent_us_ = std::max(sent_us_, sent_us);
-    capture_.add(sent_us_, sensor_end(sensor_.facts.port), everyone(sensor_.facts.port),
-                 encode_packet(sensor_, columns_, packets_++));
+    // Packets outside the window of an Ouster are not sent.
+    const bool is_sent = !is_ouster(sensor_.format) ||
+                         std::ranges::any_of(columns_, [&](const PacketColumn& column) {
+                           return sensor_.model.fires_in(column.column);
+                         });
+    if (is_sent)
+      capture_.add(sent_us_, sensor_end(sensor_.facts.port), everyone(sensor_.facts.port),
+                   encode_packet(sensor_, columns_, packets_++));
     columns_.clear();
     returns_.clear();
   }
@@ -160,16 +167,31 @@ class PacketWriter final : public WriterWithPoses {
   std::deque<std::vector<PacketReturn>> returns_;  ///< of these columns
 };
 
+/// Hesai's packets have no times of columns or beams and no origins; readers use those of the
+/// model.
+void require_hesai(const LidarModel& model, const PacketSensor& sensor,
+                   FunctionRef<void(const std::string&)> reject) {
+  constexpr double kMicroseconds = 1e6, kTolerance = 1e-3;
+  const double step_s = written_column_s(sensor.format);
+  if (std::fabs(sensor.column_s() / step_s - 1) > kTolerance)
+    reject("they have a column every " + std::to_string(kMicroseconds * step_s) +
+           " us, but the sensor every " + std::to_string(kMicroseconds * sensor.column_s()) +
+           " us; change its columns or --rotation-rate");
+  if (!model.beam_origins_m.empty() &&
+      std::ranges::any_of(model.beam_origins_m, [](const Vec3d& at) { return at != Vec3d{}; }))
+    reject("they hold no beam origins");
+  if (!model.firing_times_s.empty() && std::ranges::min(model.firing_times_s) != 0)
+    reject("columns begin with the first shot, so the least of its firing_times_us must be 0");
+  calibration_file(sensor);  // throws if the file cannot represent the sensor
+}
+
 }  // namespace
 
 void require_packets(const LidarModel& model, const PacketOptions& options) {
-  const PacketSensor sensor = packet_sensor(model);
+  const PacketSensor sensor = written_sensor(model);
   const auto reject = [&](const std::string& why) {
     throw Error(ErrorKind::usage, "cannot write packets of sensor '" + model.name + "': " + why);
   };
-  if (is_hesai(sensor.format)) reject("Hesai's packets are only read");
-  if (sensor.format > PacketFormat::ouster_legacy)
-    reject("only the packet profile LEGACY can be written");
   if (options.returns > 1) reject("they hold one return per firing; use --returns 1");
   if (options.has_angular_noise && model.angular_noise_rad > 0)
     reject(
@@ -182,6 +204,7 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
     reject("they hold ranges up to " + std::to_string(max_m) +
            " m, but the sensor measures up to " + std::to_string(model.max_range_m) +
            " m; reduce --max-range");
+  if (is_hesai(sensor.format)) require_hesai(model, sensor, reject);
   if (!is_ouster(sensor.format)) return;
   const std::string mode =
       std::to_string(model.columns) + "x" + std::to_string(std::lround(model.rotation_hz));

@@ -13,6 +13,7 @@
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/packets/datagram_reader.h"
 #include "adasplats/sensors/packet_decoder.h"
+#include "adasplats/sensors/packet_encoder.h"
 
 namespace adasplats {
 namespace {
@@ -68,6 +69,77 @@ TEST(PacketWriter, RangesAndIntensities) {
   EXPECT_EQ(drive.points.intensities, (std::vector<float>{128, 255, 0}));
   EXPECT_EQ(drive.points.rings, (std::vector<std::uint16_t>{3, 3, 3}));
   EXPECT_EQ(drive.packets, 3U * 76);  // 1808 columns and 16 more, 24 a packet
+}
+
+TEST(PacketWriter, ScansOfAHesaiAreReadAgain) {
+  for (const char* name : {"hesai-pandarxt-32", "hesai-pandar64", "hesai-ot128"}) {
+    SCOPED_TRACE(name);
+    const LidarModel sensor = load_lidar_model(name);
+    ScanWriterOptions options;
+    options.packets.sensor = &sensor;
+    std::vector<Scan> scans;
+    for (const float range_m : {12.3456F, 0.001F, 100.0F})
+      scans.push_back(scan_of_one(10 + 0.1 * static_cast<double>(scans.size()), range_m, 1));
+    const WrittenDrive drive = written(scans, options);
+    ASSERT_EQ(drive.points.positions.size(), 3U);
+    EXPECT_NEAR(length(drive.points.positions[0]), 12.344, 1e-5);
+    EXPECT_NEAR(length(drive.points.positions[1]), 0.004, 1e-6);  // it did come back
+    EXPECT_NEAR(length(drive.points.positions[2]), 100, 1e-5);
+    EXPECT_EQ(drive.points.intensities, (std::vector<float>{255, 255, 255}));
+    EXPECT_EQ(drive.points.rings, (std::vector<std::uint16_t>{3, 3, 3}));
+    EXPECT_EQ(drive.packets, 3 * sensor.columns / written_sensor(sensor).facts.columns);
+  }
+}
+
+TEST(PacketWriter, OustersSendOnlyPacketsOfTheirWindow) {
+  LidarModel sensor = load_lidar_model("ouster-os1-64");  // 1024 columns, 16 per packet
+  sensor.window_begin = 40.0 / 1024;
+  sensor.window_end = 100.0 / 1024;
+  ScanWriterOptions options;
+  options.packets.sensor = &sensor;
+  const TemporaryFolder folder;
+  const auto writer = make_scan_writer(folder.path(), ScanFormat::pcap, options);
+  for (std::size_t i = 0; i < 2; ++i)
+    writer->write(i, scan_of_one(10 + 0.1 * static_cast<double>(i), 12.3456F, 1));
+  writer->finish();
+  const PacketDecoder decoder(
+      packet_sensor(load_lidar_model((folder.path() / "metadata.json").string())));
+  DatagramReader reader(folder.path() / "drive.pcap");
+  std::vector<std::uint32_t> steps;
+  PacketPoints points;
+  while (const auto datagram = reader.next()) {
+    ASSERT_TRUE(decoder.accepts(datagram->payload));
+    const auto columns = decoder.columns(datagram->payload);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (!columns[k].is_valid) continue;
+      steps.push_back(columns[k].step);
+      decoder.add_points(datagram->payload, k, columns[k], points);
+    }
+  }
+  ASSERT_EQ(steps.size(), 2U * 60);
+  EXPECT_EQ(steps.front(), 40U);
+  EXPECT_EQ(steps.back(), 99U);
+  EXPECT_EQ(reader.counts().datagrams, 2U * 5);
+  EXPECT_EQ(points.positions.size(), 2U);
+}
+
+TEST(PacketWriter, RejectsHesaisThatPacketsCannotHold) {
+  const auto refused = [](const LidarModel& sensor, const std::string& why) {
+    expect_error(ErrorKind::usage, {sensor.name, why}, [&] { require_packets(sensor, {}); });
+  };
+  const LidarModel sensor = load_lidar_model("hesai-pandarxt-32");
+  require_packets(sensor, {});
+  LidarModel other = sensor;
+  other.rotation_hz = 20;
+  refused(other, "--rotation-rate");
+  other.columns = 1000;
+  require_packets(other, {});
+  other = sensor;
+  for (double& time_s : other.firing_times_s) time_s += 1e-6;
+  refused(other, "firing_times_us");
+  other = sensor;
+  other.beam_origins_m.assign(32, {0.1, 0, 0});
+  refused(other, "origins");
 }
 
 TEST(PacketWriter, PacketsContinueAcrossScans) {

@@ -350,6 +350,9 @@ TEST_F(HesaiPackets, OtherPacketsAreRejected) {
   other[3] = 2;
   EXPECT_TRUE(has(why(xt, other), "protocol 6.2 with 32 lasers in 8 blocks; those that are read"));
   EXPECT_TRUE(has(why(xt, good.substr(4)), "protocol"));
+  other = hesai_test::at128_packet(0, 0);
+  other[3] = 1;
+  EXPECT_TRUE(has(why(xt, other), "protocol 4.1 with 128 lasers in 2 blocks; those that are read"));
   EXPECT_TRUE(has(why(xt, good + "more"), "have 1084 bytes, expected 1080 of a XT32"));
   EXPECT_TRUE(has(why(xt, good.substr(0, 500)), "have 500 bytes"));
   other = good;

@@ -13,6 +13,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/packet_sensor.h"
 
 namespace adasplats {
@@ -167,9 +169,41 @@ std::string hdl64_generation(const LidarModel& model) {
   return !times_s.empty() && std::ranges::max(times_s) > kLongestOfS2_s ? "s3" : "s2";
 }
 
+/// Whether two sensors with packets have the same beams at the same times, within rounding.
+bool has_same_beams(const LidarModel& one, const LidarModel& other) {
+  constexpr double kAngle_rad = 1e-9, kTime_s = 1e-9;
+  const auto are_near = [](const std::vector<double>& a, const std::vector<double>& b, double by) {
+    return std::ranges::equal(a, b, [&](double x, double y) { return std::fabs(x - y) <= by; });
+  };
+  return one.packets->format == other.packets->format &&
+         are_near(one.elevations_rad, other.elevations_rad, kAngle_rad) &&
+         are_near(one.firing_times_s, other.firing_times_s, kTime_s);
+}
+
+/// The angle correction file. It has no firing times: readers use those of the model.
+CalibrationFile hesai_csv(const PacketSensor& sensor) {
+  const LidarModel& model = sensor.model;
+  CalibrationFile file{"correction.csv", "Channel,Elevation,Azimuth\n"};
+  for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
+    const std::size_t ring = sensor.ring_of_laser[laser];
+    const double azimuth_deg = -kDegreesPerRadian * offset_of_beam(model, ring);
+    file.text += std::to_string(laser + 1) + "," +
+                 exact_text(kDegreesPerRadian * model.elevations_rad[ring]) + "," +
+                 exact_text(azimuth_deg == 0 ? 0 : azimuth_deg) + "\n";
+  }
+  const LidarModel found = finished_model(read_hesai_csv(file.text, file.name));
+  if (!found.packets || !has_same_beams(packet_sensor(found).model, model))
+    throw Error(ErrorKind::usage, "sensor '" + model.name +
+                                      "': its beams or firing times are not those of a " +
+                                      std::string(word_of(sensor.format, kPacketFormats)) +
+                                      ", which readers of its packets assume");
+  return file;
+}
+
 }  // namespace
 
 CalibrationFile calibration_file(const PacketSensor& sensor) {
+  if (is_hesai(sensor.format)) return hesai_csv(sensor);
   if (is_ouster(sensor.format)) return {"metadata.json", ouster_json(sensor)};
   // load_lidar_model() derives the firing times from this name.
   const std::string name = sensor.format == PacketFormat::hdl_64e

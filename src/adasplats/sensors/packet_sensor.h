@@ -58,7 +58,7 @@ struct CalibrationFile {
 };
 
 /// Velodyne: calibration.yaml for the ROS driver velodyne_pointcloud. Ouster: metadata.json for its
-/// SDK.
+/// SDK. Hesai: the angle correction file. Errors: usage (a sensor that the file cannot represent).
 CalibrationFile calibration_file(const PacketSensor& sensor);
 
 }  // namespace adasplats

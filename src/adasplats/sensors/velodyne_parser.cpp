@@ -138,39 +138,75 @@ bool VelodyneParser::is_dual(const PacketSensor& sensor, std::string_view payloa
   return is_dual;
 }
 
+/// Rotation of the head from each firing block to the next, in steps. A sensor set to part of the
+/// view (Field of View in the manuals) measures nothing elsewhere, and a packet can contain the end
+/// of one revolution and the start of the next.
+struct HeadSteps {
+  double usual = 0;           ///< without the pauses
+  double pause_s = 0;         ///< duration of a turn of one step in a pause
+  std::vector<double> turns;  ///< from each block to the next
+
+  bool is_pause(std::size_t block) const {
+    constexpr double kMost = 4;  // rotation rates differ by less
+    return turns[block] > kMost * nominal_ + 1;
+  }
+
+  /// `azimuths` of the blocks; `nominal` steps and `block_s` between two of them.
+  HeadSteps(const std::vector<std::uint32_t>& azimuths, double nominal, double block_s)
+      : nominal_(nominal) {
+    std::size_t count = 0;
+    for (std::size_t block = 0; block + 1 < azimuths.size(); ++block) {
+      turns.push_back((azimuths[block + 1] + kAzimuthSteps - azimuths[block]) % kAzimuthSteps);
+      if (is_pause(block)) continue;
+      usual += turns.back();
+      ++count;
+    }
+    usual = count == 0 ? nominal : usual / static_cast<double>(count);
+    // Rates are set in revolutions per second, which says more than a few rounded azimuths.
+    const double rate_hz = std::max(1.0, std::round(usual / (kAzimuthSteps * block_s)));
+    pause_s = 1 / (rate_hz * kAzimuthSteps);
+  }
+
+ private:
+  double nominal_;
+};
+
 std::vector<MeasuredColumn> VelodyneParser::columns(const PacketSensor& sensor,
                                                     std::string_view payload) const {
   const std::size_t lasers = sensor.lasers(), apart = blocks_of_firing(lasers);
   const std::size_t firings_of_block = std::max<std::size_t>(1, kBlockChannels / lasers);
   const VelodyneBlocks blocks{sensor.format, is_dual(sensor, payload)};
-  const auto azimuth_at = [&](std::size_t block) {
-    return std::uint32_t{azimuth_of_block(payload, blocks.first(block))};
-  };
   const double first_steps = -sensor.model.first_azimuth_rad / kWholeTurn_rad * kAzimuthSteps;
   const auto micros = value_at<std::uint32_t>(payload, kVelodyneTail);
+  std::vector<std::uint32_t> azimuths;
+  for (std::size_t block = 0; block + apart <= blocks.count(); block += apart)
+    azimuths.push_back(azimuth_of_block(payload, blocks.first(block)));
+  const auto parts = static_cast<double>(firings_of_block);
+  // The last block repeats the step of the previous one.
+  double turned = static_cast<double>(kAzimuthSteps) / sensor.model.columns * parts;
+  const HeadSteps head(azimuths, turned, sensor.column_s() * parts);
+  double paused_s = 0;
   std::vector<MeasuredColumn> columns;
-  // Steps between blocks; the last block repeats the value of the previous one.
-  double turned = static_cast<double>(kAzimuthSteps) / sensor.model.columns *
-                  static_cast<double>(firings_of_block);
-  for (std::size_t block = 0; block + apart <= blocks.count(); block += apart) {
-    const std::uint32_t azimuth = azimuth_at(block);
-    if (block + 2 * apart <= blocks.count())
-      turned = (azimuth_at(block + apart) + kAzimuthSteps - azimuth) % kAzimuthSteps;
+  for (std::size_t block = 0; block < azimuths.size(); ++block) {
+    const bool pauses = block < head.turns.size() && head.is_pause(block);
+    if (block < head.turns.size()) turned = pauses ? head.usual : head.turns[block];
     for (std::size_t part = 0; part < firings_of_block; ++part) {
-      const double per_firing = turned / static_cast<double>(firings_of_block);
-      const double steps = azimuth + static_cast<double>(part) * per_firing;
+      const double per_firing = turned / parts;
+      const double steps = azimuths[block] + static_cast<double>(part) * per_firing;
       // Rounding must not move step 0 to the end of the previous revolution.
       double since_begin = std::fmod(steps - first_steps + 1e-6, kAzimuthSteps);
       if (since_begin < 0) since_begin += kAzimuthSteps;
       MeasuredColumn column;
-      column.time_ns = std::int64_t{micros} * 1000 - stamp_after_first_ns(sensor.format) +
-                       std::llround(static_cast<double>(columns.size()) * sensor.column_s() *
-                                    kNanosecondsInOne_s);
+      column.time_ns =
+          std::int64_t{micros} * 1000 - stamp_after_first_ns(sensor.format) +
+          std::llround((static_cast<double>(columns.size()) * sensor.column_s() + paused_s) *
+                       kNanosecondsInOne_s);
       column.head_rad = -steps / kAzimuthSteps * kWholeTurn_rad;
       column.turn_rad_s = -per_firing / kAzimuthSteps * kWholeTurn_rad / sensor.column_s();
       column.step = static_cast<std::uint32_t>(since_begin);
       columns.push_back(column);
     }
+    if (pauses) paused_s += (head.turns[block] - head.usual) * head.pause_s;
   }
   return columns;
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "adasplats/cloud/load/recording_poses.h"
@@ -60,7 +61,7 @@ class RevolutionFinder {
         source_.revolutions.push_back({packet.place, k, 0, 0, time_ns, time_ns, false});
         first_step_ = since_cut(columns[k]);
       }
-      if (!begins || !decoder_.traits().has_pauses) count_gap(time_ns);
+      if (!begins || !decoder_.traits().has_pauses) count_gap(columns[k], time_ns, k > 0);
       Revolution& now = source_.revolutions.back();
       ++now.columns;
       now.share = share_of_turn(columns[k]);
@@ -115,11 +116,43 @@ class RevolutionFinder {
     const double steps = static_cast<double>(since_cut(last)) - first_step_;
     return steps / turn + 1.0 / decoder_.sensor().model.columns;
   }
-  void count_gap(std::int64_t time_ns) {
-    if (source_.packets == 1 || time_ns - last_ns_ < 3 * column_ns_ / 2) return;
+  void count_gap(const MeasuredColumn& column, std::int64_t time_ns, bool within_packet) {
+    if (time_ns - last_ns_ < 3 * column_ns_ / 2 || is_pause(column, within_packet)) return;
+    if (source_.packets == 1) return;
+    const std::int64_t missing = (time_ns - last_ns_ + column_ns_ / 2) / column_ns_ - 1;
+    const std::uint64_t lost = columns_of_window(missing);
+    if (lost == 0) return;
     ++source_.gaps;
-    source_.lost_columns +=
-        static_cast<std::uint64_t>((time_ns - last_ns_ + column_ns_ / 2) / column_ns_ - 1);
+    source_.lost_columns += lost;
+  }
+  /// Whether the head passed angles at which the sensor is set not to measure: a jump within a
+  /// packet, later one between packets at the same angles too.
+  bool is_pause(const MeasuredColumn& column, bool within_packet) {
+    if (decoder_.traits().has_frames) return false;
+    if (within_packet) {
+      pause_ = {last_.step, column.step};
+      return true;
+    }
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    const auto are_near = [&](std::uint32_t a, std::uint32_t b) {
+      const std::uint32_t apart = (a + turn - b) % turn;
+      return std::min(apart, turn - apart) <= turn / 360;
+    };
+    return pause_ && are_near(pause_->first, last_.step) && are_near(pause_->second, column.step);
+  }
+  /// How many of the columns after the last one are in the window of an Ouster.
+  std::uint64_t columns_of_window(std::int64_t missing) const {
+    const LidarModel& model = decoder_.sensor().model;
+    const auto all = static_cast<std::uint64_t>(missing);
+    if (!model.has_window() || !decoder_.traits().has_frames) return all;
+    const auto fired_before = [&](std::uint64_t end) {
+      std::uint64_t fired = 0;
+      for (std::uint64_t k = 0; k < end; ++k)
+        if (model.fires_in(static_cast<std::uint32_t>((last_.step + 1 + k) % model.columns)))
+          ++fired;
+      return fired;
+    };
+    return all / model.columns * fired_before(model.columns) + fired_before(all % model.columns);
   }
 
   const PacketDecoder& decoder_;
@@ -127,6 +160,7 @@ class RevolutionFinder {
   SensorClock clock_;
   std::int64_t column_ns_, last_ns_ = 0;
   std::uint32_t cut_step_ = 0, first_step_ = 0;
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> pause_;  ///< its ends, steps
   MeasuredColumn last_;
 };
 
@@ -423,19 +457,37 @@ void warn_of_packets(const PacketSurvey& survey, const std::string& name,
                   sensor.model.name + " (" + std::to_string(serial) + ") is of this sensor");
 }
 
+/// The part of a turn that whole revolutions have: sensors set to part of the view never have full
+/// ones.
+double usual_share(const PacketSource& source, const LidarModel& model) {
+  const std::vector<Revolution>& turns = source.revolutions;
+  const double window = model.window_end - model.window_begin;  // of an Ouster
+  double usual = turns.size() < 3 ? (window > 0 ? window : 1) : 0;
+  for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
+  return usual;
+}
+
+/// Whether the start or end of the capture left next to nothing of a revolution.
+bool is_rest(const PacketSource& source, const LidarModel& model, const Revolution& turn) {
+  constexpr double kRest = 0.01;
+  const bool is_end = &turn == &source.revolutions.front() || &turn == &source.revolutions.back();
+  return is_end && source.revolutions.size() > 1 && turn.share < kRest * usual_share(source, model);
+}
+
 /// Warns of revolutions cut by the start or end of the capture.
 void warn_of_partial_turns(const PacketSurvey& survey, const std::string& name,
                            const PacketSource& source, ProgressSink& progress) {
   constexpr double kWhole = 0.95;
+  const LidarModel& model = survey.decoder->sensor().model;
   const std::vector<Revolution>& turns = source.revolutions;
-  // Sensors set to part of the view never have full turns.
-  double usual = turns.size() < 3 ? 1 : 0;
-  for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
   const auto warn = [&](const Revolution& turn, const std::string& what) {
-    if (!turn.has_points || turn.share >= kWhole * usual) return;
+    if (!turn.has_points || turn.share >= kWhole * usual_share(source, model)) return;
+    const bool is_skipped = is_rest(source, model, turn);
+    std::array<char, 32> percent{};
+    std::snprintf(percent.data(), percent.size(), is_skipped ? "%.2f" : "%.0f", 100 * turn.share);
     progress.warn(survey.path.string() + ": " + what + " revolution of " + name + " is " +
-                  std::to_string(std::lround(100 * turn.share)) +
-                  " % of a turn, cut by the capture; it is still used as a scan");
+                  percent.data() + " % of a turn, cut by the capture; it is " +
+                  (is_skipped ? "skipped" : "still used as a scan"));
   };
   warn(turns.front(), "the first");
   if (turns.size() > 1) warn(turns.back(), "the last");
@@ -451,9 +503,11 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
                              const PacketSource& source, double offset_s, ProgressSink& progress) {
   PacketDrive drive;
   std::map<fs::path, Revolution> turns;
+  std::size_t empty = 0;
   for (std::size_t k = 0; k < source.revolutions.size(); ++k) {
     const Revolution& turn = source.revolutions[k];
-    if (!turn.has_points) continue;
+    if (!turn.has_points) ++empty;
+    if (!turn.has_points || is_rest(source, survey.decoder->sensor().model, turn)) continue;
     std::array<char, 32> number{};
     std::snprintf(number.data(), number.size(), "%06zu", k);
     const fs::path scan = survey.path / number.data();
@@ -466,7 +520,6 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
   if (turns.empty())
     throw Error(ErrorKind::data,
                 survey.path.string() + ": the packets of " + name + " contain no returns");
-  const std::size_t empty = source.revolutions.size() - turns.size();
   if (empty > 0)
     progress.warn(survey.path.string() + ": " + std::to_string(empty) + " revolutions of " + name +
                   " have no points and are skipped");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,18 +33,26 @@ std::shared_ptr<const PacketDecoder> decoder_named(const std::string& name) {
 class SentDrive {
  public:
   SentDrive(const std::string& sensor, std::size_t columns)
-      : decoder_(decoder_named(sensor)), returns_(decoder_->sensor().lasers()) {
+      : SentDrive(load_lidar_model(sensor), columns) {}
+  /// `fired`: the first columns of each revolution, in which a Velodyne is set to fire.
+  SentDrive(const LidarModel& model, std::size_t columns, std::size_t fired = SIZE_MAX)
+      : decoder_(std::make_shared<const PacketDecoder>(packet_sensor(model))),
+        returns_(decoder_->sensor().lasers()) {
     const PacketSensor& sent = decoder_->sensor();
     for (PacketReturn& one : returns_)
       one = {static_cast<std::uint32_t>(std::lround(10 / sent.facts.quantum_m)), 257 * 9};
     std::vector<PacketColumn> packet;
     for (std::size_t k = 0; k < columns; ++k) {
+      if (k % model.columns >= fired) continue;
       const auto late_ns = static_cast<std::int64_t>(
           std::llround(1e9 * decoder_->column_s() * static_cast<double>(k)));
       packet.push_back({static_cast<std::uint64_t>(kDriveBegin_ns + late_ns),
                         static_cast<std::uint32_t>(k % sent.model.columns),
                         static_cast<std::uint16_t>(k / sent.model.columns), returns_});
       if (packet.size() < sent.facts.columns) continue;
+      const auto fires = [&](const PacketColumn& column) { return model.fires_in(column.column); };
+      if (std::ranges::none_of(packet, fires)) packet.clear();  // an Ouster's window
+      if (packet.empty()) continue;
       payloads.push_back(encode_packet(sent, packet, payloads.size()));
       times_ns.push_back(static_cast<std::int64_t>(packet.back().time_ns));
       packet.clear();
@@ -172,6 +181,56 @@ TEST(PacketDrive, MissingPacketsAndClocksThatAreSet) {
                [&] { drive.survey(drive.write(folder)); });
 }
 
+// Packets continue after the pause of a sensor that is set to part of the view. Oracle: what was
+// sent.
+TEST(PacketDrive, PausesOfAVelodyneAreNotMissingColumns) {
+  const LidarModel model = load_lidar_model("velodyne-vlp-16");
+  for (const std::size_t fired : {450U, 1356U}) {  // a quarter of a turn, three quarters
+    SCOPED_TRACE(fired);
+    const TemporaryFolder folder;
+    const SentDrive drive(model, 8 * std::size_t{model.columns}, fired);
+    const PacketSurvey survey = drive.survey(drive.write(folder));
+    const PacketSource& source = survey.sources.begin()->second;
+    EXPECT_EQ(source.lost_columns, 0U);
+    ASSERT_EQ(source.revolutions.size(), 8U);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const Revolution& turn = source.revolutions[k];
+      EXPECT_EQ(turn.columns, fired);
+      EXPECT_NEAR(static_cast<double>(turn.begin_ns - kDriveBegin_ns), 1e8 * double(k), 1e5);
+    }
+    for (const std::string& payload : drive.payloads) {
+      const auto columns = drive.decoder()->columns(payload);
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        PacketPoints points;
+        drive.decoder()->add_points(payload, k, columns[k], points);
+        for (const Vec3d& at : points.positions) {
+          const double clockwise = std::fmod(2 * std::numbers::pi + 1e-3 - std::atan2(at.y, at.x),
+                                             2 * std::numbers::pi) -
+                                   1e-3;
+          EXPECT_LT(clockwise, 2 * std::numbers::pi * double(fired) / model.columns + 1e-3);
+        }
+      }
+    }
+  }
+}
+
+TEST(PacketDrive, ColumnsOutsideTheWindowOfAnOusterAreNotMissing) {
+  LidarModel model = load_lidar_model("ouster-os1-64");  // 1024 columns, 16 per packet
+  for (const auto& [begin, end] : {std::pair{40, 1000}, {600, 100}}) {
+    model.window_begin = begin / 1024.0;
+    model.window_end = end / 1024.0;
+    SentDrive drive(model, std::size_t{4} * 1024);
+    const TemporaryFolder folder;
+    PacketSurvey survey = drive.survey(drive.write(folder));
+    EXPECT_EQ(survey.sources.begin()->second.lost_columns, 0U);
+    EXPECT_EQ(survey.sources.begin()->second.gaps, 0U);
+    drive.payloads.erase(drive.payloads.begin() + 80);
+    drive.times_ns.erase(drive.times_ns.begin() + 80);
+    survey = drive.survey(drive.write(folder));
+    EXPECT_EQ(survey.sources.begin()->second.lost_columns, 16U);
+  }
+}
+
 class OpenedCapture : public testing::Test {
  protected:
   class Listener : public ProgressSink {
@@ -227,6 +286,31 @@ TEST_F(OpenedCapture, PartsOfRevolutionsAreSaid) {
   EXPECT_TRUE(std::ranges::any_of(
       warnings, says("the last revolution of 10.0.0.201:2368 is 50 % of a turn")));
   EXPECT_TRUE(std::ranges::none_of(warnings, says("the first revolution")));
+}
+
+TEST_F(OpenedCapture, ScansOfAWindowAreWhole) {
+  LidarModel model = load_lidar_model("ouster-os1-64");
+  model.window_begin = 1.0 / 1024;
+  model.window_end = 512.0 / 1024;
+  const SentDrive sent(model, 1024);
+  sent.write(folder_);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(open(sent, "", &warnings).scans.size(), 1U);
+  EXPECT_TRUE(std::ranges::none_of(warnings, [](const std::string& warning) {
+    return warning.find("cut by the capture") != std::string::npos;
+  }));
+}
+
+TEST_F(OpenedCapture, RestsOfRevolutionsAreSkipped) {
+  const SentDrive sent("velodyne-vlp-16", 2 * 1808 + 8);
+  sent.write(folder_);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(open(sent, "", &warnings).scans.size(), 2U);
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& warning) {
+    return warning.find(
+               "the last revolution of 10.0.0.201:2368 is 0.44 % of a turn, cut by the "
+               "capture; it is skipped") != std::string::npos;
+  }));
 }
 
 TEST_F(OpenedCapture, SeveralSensorsAreToldApart) {

@@ -42,9 +42,10 @@ void add_cloud(const RecordedMessage& message, const std::string& what, TopicSur
   const RosCloudHead head = ros_cloud_head(message.bytes, message.topic.encoding, what);
   if (topic.clouds.empty()) topic.frame = head.header.frame;
   if (head.header.frame != topic.frame && topic.fault.empty())
-    topic.fault = what + " is in frame '" + head.header.frame + "', earlier ones in '" +
-                  topic.frame + "'; expected one frame per topic";
-  topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.points, message.place});
+    topic.fault = what + " has " + words_of_frame(head.header.frame) + ", earlier ones " +
+                  words_of_frame(topic.frame) + "; expected one frame per topic";
+  topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.header.stamp_ns, topic.messages,
+                          head.points, message.place});
 }
 
 void add_packets(const RecordedMessage& message, const std::string& what, TopicSurvey& topic) {
@@ -103,7 +104,20 @@ void put_in_order(FrameEdge& edge) {
   edge.stamps_ns = {};
 }
 
+/// The same for clouds, which are all kept.
+void put_in_order(std::vector<CloudMessage>& clouds) {
+  std::ranges::stable_sort(clouds, {}, &CloudMessage::stamp_ns);
+  for (std::size_t k = 1; k < clouds.size(); ++k)
+    clouds[k].stamp_s = clouds[k].stamp_ns == clouds[k - 1].stamp_ns
+                            ? clouds[k - 1].stamp_s
+                            : time_after(clouds[k - 1].stamp_s, clouds[k].stamp_s);
+}
+
 }  // namespace
+
+std::string words_of_frame(const std::string& frame) {
+  return frame.empty() ? "no frame (frame_id is empty)" : "frame '" + frame + "'";
+}
 
 bool TopicSurvey::holds_clouds() const { return topic.type == kRosCloud; }
 
@@ -140,7 +154,7 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
   });
   progress.end_step();
   for (auto& [name, topic] : survey.topics) {
-    std::ranges::stable_sort(topic.clouds, {}, &CloudMessage::stamp_s);
+    put_in_order(topic.clouds);
     for (auto& [frames, edge] : topic.edges) put_in_order(edge);
   }
   return survey;
@@ -225,31 +239,57 @@ struct RecordedDrive {
   std::vector<double> stamps_s;  ///< in the recording's clock
 };
 
+/// Whether two messages are the same but for their first four bytes, the number of a message of
+/// ROS 1.
+bool are_copies(const Recording& recording, const CloudMessage& one, const CloudMessage& other) {
+  constexpr std::size_t kNumberBytes = 4;
+  return recording.message(one.place).substr(kNumberBytes) ==
+         recording.message(other.place).substr(kNumberBytes);
+}
+
+Error same_time(const RecordingSurvey& survey, const TopicSurvey& topic, const CloudMessage& one,
+                const CloudMessage& other) {
+  return {ErrorKind::data,
+          survey.recording->path().string() + ": clouds " + std::to_string(one.number) + " and " +
+              std::to_string(other.number) + " (from 1) of " + topic.topic.name +
+              " have the same time in their headers, " + std::to_string(one.stamp_s) +
+              " s, but different points; expected distinct times (record each sensor or return in "
+              "a topic of its own)"};
+}
+
 RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
                        ProgressSink& progress) {
-  const fs::path& path = survey.recording->path();
+  const Recording& recording = *survey.recording;
+  const fs::path& path = recording.path();
   RecordedDrive scans;
   std::map<fs::path, MessagePosition> places;
+  const CloudMessage* last = nullptr;
+  std::size_t empty = 0, copies = 0;
   for (std::size_t k = 0; k < topic.clouds.size(); ++k) {
     const CloudMessage& cloud = topic.clouds[k];
+    if (cloud.points == 0) ++empty;
     if (cloud.points == 0) continue;
-    if (!scans.stamps_s.empty() && !(cloud.stamp_s > scans.stamps_s.back()))
-      throw Error(ErrorKind::data, path.string() + ": two clouds of " + topic.topic.name +
-                                       " have the same time in their headers, " +
-                                       std::to_string(cloud.stamp_s) +
-                                       " s; expected distinct times");
+    if (last != nullptr && cloud.stamp_ns == last->stamp_ns) {
+      if (!are_copies(recording, *last, cloud)) throw same_time(survey, topic, *last, cloud);
+      ++copies;
+      continue;
+    }
+    last = &cloud;
     const fs::path name = scan_name(path, k);
     places.emplace(name, cloud.place);
     scans.frames.files.push_back(name);
     scans.stamps_s.push_back(cloud.stamp_s);
   }
-  const std::size_t empty = topic.clouds.size() - scans.stamps_s.size();
   if (scans.stamps_s.empty())
     throw Error(ErrorKind::data,
                 path.string() + ": the clouds of " + topic.topic.name + " have no points");
-  if (empty > 0)
-    progress.warn(path.string() + ": " + std::to_string(empty) + " clouds of " + topic.topic.name +
-                  " have no points and are skipped");
+  const auto warn = [&](std::size_t count, const std::string& what) {
+    if (count > 0)
+      progress.warn(path.string() + ": " + std::to_string(count) + " clouds of " +
+                    topic.topic.name + " " + what + " and are skipped");
+  };
+  warn(empty, "have no points");
+  warn(copies, "are copies of the cloud before");
   scans.frames.source =
       std::make_shared<RecordedScans>(survey.recording, topic.topic.encoding, std::move(places));
   return scans;
@@ -334,10 +374,10 @@ KittiSequence open_recording_drive(const DriveInput& given, const RecordingSurve
     because = verdict.because;
     if (verdict.points_in != PointsIn::sensor)
       throw Error(ErrorKind::data, drive.folder.string() + ": the points of " + topic.topic.name +
-                                       " (frame '" + topic.frame +
+                                       " (" + words_of_frame(topic.frame) +
                                        (verdict.points_in == PointsIn::world
-                                            ? "') are not in the sensor frame"
-                                            : "') cannot be shown to be in the sensor frame") +
+                                            ? ") are not in the sensor frame"
+                                            : ") cannot be shown to be in the sensor frame") +
                                        " (" + because + "); give `points_in` if they are");
   }
   if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks

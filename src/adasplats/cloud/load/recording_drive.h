@@ -19,7 +19,9 @@ namespace adasplats {
 
 /// A message with points.
 struct CloudMessage {
-  double stamp_s = 0;  ///< of its header
+  double stamp_s = 0;         ///< of its header; distinct if `stamp_ns` is
+  std::int64_t stamp_ns = 0;  ///< as it is
+  std::uint64_t number = 0;   ///< among the messages of its topic, from 1
   std::uint64_t points = 0;
   MessagePosition place;
 };
@@ -52,7 +54,10 @@ struct RecordingSurvey {
   std::map<std::string, TopicSurvey> topics;
 };
 
-/// Reads a recording from front to back. Memory: 120 bytes per pose, 56 per cloud and 40 per
+/// "frame 'lidar'", or "no frame (frame_id is empty)".
+std::string words_of_frame(const std::string& frame);
+
+/// Reads a recording from front to back. Memory: 120 bytes per pose, 72 per cloud and 40 per
 /// message of packets. Errors: those of Recording; data for invalid messages of clouds and poses.
 RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink& progress);
 
@@ -60,11 +65,12 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
 /// sensor. The poses at the times of their headers come from the first of these: the given
 /// trajectory; the given topic of poses; the transforms (tf) between the clouds' frame and its
 /// root; the only topic of odometry or poses, with fixed transforms from its child frame to the
-/// clouds' (or the given mount). Scans without poses and clouds without points are skipped with a
-/// warning; more than half of the scans without poses are an error. Times of points are offsets
-/// from the header's time or in its clock, in s, ms, us or ns; else an error. Errors: usage
-/// (ambiguous topics, options of folders), data (frames that no transforms connect, different
-/// clocks), those of survey_recording() and open_sensor_frames().
+/// clouds' (or the given mount). Scans without poses, clouds without points and exact copies of the
+/// cloud before are skipped with a warning; more than half of the scans without poses are an error.
+/// Times of points are offsets from the header's time or in its clock, in s, ms, us or ns; else an
+/// error. Errors: usage (ambiguous topics, options of folders), data (frames that no transforms
+/// connect, different clocks, other clouds of the same time), those of survey_recording() and
+/// open_sensor_frames().
 KittiSequence open_recording_drive(const DriveInput& drive, const RecordingSurvey& survey,
                                    const Executor& executor, ProgressSink& progress);
 

@@ -302,7 +302,8 @@ TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
     expect_error(ErrorKind::data, parts, [&] { load_messages(folder, messages); });
   };
   reject({"message 7", "'rear'", "'lidar'"}, {.stamp_ns = stamp_of(5.6), .frame = "rear"});
-  reject({"the same time"}, {.stamp_ns = stamp_of(4.5)});
+  reject({"clouds 5 and 7 (from 1) of /points have the same time", "topic of its own"},
+         {.stamp_ns = stamp_of(4.5)});
   reject({"000006", "no columns x, y and z"}, {.stamp_ns = stamp_of(5.8)});
   // A rotation that is none, of a transform that is needed.
   std::vector<Said> messages = clouds_with_a_gap_of_poses();
@@ -310,6 +311,40 @@ TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
       {"/tf", kTransformsType, 0,
        bags_test::transforms_message(stamp_of(7), "map", "lidar", {0, 0, 0, 0, 0, 0, 0})});
   expect_error(ErrorKind::data, {"/tf", "norm 0.000000"}, [&] { load_messages(folder, messages); });
+}
+
+// Stamps at today's epochs are 238 ns apart as doubles.
+TEST(RecordingDrive, CloudsOfNearlyOneTimeStayInOrderAndCopiesAreSkipped) {
+  const TemporaryFolder folder;
+  std::vector<Said> messages = clouds_with_a_gap_of_poses();
+  CloudWords cloud{.stamp_ns = stamp_of(4.5) - 50};
+  cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
+  cloud.width = 1;
+  cloud.step = cloud.row_step = 12;
+  for (const float value : {7.0F, 8.0F, 9.0F}) cloud.points += bytes_of(value);
+  messages.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+  messages.push_back(messages.back());
+  const auto [points, report] = load_messages(folder, messages);
+  ASSERT_EQ(points.size(), 9U);
+  EXPECT_LT(length(points.world(4) - Vec3d{7 + 4.5, 8, 9}), 1e-5);
+  EXPECT_LT(length(points.world(5) - Vec3d{1 + 4.5, 2, 3}), 1e-5);
+}
+
+TEST(RecordingDrive, CloudsWithoutAFrameAreRejectedInWords) {
+  const TemporaryFolder folder;
+  std::vector<Said> messages = clouds_with_a_gap_of_poses();
+  std::erase_if(messages, [](const Said& message) { return message.topic == "/points"; });
+  CloudWords cloud{.stamp_ns = stamp_of(0.5), .frame = ""};
+  cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
+  cloud.width = 1;
+  cloud.step = cloud.row_step = 12;
+  cloud.points = "123412341234";
+  messages.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+  expect_error(
+      ErrorKind::data,
+      {"drive.mcap: messages of /points name no frame (frame_id in their headers is empty)",
+       "`trajectory`", "`mount`"},
+      [&] { load_messages(folder, messages); });
 }
 
 }  // namespace

@@ -65,6 +65,14 @@ std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
          topic;
 }
 
+Error no_frame(const TopicSurvey& clouds) {
+  return {ErrorKind::data,
+          "messages of " + clouds.topic.name +
+              " name no frame (frame_id in their headers is empty), so transforms cannot give "
+              "their poses; give the poses of the sensor as `trajectory`, or a `poses_topic` and "
+              "`mount`, the position of the sensor in the frame of those poses"};
+}
+
 /// The poses of a topic with one pair of frames.
 RecordedPoses poses_of_topic(const DriveInput& drive, const FrameTree& tree,
                              const TopicSurvey& topic, const TopicSurvey& clouds) {
@@ -77,6 +85,7 @@ RecordedPoses poses_of_topic(const DriveInput& drive, const FrameTree& tree,
   } else if (edge.child.empty()) {
     found.poses = edge.parent_from_child;
   } else {
+    if (clouds.frame.empty()) throw no_frame(clouds);
     if (edge.child != clouds.frame && !(tree.has(edge.child) && tree.has(clouds.frame)))
       throw Error(ErrorKind::data,
                   "the clouds of " + clouds.topic.name + " are in frame '" + clouds.frame +
@@ -87,7 +96,8 @@ RecordedPoses poses_of_topic(const DriveInput& drive, const FrameTree& tree,
     if (edge.child != clouds.frame) found.by += ", transformed to '" + clouds.frame + "' by tf";
   }
   if (!edge.child.empty())
-    found.because = "frame '" + clouds.frame + "' of a vehicle that moves in '" + edge.parent + "'";
+    found.because =
+        words_of_frame(clouds.frame) + " of a vehicle that moves in '" + edge.parent + "'";
   return found;
 }
 
@@ -146,12 +156,14 @@ RecordedPoses poses_within(const DriveInput& drive, const RecordingSurvey& surve
   const FrameTree tree = tree_of(survey);
   if (!drive.poses_topic.empty()) {
     const TopicSurvey& topic = stated_topic_of_poses(survey, drive.poses_topic);
+    if (topic.is_transforms() && clouds.frame.empty()) throw no_frame(clouds);
     if (topic.is_transforms()) return poses_of_tree(drive, tree, clouds.frame);
     return poses_of_topic(drive, tree, topic, clouds);
   }
   if (tree.moves(clouds.frame)) return poses_of_tree(drive, tree, clouds.frame);
   const TopicSurvey* const only = only_topic_of_poses(survey);
-  if (only == nullptr) throw no_poses(survey, tree, clouds);
+  if (only == nullptr)
+    throw clouds.frame.empty() ? no_frame(clouds) : no_poses(survey, tree, clouds);
   return poses_of_topic(drive, tree, *only, clouds);
 }
 
@@ -203,8 +215,8 @@ RecordedPoses poses_of_clouds_or_vehicle(const RecordingSurvey& survey, const To
                          (tree.has(edge.child) && tree.has(clouds.frame));
   if (is_joined) return poses_within(drive, survey, clouds);
   return {edge.parent_from_child,
-          words_of_edge(edge, topic->topic.name) + ", which no transforms connect to '" +
-              clouds.frame + "' of the clouds",
+          words_of_edge(edge, topic->topic.name) + ", which no transforms connect to " +
+              words_of_frame(clouds.frame) + " of the clouds",
           ""};
 }
 
