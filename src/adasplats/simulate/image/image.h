@@ -61,9 +61,9 @@ struct ImageScene {
   SceneView view;
   PrimitiveAttributes attributes;
   std::span<const SemanticGroup> groups;  ///< one per primitive, or empty
-  std::span<const ColorBytes> colors;  ///< of the points in their file; one per primitive, or empty
   const LabelScheme* labels = nullptr;
   Vec3d origin;
+  std::span<const ColorBytes> colors;  ///< of the points in their file; one per primitive, or empty
 };
 
 /// Values at the ends of a colour scale in a scene: the 2nd and 98th percentile of intensities, or
