@@ -123,6 +123,17 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
         "of each scan");
 }
 
+/// Throws data if there are several stations and each is in its own frame.
+void require_registered(std::span<const OpenInput> inputs) {
+  const auto is_own = [](const OpenInput& input) { return is_ptx_in_own_frame(input.input.path); };
+  if (inputs.size() < 2 || !std::ranges::all_of(inputs, is_own)) return;
+  throw Error(ErrorKind::data,
+              inputs[0].input.path.string() + " and " + inputs[1].input.path.string() +
+                  (inputs.size() > 2 ? " and " + std::to_string(inputs.size() - 2) + " more" : "") +
+                  ": all stations have the identity matrix: each is in its own frame; register "
+                  "them, or give only one");
+}
+
 /// Rounded to the steps of a file's coordinates, as its points are: headers may have more digits.
 Vec3d in_steps(Vec3d place, Vec3d step) {
   for (int axis = 0; axis < 3; ++axis)
@@ -145,6 +156,7 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   inputs_ = opened(inputs, options, executor, progress);
   name_ = name_of(inputs);
   require_applicable_options(options, inputs_);
+  require_registered(inputs_);
   for (OpenInput& input : inputs_)
     if (input.input.is_sequence && !input.sequence)
       input.sequence = open_sequence(input.input.path, options, executor);
