@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -143,6 +144,25 @@ TEST(CityInputs, PiecesOfTwoCoordinateSystemsAreAnError) {
   write_las(folder.path() / "b.las", 1500, Ground(1500, 0, 40).columns(), options);
   const std::string why = error_of({folder.path() / "a.las", folder.path() / "b.las"});
   EXPECT_NE(why.find("b.las"), std::string::npos) << why;
+}
+
+TEST(CityInputs, PiecesWithTwoScalesOfIntensitiesAreAWarning) {
+  const TemporaryFolder folder;
+  std::vector<fs::path> inputs;
+  for (const float factor : {1.0F, 257.0F}) {
+    const Ground ground(1500, 0, 40);
+    std::vector<float> intensities;
+    for (int i = 0; i < 1500; ++i) intensities.push_back(factor * static_cast<float>(100 + i % 40));
+    std::vector<ColumnView> columns = ground.columns();
+    columns.push_back({"intensity", ColumnType::f32, intensities.data(), 4});
+    inputs.push_back(folder.path() / (std::to_string(inputs.size()) + ".ply"));
+    write_ply(inputs.back(), 1500, columns);
+  }
+  const std::vector<std::string> warnings = taken(inputs, 1000).warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) {
+    return text.find("intensities of the inputs have different scales") != std::string::npos;
+  }));
+  EXPECT_TRUE(taken({inputs[0]}, 1000).warnings.empty());
 }
 
 /// A file of scans of 700 points each, a metre apart.
