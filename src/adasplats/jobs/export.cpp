@@ -103,7 +103,10 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
         require_ending(job.output, "." + std::string(ending_of(*job.format)));
       return *job.format;
     }
-    throw Error(ErrorKind::usage, can_be + ", not as " + std::string(name_of(*job.format)));
+    throw Error(ErrorKind::usage, can_be + ", not as " + std::string(name_of(*job.format)) +
+                                      (kind == InputKind::cloud && has_scans(*job.format)
+                                           ? ", which needs scans with poses (`trajectory`)"
+                                           : ""));
   }
   std::string ending = lower_case(job.output.extension().string());
   if (!ending.empty()) ending.erase(0, 1);
@@ -401,7 +404,9 @@ ExportResult write_export(const ExportJob& job, Session& session) {
       format == ExportFormat::semantickitti || format == ExportFormat::nuscenes;
   if (!job.labels.empty() && !has_colors(format) && !states_scheme) {
     throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
-                                      ", which holds the numbers of classes as they are");
+                                      (format == ExportFormat::kitti_raw
+                                           ? ", which has no classes"
+                                           : ", which holds the numbers of classes as they are"));
   }
   if (!job.cloud_option.empty() &&
       (kind == InputKind::model ||
