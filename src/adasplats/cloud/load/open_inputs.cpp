@@ -239,6 +239,7 @@ class ScansOfFile {
   }
 
   bool is_shuffled() const { return is_shuffled_; }
+  std::uint64_t records() const { return records_; }
   /// Records of the longest scan.
   std::uint64_t longest() const {
     std::uint64_t longest = 0;
@@ -305,6 +306,10 @@ std::vector<InputPiece> pieces_by_scans(const std::filesystem::path& file, std::
     if (scans.add(read_file_part(file, part, quiet, &executor))) continue;
     if (scans.is_shuffled())
       warn_of_cut_scans(file, "its points are not ordered by scan", progress);
+    return {};
+  }
+  if (scans.records() != all) {
+    warn_of_cut_scans(file, "some of its records are left out", progress);
     return {};
   }
   if (scans.longest() > 2 * records) {

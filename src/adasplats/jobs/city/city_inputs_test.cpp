@@ -165,8 +165,9 @@ TEST(CityInputs, PiecesWithTwoScalesOfIntensitiesAreAWarning) {
   EXPECT_TRUE(taken({inputs[0]}, 1000).warnings.empty());
 }
 
-/// A file of scans of 700 points each, a metre apart.
-fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = true) {
+/// A file of scans of 700 points each, a metre apart; the first ones can be flagged as deleted.
+fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = true,
+                     std::size_t deleted = 0) {
   const std::size_t points = 700 * scans;
   std::vector<double> x, y, z(points), sensor_x, sensor_y(points), sensor_z(points, 2);
   std::vector<std::uint32_t> numbers;
@@ -177,13 +178,16 @@ fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = tr
     y.push_back(0.01 * static_cast<double>(i % 7));
     numbers.push_back(static_cast<std::uint32_t>(in_order ? scan : scans - scan));
   }
+  std::vector<std::uint8_t> withheld(points);
+  std::fill_n(withheld.begin(), deleted, std::uint8_t{1});
   const std::vector<ColumnView> columns = {{"x", ColumnType::f64, x.data(), 8},
                                            {"y", ColumnType::f64, y.data(), 8},
                                            {"z", ColumnType::f64, z.data(), 8},
                                            {"sensor_x", ColumnType::f64, sensor_x.data(), 8},
                                            {"sensor_y", ColumnType::f64, sensor_y.data(), 8},
                                            {"sensor_z", ColumnType::f64, sensor_z.data(), 8},
-                                           {"scan_index", ColumnType::u32, numbers.data(), 4}};
+                                           {"scan_index", ColumnType::u32, numbers.data(), 4},
+                                           {"withheld", ColumnType::u8, withheld.data(), 1}};
   write_ply(file, points, columns);
   return file;
 }
@@ -228,6 +232,15 @@ TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
   EXPECT_FALSE(pieces[1].has_whole_scans);
   ASSERT_EQ(progress.warnings.size(), 1U);
   EXPECT_NE(progress.warnings[0].find("not ordered by scan"), std::string::npos);
+}
+
+TEST(FilePieces, RecordsThatAreLeftOutDoNotShiftThePieces) {
+  const TemporaryFolder folder;
+  const Taken all = taken({write_scans(folder.path() / "a.ply", 7, true, 900)}, 1500);
+  EXPECT_EQ(all.world().size(), std::size_t{7 * 700 - 900});
+  EXPECT_TRUE(std::ranges::any_of(all.warnings, [](const std::string& text) {
+    return text.find("some of its records are left out") != std::string::npos;
+  }));
 }
 
 /// A track of poses of a sensor 2 m above the ground, from `begin_s` on.
