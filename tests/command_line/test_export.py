@@ -88,10 +88,6 @@ class Export(ProgramTest):
         for name in ("a.pcd", "a.csv"):
             again = self.export(self.export(whole, name), "again.csv")
             self.assertEqual(again.read_bytes(), whole.read_bytes(), name)
-        odd = self.folder / "odd.csv"
-        odd.write_text('x;y;z;my,own;;"q"\n1;2;3;4;5;6\n')
-        self.assertEqual(self.export(odd, "odd2.csv").read_text().splitlines()[0],
-                         "x,y,z,my_own,unnamed,q")
         said = self.run_warned("user_data", "export", cloud, "-o", self.folder / "a.glb").stderr
         for name in ("gps_time", "return_number", "nx", "echo"):
             self.assertIn(name, said)

@@ -150,19 +150,14 @@ std::vector<const Column*> colors_in(const OtherColumns& others) {
   return colors.size() == kColorColumns.size() ? colors : std::vector<const Column*>();
 }
 
-/// Properties of PLY have names without blanks (and those of CSV without separators) and at most 32
-/// bits, or are doubles. Colours are bytes where that is exact, as other programs expect. Fields of
-/// PCD and columns of CSV are the same.
+/// Properties of PLY have no blanks and at most 32 bits, or are doubles. Colours are bytes where
+/// that is exact, as other programs expect. Fields of PCD and columns of CSV are the same.
 void add_others_named(const OtherColumns& others, OtherViews& views) {
   const std::vector<const Column*> colors = colors_in(others);
   const unsigned factor = colors.empty() ? 0 : factor_of_bytes(colors);
   for (const Column& column : others.columns) {
     Column written = column;
-    const auto separates = [](char c) {
-      return std::string_view(" \t\r\n,;\"").find(c) != std::string_view::npos;
-    };
-    std::ranges::replace_if(written.name, separates, '_');
-    if (written.name.empty()) written.name = "unnamed";
+    std::ranges::replace(written.name, ' ', '_');
     if (factor != 0 && std::ranges::count(colors, &column) > 0) {
       std::vector<std::uint8_t> bytes;
       for (std::size_t i = 0; i < column.size(); ++i)
