@@ -40,8 +40,8 @@ constexpr const char* kExportDoc =
     R"(Write a splat model, points or the scans of a sequence for other programs.
 
 input: a splat model, a point file, a sequence folder or the output of simulate. format:
-'gaussian-3d', 'gaussian-2d', 'glb', 'ply', 'las', 'laz' or 'mcap'; None: by the extension of
-output. color: 'class', 'intensity' or 'height'; None: the first of these that the input has. The
+'gaussian-3d', 'gaussian-2d', 'glb', 'ply', 'las', 'laz', 'pcd', 'csv' or 'mcap'; None: by the
+extension of output; 'semantickitti', 'kitti-raw' and 'nuscenes' create a folder. color: 'class', 'intensity' or 'height'; None: the first of these that the input has. The
 other keywords are those of read(). Returns a dict with the number of elements written,
 points_dropped and bytes. Raises TypeError, ValueError, OSError.)";
 

@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """export: which input can become what; tests/exports reads the files with other programs."""
+import csv
 import resource
 import struct
 import unittest
 
-from support import ProgramTest, tree_digest
+from support import ProgramTest, run, tree_digest
 
 
 class Export(ProgramTest):
@@ -83,6 +84,10 @@ class Export(ProgramTest):
                 self.assertIn(field, found, name)
             again = self.export(path, "b.ply")
             self.assertIn("echo f64", self.report("info", again)["files"][0]["fields"])
+        whole = self.export(cloud, "whole.csv")
+        for name in ("a.pcd", "a.csv"):
+            again = self.export(self.export(whole, name), "again.csv")
+            self.assertEqual(again.read_bytes(), whole.read_bytes(), name)
         said = self.run_warned("user_data", "export", cloud, "-o", self.folder / "a.glb").stderr
         for name in ("gps_time", "return_number", "nx", "echo"):
             self.assertIn(name, said)
@@ -111,10 +116,44 @@ class Export(ProgramTest):
 
     def test_label_schemes_are_kept(self):
         sequence = self.simulate(self.model()) / "sequences" / "00"
-        for name in ("s.ply", "s.las", "s.laz"):
+        for name in ("s.ply", "s.las", "s.laz", "s.pcd", "s.csv"):
             self.assertIn("40 road", self.run_good("info", self.export(sequence, name)).stdout)
         self.assertIn(b"semantickitti", self.export(sequence, "s.mcap").read_bytes())
         self.assertIn("40 road", self.run_warned("s.mcap", "info", self.folder / "s.mcap").stdout)
+
+    def test_recorded_scans_become_trees_of_data_sets(self):
+        """A folder of scans with a trajectory, in each tree, and back: the points and the poses."""
+        frames = self.simulate(self.model(), "frames", "--format", "ply")
+        options = ["--trajectory", frames / "poses.csv", "--points-in", "sensor", "--own-body", "0",
+                   "--driven-path", "0"]
+        whole = self.folder / "whole.csv"
+        self.assertEqual(run("export", frames, "-o", whole, *options).returncode, 0)
+        for kind, inside, with_classes in [("semantickitti", "sequences/00", True),
+                                           ("kitti-raw", "1970_01_01/1970_01_01_drive_0001_sync",
+                                            False), ("nuscenes", "", False)]:
+            tree = self.folder / kind
+            said = run("export", frames, "-o", tree, "--format", kind, *options[:4]).stderr
+            self.assertIn("not exported: fields of the points other than positions", said)
+            self.assertEqual("instances, classes" in said, not with_classes, said)
+            again = self.folder / f"{kind}.csv"
+            done = run("export", tree / inside, "-o", again, "--own-body", "0", "--driven-path",
+                       "0")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            first, second = self.rows(whole), self.rows(again)
+            self.assertEqual(len(first), len(second), kind)
+            for a, b in zip(first, second):
+                for name in ["scan_index"] + (["label"] if with_classes else []):
+                    self.assertEqual(a.get(name), b.get(name), (kind, name))
+                if kind != "kitti-raw":  # its first pose is at the origin
+                    for name in "xyz":
+                        self.assertAlmostEqual(float(a[name]), float(b[name]), delta=2e-5)
+        self.assertIn("40 road", run("info", self.folder / "semantickitti").stdout)
+        self.run_bad(64, "export", frames, "-o", self.folder / "none", "--format", "nuscenes",
+                     says=["--trajectory"])
+
+    def rows(self, path):
+        with open(path, encoding="utf-8") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
     def test_simulate_writes_the_same_format(self):
         model = self.model()
@@ -139,9 +178,9 @@ class Export(ProgramTest):
                                                               self.folder / name, *words, says=says)
         bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "give the format"])
         bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
-        bad(model, "out", says=["out", ".ply, .glb, .las, .laz or .mcap"])
+        bad(model, "out", says=["a name without an ending is none of them"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])
-        bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las or laz"])
+        bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las, laz, pcd or csv"])
         bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
         bad(self.cloud, "out.ply", "--format", "gausian-3d", says=["did you mean 'gaussian-3d'"])
         bad(model, "model.ply", "--format", "gaussian-3d", says=["is also an input"])

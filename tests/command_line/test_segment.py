@@ -55,6 +55,19 @@ class SegmentTest(ProgramTest):
         result = self.report("evaluate", "segmentation", out, self.world)
         self.assertGreater(result["groups"]["iou"]["ground"], 0.8)
 
+    def test_the_tree_is_input_of_other_commands(self):
+        out = self.folder / "out"
+        self.run_good("segment", self.sequence, "-o", out, "--scans", "1:2")
+        info = self.report("info", out)
+        self.assertEqual((self.folder / "out/sequences/00/velodyne/000001.bin").read_bytes(),
+                         (self.sequence / "velodyne" / "000001.bin").read_bytes())
+        self.assertEqual(info["files"][0]["scans"], 2)
+        self.run_good("model", out, "-o", self.folder / "m.ply", "--cell", "0.2")
+        self.run_good("export", out, "-o", self.folder / "a.csv", "--scans", "0:1")
+        self.run_good("segment", out, "-o", self.folder / "again")
+        self.assertEqual([file.read_bytes() for file in self.labels(self.folder / "again")],
+                         [file.read_bytes() for file in self.labels(out)])
+
     def test_threads_do_not_matter(self):
         for threads in ("1", "2"):
             self.run_good("segment", self.sequence, "-o", self.folder / threads, "--threads",

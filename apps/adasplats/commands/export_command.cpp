@@ -16,6 +16,7 @@ constexpr const char* kExportExamples =
     "  adasplats export street.ply -o gaussians.ply --format gaussian-3d\n"
     "  adasplats export street.ply -o centers.glb --color intensity\n"
     "  adasplats export sequences/08 -o drive.mcap --scans 0:100\n"
+    "  adasplats export drive.bag -o tree --format semantickitti\n"
     "  adasplats export scans -o drive.mcap\n"
     "  adasplats export cloud.las -o cloud.glb --color height\n"
     "  adasplats export cloud.ply -o cloud.laz\n";
@@ -28,10 +29,11 @@ class ExportCommand final : public Command {
       : Command(program, "export", "Export models, points and scans to formats of other tools",
                 kExportExamples) {
     OptionSet& app = options();
-    require(add_path(app, "INPUT", job_.input,
-                     "Splat model, point file, sequence folder or output of 'simulate'"));
-    require(writes(add_path(app, "-o,--output", job_.output, "File to write"),
-                   {".ply", ".glb", ".las", ".laz", ".mcap"}));
+    require(
+        add_path(app, "INPUT", job_.input,
+                 "Splat model, point file, sequence folder, recording or output of 'simulate'"));
+    require(add_path(app, "-o,--output", job_.output,
+                     "File to write; folder to create for semantickitti, kitti-raw and nuscenes"));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
                                             "File format (default: by the file name)");

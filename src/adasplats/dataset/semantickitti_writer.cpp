@@ -76,6 +76,18 @@ bool ascends(const Trajectory& trajectory) {
 
 }  // namespace
 
+SemanticKittiPoses semantickitti_poses(const Trajectory& trajectory) {
+  SemanticKittiPoses texts;
+  texts.calib = "Tr: " + matrix_text(kCameraFromVelodyne) + "\n";
+  for (const TimedPose& pose : trajectory) {
+    texts.poses +=
+        matrix_text(kCameraFromVelodyne * pose.world_from_sensor * kCameraFromVelodyne.inverse()) +
+        "\n";
+    texts.times += exact_text(pose.time_s) + "\n";
+  }
+  return texts;
+}
+
 SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder,
                                          std::filesystem::path more_poses)
     : folder_(std::move(sequence_folder)), more_poses_(std::move(more_poses)) {
@@ -142,18 +154,14 @@ void SemanticKittiWriter::note(std::size_t index, const TimedPose& pose, std::si
 
 void SemanticKittiWriter::finish() {
   refuse_other_scans(folder_ / "velodyne", trajectory_.size());
-  std::string poses, times;
   for (std::size_t i = 0; i < trajectory_.size(); ++i) {
     if (!point_counts_[i])
       throw std::logic_error("SemanticKittiWriter: scan " + std::to_string(i) + " is missing");
     if (has_labels_ && *point_counts_[i] == 0)
       write_file(folder_ / "labels" / (scan_name(i) + ".label"), "");
-    poses += matrix_text(kCameraFromVelodyne * trajectory_[i].world_from_sensor *
-                         kCameraFromVelodyne.inverse()) +
-             "\n";
-    times += exact_text(trajectory_[i].time_s) + "\n";
   }
-  write_file(folder_ / "calib.txt", "Tr: " + matrix_text(kCameraFromVelodyne) + "\n");
+  const auto [calib, poses, times] = semantickitti_poses(trajectory_);
+  write_file(folder_ / "calib.txt", calib);
   // Concatenated drives have no common clock; readers then count scans.
   if (ascends(trajectory_)) write_file(folder_ / "times.txt", times);
   if (!more_poses_.empty()) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
@@ -13,6 +14,13 @@
 #include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
+
+/// The texts of calib.txt (with a Tr), poses.txt (camera frame) and times.txt of a sequence.
+struct SemanticKittiPoses {
+  std::string calib, poses, times;
+};
+/// `trajectory`: world_from_velodyne of each scan.
+SemanticKittiPoses semantickitti_poses(const Trajectory& trajectory);
 
 /// Writes scans as a SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (if
 /// the scans have classes), poses.txt (camera frame), calib.txt (with a Tr), times.txt (if the

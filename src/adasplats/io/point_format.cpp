@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ept/ept_tile.h"
@@ -34,6 +35,10 @@ constexpr Text kPtx[] = {".ptx"};
 using Path = std::filesystem::path;
 using Options = LasReadOptions;
 
+Crs crs_of_leading_comments(const Path& path) {
+  return crs_of_comments(path, leading_comments(path));
+}
+
 constexpr PointFormat kFormats[] = {
     {.name = "PLY",
      .extensions = kPly,
@@ -46,7 +51,8 @@ constexpr PointFormat kFormats[] = {
     {.name = "PCD",
      .extensions = kPcd,
      .beginnings = kPcdStarts,
-     .read = [](const Path& path, const Options&) { return read_pcd(path); }},
+     .read = [](const Path& path, const Options&) { return read_pcd(path); },
+     .read_crs = &crs_of_leading_comments},
     {.name = "LAS or LAZ",
      .extensions = kLas,
      .beginnings = kLasStarts,
@@ -65,7 +71,8 @@ constexpr PointFormat kFormats[] = {
     {.name = "text",
      .extensions = kText,
      .means = ExtensionMeaning::text,
-     .read = [](const Path& path, const Options&) { return read_text_points(path); }},
+     .read = [](const Path& path, const Options&) { return read_text_points(path); },
+     .read_crs = &crs_of_leading_comments},
     {.name = "PTX",
      .extensions = kPtx,
      .read = [](const Path& path, const Options&) { return read_ptx(path); }},
@@ -188,6 +195,24 @@ void require_no_levels(const Path& path, const PointSelection& selection) {
                   "` needs a file with levels of detail (COPC), this one has none");
 }
 
+namespace {
+
+/// Leaves out the points that a column flags as deleted, and the column, as the reader of LAS does.
+void drop_withheld(Table& table) {
+  const Column* const column = find_column(table, PointColumn::withheld);
+  if (column == nullptr) return;
+  std::vector<bool> kept(table.rows);
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = !(column->as_double(i) > 0);
+  const auto withheld = static_cast<std::size_t>(std::ranges::count(kept, false));
+  if (withheld > 0)
+    table.notes.push_back({NoteKind::withheld, std::to_string(withheld) + " of " +
+                                                   std::to_string(table.rows) + " points"});
+  table.columns.erase(table.columns.begin() + (column - table.columns.data()));
+  if (withheld > 0) keep_rows(kept, table);
+}
+
+}  // namespace
+
 Table read_points(const Path& path, const LasReadOptions& options) {
   const PointFormat& format = format_of_file(path);
   if (options.selection.records && format.records == nullptr)
@@ -195,6 +220,7 @@ Table read_points(const Path& path, const LasReadOptions& options) {
   if (format.read == &read_las) return read_las(path, options);
   require_no_levels(path, options.selection);
   Table table = format.read(path, options);
+  drop_withheld(table);
   if (options.selection.extent) keep_rows_within(*options.selection.extent, path, table);
   return table;
 }

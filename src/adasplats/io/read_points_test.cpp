@@ -33,6 +33,25 @@ TEST(ReadPoints, ByExtensionInAnyCase) {
     EXPECT_EQ(read_points(folder.file(name, "1 2 3\n")).rows, 1U);
 }
 
+TEST(ReadPoints, WithheldPointsAreLeftOutInEveryFormat) {
+  const TemporaryFolder folder;
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty float scalar_Withheld\nend_header\n1 2 3 1\n4 5 6 0\n";
+  const std::string pcd =
+      "# .PCD v0.7\nFIELDS x y z withheld\nSIZE 4 4 4 1\nTYPE F F F U\nPOINTS 2\nDATA ascii\n"
+      "1 2 3 1\n4 5 6 0\n";
+  for (const auto& [name, content] : {std::pair("a.ply", ply), std::pair("a.pcd", pcd),
+                                      std::pair("a.csv", std::string("x,y,z,Withheld\n1,2,3,1\n"
+                                                                     "4,5,6,0\n"))}) {
+    const Table table = read_points(folder.file(name, content));
+    EXPECT_EQ(values_of(table, "x"), std::vector<double>{4}) << name;
+    EXPECT_EQ(table.columns.size(), 3U) << name;
+    ASSERT_EQ(table.notes.size(), 1U) << name;
+    EXPECT_EQ(table.notes[0], (ReaderNote{NoteKind::withheld, "1 of 2 points"})) << name;
+  }
+}
+
 TEST(ReadPoints, ByFirstBytesWithoutAKnownExtension) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_points(folder.file("a.model", kPly)).rows, 1U);

@@ -5,21 +5,26 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "adasplats/city/city_manifest.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/points/cloud_glb.h"
+#include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/mcap_writer.h"
+#include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_check.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_ply.h"
 #include "adasplats/splats/model/mesh_model.h"
@@ -30,7 +35,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class InputKind : std::uint8_t { model, cloud, sequence };
+enum class InputKind : std::uint8_t { model, cloud, drive };
 
 /// What an input can become, the first of an ending being what the ending means.
 struct KindFormats {
@@ -42,19 +47,26 @@ KindFormats formats_of(InputKind kind) {
   using enum ExportFormat;
   switch (kind) {
     case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb}};
-    case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz}};
-    case InputKind::sequence: return {"a sequence of scans", {mcap, glb, ply, las, laz}};
+    case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz, pcd, csv}};
+    case InputKind::drive:
+      return {"a sequence of scans",
+              {mcap, glb, ply, las, laz, pcd, csv, semantickitti, kitti_raw, nuscenes}};
   }
   return {};
 }
 
 std::string_view name_of(ExportFormat format) {
-  constexpr std::array<std::string_view, 7> kNames = {"gaussian-3d", "gaussian-2d", "glb", "ply",
-                                                      "las",         "laz",         "mcap"};
-  return kNames[static_cast<std::size_t>(format)];
+  return kExportFormats[static_cast<std::size_t>(format)].first;
 }
 
+/// Whether the output is the folder of a data set.
+bool is_folder(ExportFormat format) { return format >= ExportFormat::semantickitti; }
+/// Whether scans are written, each in its sensor frame.
+bool has_scans(ExportFormat format) { return format >= ExportFormat::mcap; }
+
+/// Empty for folders.
 std::string_view ending_of(ExportFormat format) {
+  if (is_folder(format)) return {};
   const bool gaussian = format == ExportFormat::gaussian_3d || format == ExportFormat::gaussian_2d;
   return gaussian ? "ply" : name_of(format);
 }
@@ -68,11 +80,10 @@ std::string joined_names(const std::vector<ExportFormat>& formats) {
   return names;
 }
 
-InputKind kind_of(const fs::path& input) {
+InputKind kind_of(const fs::path& input, const LoadOptions& load) {
   if (is_splat_model(input)) return InputKind::model;
-  if (fs::is_directory(input)) {
-    return is_kitti_sequence(input) ? InputKind::sequence : InputKind::cloud;
-  }
+  if (is_kitti_sequence(input) || is_self_contained_drive(input)) return InputKind::drive;
+  if (fs::is_directory(input)) return load.trajectory.empty() ? InputKind::cloud : InputKind::drive;
   if (is_mesh_file(input)) {
     throw Error(ErrorKind::usage, input.string() +
                                       ": is a triangle mesh, which other programs open as it is; "
@@ -88,10 +99,14 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
       job.input.string() + ": " + kind_name + " can be exported as " + joined_names(possible);
   if (job.format) {
     if (std::ranges::find(possible, *job.format) != possible.end()) {
-      require_ending(job.output, "." + std::string(ending_of(*job.format)));
+      if (!is_folder(*job.format))
+        require_ending(job.output, "." + std::string(ending_of(*job.format)));
       return *job.format;
     }
-    throw Error(ErrorKind::usage, can_be + ", not as " + std::string(name_of(*job.format)));
+    throw Error(ErrorKind::usage, can_be + ", not as " + std::string(name_of(*job.format)) +
+                                      (kind == InputKind::cloud && has_scans(*job.format)
+                                           ? ", which needs scans with poses (`trajectory`)"
+                                           : ""));
   }
   std::string ending = lower_case(job.output.extension().string());
   if (!ending.empty()) ending.erase(0, 1);
@@ -177,7 +192,16 @@ void warn_of_dropped(const fs::path& output, const PointCloud& cloud, ProgressSi
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   if (!list.empty())
     progress.warn(output.string() + ": glTF has no fields for " + list +
-                  ", which are dropped (.ply, .las and .laz keep them)");
+                  ", which are dropped (.ply, .las, .laz, .pcd and .csv keep them)");
+}
+
+void save_cloud(ExportFormat format, const fs::path& output, const PointCloud& cloud) {
+  switch (format) {
+    case ExportFormat::ply: return save_cloud_ply(output, cloud);
+    case ExportFormat::pcd: return save_cloud_pcd(output, cloud);
+    case ExportFormat::csv: return save_cloud_csv(output, cloud);
+    default: return save_cloud_las(output, cloud);
+  }
 }
 
 ExportResult export_cloud(const ExportJob& job, ExportFormat format, Session& session) {
@@ -198,55 +222,182 @@ ExportResult export_cloud(const ExportJob& job, ExportFormat format, Session& se
     const std::vector<Rgb> colors = colors_of(cloud, labels ? &*labels : nullptr, job.color);
     save_cloud_glb(job.output, cloud, colors);
   } else {
-    (format == ExportFormat::ply ? save_cloud_ply : save_cloud_las)(job.output, cloud, {});
+    save_cloud(format, job.output, cloud);
   }
   return {cloud.size(), "points", report.dropped_not_finite + report.dropped_far};
 }
 
-/// A scan of a file as a simulated one; points that are not finite are left out and counted.
-Scan scan_of(KittiScan&& kitti, const TimedPose& pose, std::size_t& dropped) {
-  Scan scan;
-  scan.world_from_sensor = pose.world_from_sensor;
-  scan.time_s = pose.time_s;
-  scan.positions = std::move(kitti.positions);
-  scan.intensities = std::move(kitti.intensities);
-  scan.classes = std::move(kitti.classes);
-  scan.instances = std::move(kitti.instances);
-  scan.rays = scan.size();
-  std::vector<std::uint8_t> keep(scan.size(), 1);
-  for (std::size_t i = 0; i < scan.size(); ++i) keep[i] = is_finite(scan.positions[i]) ? 1 : 0;
-  const auto bad = static_cast<std::size_t>(std::ranges::count(keep, 0));
-  dropped += bad;
-  return bad == 0 ? scan : kept_points(scan, keep);
-}
-
-ExportResult export_scans(const ExportJob& job, Session& session) {
-  const KittiSequence sequence = open_kitti_sequence(job.input);
-  const std::vector<std::size_t> chosen =
-      chosen_scans({job.load.first_scan, job.load.scan_count, job.load.scan_stride},
-                   sequence.scans.size(), job.input);
-  ExportResult result{0, "scans"};
-  const std::optional<LabelScheme> labels = label_scheme_for({}, std::span(&job.input, 1));
-  McapWriter writer(job.output, 0, labels ? labels->name() : std::string());
-  session.progress.begin_step("writing scans", chosen.size());
-  for (const std::size_t index : chosen) {
-    const std::size_t dropped_before = result.dropped;
-    writer.write(
-        scan_of(read_kitti_scan(sequence, index), sequence.trajectory[index], result.dropped));
-    if (job.load.strict && result.dropped > dropped_before) {
-      throw Error(ErrorKind::data, sequence.scans[index].string() + ": has " +
-                                       std::to_string(result.dropped) +
-                                       " points that are not finite");
-    }
-    session.progress.advance(++result.count);
+/// The scans of a drive for the formats of scans.
+class ScanExport {
+ public:
+  ScanExport(const ExportJob& job, ExportFormat format, Session& session)
+      : job_(job), format_(format), session_(session), sequence_(opened()) {
+    chosen_ = chosen_scans({job.load.first_scan, job.load.scan_count, job.load.scan_stride},
+                           sequence_.scans.size(), job.input);
+    labels_ = label_scheme_for(job.labels, std::span(&job.input, 1));
   }
-  writer.finish();
-  session.progress.end_step();
-  return result;
+
+  ExportResult run() {
+    if (format_ == ExportFormat::mcap) {
+      McapWriter writer(job_.output, 0, labels_ ? labels_->name() : std::string());
+      write_scans([&writer](std::size_t, const Scan& scan) { writer.write(scan); });
+      writer.finish();
+      warn_of_lost(false);
+    } else {
+      write_folder();
+    }
+    return result_;
+  }
+
+ private:
+  KittiSequence opened() const {
+    if (is_kitti_sequence(job_.input)) {
+      KittiSequence sequence = open_kitti_sequence(job_.input);
+      if (format_ == ExportFormat::nuscenes)
+        sequence.beams = recognize_beams(sequence, session_.executor);
+      return sequence;
+    }
+    auto drive = open_drive(drive_of(job_.input, job_.load), session_.executor, session_.progress);
+    if (drive) return std::move(*drive);
+    throw Error(ErrorKind::data, job_.input.string() + ": contains no scans with poses, which " +
+                                     std::string(name_of(format_)) +
+                                     " needs; as a point cloud it can be exported as " +
+                                     joined_names(formats_of(InputKind::cloud).formats));
+  }
+
+  template <class Write>
+  void write_scans(Write&& write) {
+    session_.progress.begin_step("writing scans", chosen_.size());
+    for (const std::size_t index : chosen_) {
+      const std::size_t dropped_before = result_.dropped;
+      write(result_.count, scan(index));
+      if (job_.load.strict && result_.dropped > dropped_before) {
+        throw Error(ErrorKind::data, sequence_.scans[index].string() + ": has " +
+                                         std::to_string(result_.dropped) +
+                                         " points that are not finite");
+      }
+      session_.progress.advance(++result_.count);
+    }
+    session_.progress.end_step();
+  }
+
+  /// A scan as a simulated one; points that are not finite are left out and counted.
+  Scan scan(std::size_t index) {
+    // Objects that move are part of a scan.
+    KittiScan kitti = sequence_.labels.empty() ? read_all_returns(sequence_, index)
+                                               : read_kitti_scan(sequence_, index);
+    const TimedPose& pose = sequence_.trajectory[index];
+    Scan scan;
+    if (format_ == ExportFormat::nuscenes) scan.rings = rings_of(kitti, index);
+    scan.world_from_sensor = pose.world_from_sensor;
+    scan.time_s = pose.time_s;
+    scan.positions = std::move(kitti.positions);
+    scan.intensities = std::move(kitti.intensities);
+    scan.classes = std::move(kitti.classes);
+    scan.instances = std::move(kitti.instances);
+    scan.rays = scan.size();
+    std::vector<std::uint8_t> keep(scan.size(), 1);
+    for (std::size_t i = 0; i < scan.size(); ++i) keep[i] = is_finite(scan.positions[i]) ? 1 : 0;
+    const auto bad = static_cast<std::size_t>(std::ranges::count(keep, 0));
+    result_.dropped += bad;
+    return bad == 0 ? scan : kept_points(scan, keep);
+  }
+
+  /// The laser of each point, topmost 0; empty if one is unknown.
+  std::vector<std::uint16_t> rings_of(const KittiScan& scan, std::size_t index) {
+    std::vector<std::uint16_t> rings;
+    for (std::size_t i = 0; i < scan.positions.size(); ++i)
+      rings.push_back(beam_of(sequence_, index, scan, i).laser);
+    if (std::ranges::find(rings, kNoLaser) != rings.end()) {
+      has_rings_ = false;
+      rings.clear();
+    }
+    return rings;
+  }
+
+  void write_folder() {
+    nlohmann::ordered_json content;
+    if (labels_) content["labels"] = {{"name", scheme_reference(job_.labels, *labels_)}};
+    OutputFolder folder(job_.output, false, "export", content);
+    ScanWriterOptions options;
+    options.labels = labels_ ? &*labels_ : nullptr;
+    options.order = PointOrder::firing;  // that of the input
+    options.drive = {chosen_.size(),
+                     [this](std::size_t i) { return sequence_.trajectory[chosen_[i]].time_s; }};
+    const std::string& sensor = sequence_.beams.sensor;
+    if (!sensor.empty()) options.image_size.rings = load_lidar_model(sensor).rings();
+    const auto writer = make_scan_writer(folder.path(), scan_format(), options);
+    bool has_classes = false;
+    write_scans([&](std::size_t k, const Scan& scan) {
+      has_classes = has_classes || !scan.classes.empty();
+      require_classes(k, scan);
+      writer->write(k, scan);
+    });
+    writer->finish();
+    warn_of_lost(has_classes);
+    folder.commit();
+  }
+
+  ScanFormat scan_format() const {
+    if (format_ == ExportFormat::kitti_raw) return ScanFormat::kitti_raw;
+    return format_ == ExportFormat::nuscenes ? ScanFormat::nuscenes : ScanFormat::semantickitti;
+  }
+
+  /// Either all scans have classes or none.
+  void require_classes(std::size_t k, const Scan& scan) {
+    if (scan.size() == 0) return;
+    if (!has_classes_) has_classes_ = !scan.classes.empty();
+    if (*has_classes_ != scan.classes.empty()) return;
+    throw Error(ErrorKind::data, sequence_.scans[chosen_[k]].string() + ": has " +
+                                     (*has_classes_ ? "no " : "") +
+                                     "classes, unlike the scans before");
+  }
+
+  /// In one line what is dropped.
+  void warn_of_lost(bool has_classes) {
+    std::string lost;
+    const auto add = [&lost](const char* what) {
+      lost += (lost.empty() ? "" : ", ") + std::string(what);
+    };
+    if (!is_kitti_sequence(job_.input))
+      add("fields of the points other than positions, intensities, classes and instances");
+    if (has_classes && format_ == ExportFormat::kitti_raw) add("classes");
+    if (has_classes && format_ == ExportFormat::nuscenes)
+      add(labels_ ? "classes of the scans between samples, their own numbers and instances"
+                  : "classes (their scheme is unknown: give --labels)");
+    if (format_ == ExportFormat::nuscenes && !has_rings_)
+      session_.progress.warn(job_.output.string() +
+                             ": the sensor is not recognised; the ring of all points of its scans "
+                             "is 0");
+    if (!lost.empty()) session_.progress.warn(job_.output.string() + ": not exported: " + lost);
+  }
+
+  const ExportJob& job_;
+  ExportFormat format_;
+  Session& session_;
+  KittiSequence sequence_;
+  std::vector<std::size_t> chosen_;
+  std::optional<LabelScheme> labels_;
+  std::optional<bool> has_classes_;
+  bool has_rings_ = true;
+  ExportResult result_{0, "scans"};
+};
+
+/// Whether an option of inputs applies to scans: of a drive all that concern its reading, of a
+/// sequence folder only the choice of scans.
+bool applies_to_scans(const std::string& option, bool is_sequence_folder) {
+  constexpr std::array<std::string_view, 19> kOptions = {
+      "scans",         "strict",    "first_scan",     "scan_count",         "scan_stride",
+      "trajectory",    "mount",     "mount_rotation", "mount_rotation_deg", "time_offset",
+      "time_offset_s", "points_in", "sweep_points",   "scan_times",         "topic",
+      "poses_topic",   "scene",     "packet_sensor",  "beams_from_poses"};
+  constexpr std::size_t kOfFolders = 5;
+  const auto found = std::ranges::find(kOptions, option) - kOptions.begin();
+  return static_cast<std::size_t>(found) < (is_sequence_folder ? kOfFolders : kOptions.size());
 }
 
 ExportResult write_export(const ExportJob& job, Session& session) {
-  const InputKind kind = kind_of(job.input);
+  const InputKind kind = kind_of(job.input, job.load);
   const ExportFormat format = format_of(job, kind);
   if (job.color && !has_colors(format)) {
     throw Error(ErrorKind::usage,
@@ -254,25 +405,43 @@ ExportResult write_export(const ExportJob& job, Session& session) {
                     ", which stores classes and intensities; it is for gaussian-3d, "
                     "gaussian-2d and glb");
   }
-  if (!job.labels.empty() && !has_colors(format)) {
+  const bool states_scheme =
+      format == ExportFormat::semantickitti || format == ExportFormat::nuscenes;
+  if (!job.labels.empty() && !has_colors(format) && !states_scheme) {
     throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
-                                      ", which holds the numbers of classes as they are");
+                                      (format == ExportFormat::kitti_raw
+                                           ? ", which has no classes"
+                                           : ", which holds the numbers of classes as they are"));
   }
-  constexpr std::array<std::string_view, 5> kOfScans = {"scans", "strict", "first_scan",
-                                                        "scan_count", "scan_stride"};
-  const bool scans = format == ExportFormat::mcap && std::find(kOfScans.begin(), kOfScans.end(),
-                                                               job.cloud_option) != kOfScans.end();
-  if (!job.cloud_option.empty() && !scans &&
-      (kind == InputKind::model || format == ExportFormat::mcap)) {
+  if (!job.cloud_option.empty() &&
+      (kind == InputKind::model ||
+       (has_scans(format) && !applies_to_scans(job.cloud_option, is_kitti_sequence(job.input))))) {
     throw Error(
         ErrorKind::usage,
         "`" + job.cloud_option + "` has no effect on " +
             (kind == InputKind::model ? "a splat model" : "scans, which are written as they are"));
   }
-  check_output_file(job.output);
+  std::vector<fs::path> read = {job.input};
+  for (const fs::path& file : {job.load.trajectory, job.load.boxes, job.load.scan_times})
+    if (!file.empty()) read.push_back(file);
+  if (is_folder(format)) {
+    require_folder_apart(job.output, read);
+  } else {
+    require_no_input(job.output, read);
+    check_output_file(job.output);
+  }
   if (kind == InputKind::model) return export_model(job, format, session);
-  if (format == ExportFormat::mcap) return export_scans(job, session);
+  if (has_scans(format)) return ScanExport(job, format, session).run();
   return export_cloud(job, format, session);
+}
+
+/// Of a file, or of all files in a folder.
+std::uint64_t bytes_of(const fs::path& output) {
+  if (!fs::is_directory(output)) return fs::file_size(output);
+  std::uint64_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(output))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
 }
 
 }  // namespace
@@ -281,7 +450,7 @@ ExportResult run_export(const ExportJob& job, Session& session) {
   ExportJob resolved = job;
   if (!is_splat_model(job.input)) resolved.input = resolve_cloud_input(job.input);
   ExportResult result = write_export(resolved, session);
-  result.written_bytes = fs::file_size(resolved.output);
+  result.written_bytes = bytes_of(resolved.output);
   return result;
 }
 

@@ -16,7 +16,20 @@
 namespace adasplats {
 
 /// What other programs open (docs/exports.md).
-enum class ExportFormat : std::uint8_t { gaussian_3d, gaussian_2d, glb, ply, las, laz, mcap };
+enum class ExportFormat : std::uint8_t {
+  gaussian_3d,
+  gaussian_2d,
+  glb,
+  ply,
+  las,
+  laz,
+  pcd,
+  csv,
+  mcap,
+  semantickitti,
+  kitti_raw,
+  nuscenes
+};
 inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"gaussian-3d", ExportFormat::gaussian_3d},
     {"gaussian-2d", ExportFormat::gaussian_2d},
@@ -24,7 +37,12 @@ inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"ply", ExportFormat::ply},
     {"las", ExportFormat::las},
     {"laz", ExportFormat::laz},
-    {"mcap", ExportFormat::mcap}};
+    {"pcd", ExportFormat::pcd},
+    {"csv", ExportFormat::csv},
+    {"mcap", ExportFormat::mcap},
+    {"semantickitti", ExportFormat::semantickitti},
+    {"kitti-raw", ExportFormat::kitti_raw},
+    {"nuscenes", ExportFormat::nuscenes}};
 /// What colours show.
 enum class ExportColor : std::uint8_t { semantic, intensity, height, rgb };
 inline constexpr std::pair<std::string_view, ExportColor> kExportColors[] = {
@@ -33,7 +51,7 @@ inline constexpr std::pair<std::string_view, ExportColor> kExportColors[] = {
     {"height", ExportColor::height},
     {"rgb", ExportColor::rgb}};
 
-/// A splat model, a point cloud or the scans of a sequence, for other programs.
+/// A splat model, a point cloud or the scans of a drive, for other programs.
 struct ExportJob {
   std::filesystem::path input, output;
   /// Else that of the output's ending, where that is clear.
@@ -53,8 +71,8 @@ struct ExportResult {
   std::uint64_t written_bytes = 0;
 };
 
-/// Writes the file. Errors: usage (a format that the input cannot have, with those it can; an
-/// ending that says none), and those of reading and writing.
+/// Writes the file, or the folder of a data set. Errors: usage (a format that the input cannot
+/// have, with those it can; an ending that says none), and those of reading and writing.
 ExportResult run_export(const ExportJob& job, Session& session);
 
 }  // namespace adasplats

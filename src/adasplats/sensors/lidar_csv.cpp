@@ -224,6 +224,29 @@ class RayAngles {
   double azimuth_ = 0, elevation_ = 0;
 };
 
+/// Recognises tables without names whose first column is the time: it ascends from ray to ray, and
+/// the third one goes up and down.
+class ColumnOrder {
+ public:
+  void add(const TimedRay& ray) {
+    if (count_++ > 0) {
+      ascends_ = ascends_ && ray.azimuth_deg > last_.azimuth_deg;
+      has_later_ = has_later_ || ray.time > last_.time;
+      has_earlier_ = has_earlier_ || ray.time < last_.time;
+    }
+    last_ = ray;
+  }
+  bool begins_with_time() const {
+    constexpr std::size_t kMinRays = 16;
+    return count_ >= kMinRays && ascends_ && has_later_ && has_earlier_;
+  }
+
+ private:
+  std::size_t count_ = 0;
+  bool ascends_ = true, has_later_ = false, has_earlier_ = false;
+  TimedRay last_;
+};
+
 /// Scans per second: a scan ends one mean interval after its last firing time. 10 if all rays have
 /// the same time.
 double rotation_hz_of(const std::vector<Firing>& firings) {
@@ -283,6 +306,8 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   std::vector<Firing>& firings = file.model.free_pattern;
   Columns columns;
   RayAngles angles;
+  ColumnOrder order;
+  bool has_names = false;
   double first_time = 0;
   bool are_row_numbers = true;
   FilledLines lines(text, path);
@@ -296,6 +321,7 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
         return read_hesai_csv(text, path);
       if (const auto header = read_header(*line, lines.place())) {
         columns = *header;
+        has_names = true;
         continue;
       }
     }
@@ -304,12 +330,18 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
     const TimedRay ray =
         parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place());
     angles.add(ray, columns.is_zenith);
+    order.add(ray);
     if (firings.empty()) first_time = ray.time;
     are_row_numbers =
         are_row_numbers && ray.time == first_time + static_cast<double>(firings.size());
     firings.push_back(ray.firing);
   }
   if (firings.empty()) throw data_error({path, {}, {}}, "no rays");
+  if (!has_names && order.begins_with_time())
+    throw data_error(
+        {path, {}, {}},
+        "column 1 ascends from ray to ray like a time, and column 3 does not; name the "
+        "columns in a first line, such as Time/s,Azimuth/deg,Zenith/deg");
   if (const auto fault = angles.fault(columns)) throw data_error({path, {}, {}}, *fault);
   set_scan_length(columns, are_row_numbers, path, file.model);
   return file;

@@ -530,6 +530,14 @@ TEST_F(LidarFiles, TheTimesOfACsvAreThoseOfAScan) {
   expect_contains(csv_failure("0,0,0\n0,1,1e-44\n"), "scans a second, expected at most a million");
 }
 
+TEST_F(LidarFiles, ATableWithoutNamesThatBeginsWithTheTimeIsAnError) {
+  std::string text;
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(0.01 * i) + "," + std::to_string(i % 7) + "," +
+            std::to_string(80 + i % 9) + "\n";
+  expect_contains(csv_failure(text), "column 1 ascends from ray to ray like a time");
+}
+
 // Oracle: the table; zenith counts from +z. livox_laser_simulation has this header.
 TEST_F(LidarFiles, ALivoxTableContinuesFromScanToScan) {
   std::string text = "Time/s,Azimuth/deg,Zenith/deg\r\n";

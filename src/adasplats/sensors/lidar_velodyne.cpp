@@ -325,7 +325,15 @@ LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesy
 }  // namespace
 
 LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path) {
-  return lidar_of_calibration(CalibrationReader(text, path).read(), path);
+  const Calibration calibration = CalibrationReader(text, path).read();
+  LidarFile file = lidar_of_calibration(calibration, path);
+  const std::string name = path.filename().string();
+  if (!family_of(calibration, name) && !calibration.header.contains("num_lasers"))
+    throw data_error({path, std::nullopt, std::nullopt},
+                     "has " + std::to_string(calibration.lasers.size()) +
+                         " lasers and no num_lasers; Velodyne's sensors have 16, 32, 64 or 128: is "
+                         "the file truncated?");
+  return file;
 }
 
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path) {

@@ -99,8 +99,8 @@ TEST_F(VelodyneYaml, TimesAreThoseOfTheSensorWithAsManyLasers) {
   EXPECT_NEAR(last_us(64, 0.02), 42 + 3.66, 1e-9);
   EXPECT_NEAR(last_us(64, 0.02, "64e_S3.yaml"), 50.4 + 3.7, 1e-9);
   EXPECT_NEAR(last_us(128, 0.02), 16 * 2.665, 1e-9);
-  EXPECT_TRUE(load(lasers(1, 0)).firing_times_s.empty());
-  EXPECT_TRUE(load(lasers(17, 0)).firing_times_s.empty());
+  EXPECT_TRUE(load(lasers(1, 0) + "num_lasers: 1\n").firing_times_s.empty());
+  EXPECT_TRUE(load(lasers(17, 0) + "num_lasers: 17\n").firing_times_s.empty());
 }
 
 TEST_F(VelodyneYaml, WrongFilesAreRefusedWithTheLine) {
@@ -124,6 +124,7 @@ TEST_F(VelodyneYaml, WrongFilesAreRefusedWithTheLine) {
                     "distance_resolution");
   expect_data_error("lasers:\n- {vert_correction: 0}\ndistance_resolution: -1\n",
                     "distance_resolution");
+  expect_data_error(lasers(13, 0), "13 lasers and no num_lasers");
   std::string far = lasers(16, 0);
   far.replace(far.find("laser_id: 7"), 11, "laser_id: 7, dist_correction: 1e7");
   expect_data_error(far, "mine.yaml:9: dist_correction");

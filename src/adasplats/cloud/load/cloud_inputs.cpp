@@ -273,9 +273,12 @@ void require_points(const fs::path& file) {
   };
   switch (kind_of_file(file)) {
     case FileKind::mesh:
-      return reject(
-          "is a triangle mesh (its header declares faces), not a point cloud; simulate, render and "
-          "evaluate truth read meshes");
+      return reject(lower_case(file.extension().string()) == ".ply"
+                        ? "is a triangle mesh (its header declares faces), not a point cloud; "
+                          "simulate, render and evaluate truth read meshes"
+                        : "is of a format of meshes, of which points are not read; simulate, "
+                          "render and evaluate truth read meshes; export points as PLY, LAS, PCD "
+                          "or CSV");
     case FileKind::splat_model:
       return reject(
           "is a splat model (it has normals and radii), not a point cloud; simulate, render, view "

@@ -281,6 +281,10 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 
+/// The same columns as PCD 0.7, binary, and as CSV (write_csv()), with the comments of the PLY.
+void save_cloud_pcd(const std::filesystem::path& path, const PointCloud& cloud);
+void save_cloud_csv(const std::filesystem::path& path, const PointCloud& cloud);
+
 /// Writes a cloud as LAS 1.4, or as LAZ if the name ends in .laz: point format 6, 7 with colours, 8
 /// also with near infrared, in millimetres from the cloud's origin; classification (the class; 0,
 /// never classified, for numbers above 255), intensity (0 to 1 becomes 0 to 65535; larger numbers

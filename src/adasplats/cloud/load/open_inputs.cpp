@@ -123,6 +123,17 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
         "of each scan");
 }
 
+/// Throws data if there are several stations and each is in its own frame.
+void require_registered(std::span<const OpenInput> inputs) {
+  const auto is_own = [](const OpenInput& input) { return is_ptx_in_own_frame(input.input.path); };
+  if (inputs.size() < 2 || !std::ranges::all_of(inputs, is_own)) return;
+  throw Error(ErrorKind::data,
+              inputs[0].input.path.string() + " and " + inputs[1].input.path.string() +
+                  (inputs.size() > 2 ? " and " + std::to_string(inputs.size() - 2) + " more" : "") +
+                  ": all stations have the identity matrix: each is in its own frame; register "
+                  "them, or give only one");
+}
+
 /// Rounded to the steps of a file's coordinates, as its points are: headers may have more digits.
 Vec3d in_steps(Vec3d place, Vec3d step) {
   for (int axis = 0; axis < 3; ++axis)
@@ -145,6 +156,7 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   inputs_ = opened(inputs, options, executor, progress);
   name_ = name_of(inputs);
   require_applicable_options(options, inputs_);
+  require_registered(inputs_);
   for (OpenInput& input : inputs_)
     if (input.input.is_sequence && !input.sequence)
       input.sequence = open_sequence(input.input.path, options, executor);
@@ -227,6 +239,7 @@ class ScansOfFile {
   }
 
   bool is_shuffled() const { return is_shuffled_; }
+  std::uint64_t records() const { return records_; }
   /// Records of the longest scan.
   std::uint64_t longest() const {
     std::uint64_t longest = 0;
@@ -293,6 +306,10 @@ std::vector<InputPiece> pieces_by_scans(const std::filesystem::path& file, std::
     if (scans.add(read_file_part(file, part, quiet, &executor))) continue;
     if (scans.is_shuffled())
       warn_of_cut_scans(file, "its points are not ordered by scan", progress);
+    return {};
+  }
+  if (scans.records() != all) {
+    warn_of_cut_scans(file, "some of its records are left out", progress);
     return {};
   }
   if (scans.longest() > 2 * records) {

@@ -261,6 +261,7 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
     case NoteKind::salvaged: return progress.warn(start + "salvaged " + note.text);
     case NoteKind::left_out: return progress.warn(start + "left out: " + note.text);
     case NoteKind::intensity_scale:
+    case NoteKind::own_frame:
     case NoteKind::unnamed_columns: return progress.warn(start + note.text);
     case NoteKind::geographic:
       if (file.table.rows == 0) return;
@@ -330,6 +331,10 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   part.cloud.crs = table.crs;
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
+  if (file.find("f_dc_0") && file.find("opacity") && file.find("rot_0"))
+    throw Error(ErrorKind::data, file.path.string() +
+                                     ": contains Gaussian splats, not points; give the points or "
+                                     "the model that they were made from");
   std::vector<const Column*> used;
   for (const std::string& name : kPositionNames) used.push_back(file.find(name));
   const auto use = [&used](const Column* column) {

@@ -15,7 +15,9 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/las/las_writer.h"
+#include "adasplats/io/pcd/pcd_writer.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/io/text/csv_writer.h"
 
 namespace adasplats {
 
@@ -147,8 +149,8 @@ std::vector<const Column*> colors_in(const OtherColumns& others) {
 }
 
 /// Properties of PLY have no blanks and at most 32 bits, or are doubles. Colours are bytes where
-/// that is exact, as other programs expect.
-void add_others_ply(const OtherColumns& others, OtherViews& views) {
+/// that is exact, as other programs expect. Fields of PCD and columns of CSV are the same.
+void add_others_named(const OtherColumns& others, OtherViews& views) {
   const std::vector<const Column*> colors = colors_in(others);
   const unsigned factor = colors.empty() ? 0 : factor_of_bytes(colors);
   for (const Column& column : others.columns) {
@@ -253,32 +255,59 @@ void add_others_las(const OtherColumns& others, OtherViews& views) {
   }
 }
 
+/// The columns of a cloud for PLY, PCD and CSV. The cloud must outlive it.
+class NamedColumns {
+ public:
+  NamedColumns(const PointCloud& cloud, std::span<const ColumnView> more) : others_(columns_) {
+    if (cloud.empty()) {
+      for (const std::string_view name : kPositionColumns)
+        columns_.push_back({name, ColumnType::f32, nullptr, sizeof(float)});
+    } else if (cloud.origin == Vec3d{}) {
+      add_vectors(columns_, kPositionColumns, ColumnType::f32, cloud.positions);
+      add_vectors(columns_, kSensorColumns, ColumnType::f32, cloud.sensor_positions);
+    } else {
+      positions_ = in_world(cloud.origin, cloud.positions);
+      sensors_ = in_world(cloud.origin, cloud.sensor_positions);
+      add_vectors(columns_, kPositionColumns, ColumnType::f64, positions_);
+      add_vectors(columns_, kSensorColumns, ColumnType::f64, sensors_);
+    }
+    add_attributes(columns_, cloud, "intensity");
+    columns_.insert(columns_.end(), more.begin(), more.end());
+    add_others_named(cloud.others, others_);
+  }
+  NamedColumns(const NamedColumns&) = delete;
+  NamedColumns& operator=(const NamedColumns&) = delete;
+
+  std::span<const ColumnView> columns() const { return columns_; }
+
+ private:
+  std::vector<ColumnView> columns_;
+  std::vector<Vec3d> positions_, sensors_;
+  OtherViews others_;
+};
+
+/// The coordinate system and the label scheme as comments of a file.
+std::vector<std::string> comments_of(const PointCloud& cloud) {
+  std::vector<std::string> comments = crs_comments(cloud.crs);
+  if (!cloud.label_scheme.empty() && !cloud.classes.empty())
+    comments.push_back(std::string(kLabelsComment) + cloud.label_scheme);
+  return comments;
+}
+
 }  // namespace
 
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more) {
-  std::vector<ColumnView> columns;
-  std::vector<Vec3d> world_positions, world_sensors;
-  if (cloud.empty()) {
-    for (const std::string_view name : kPositionColumns)
-      columns.push_back({name, ColumnType::f32, nullptr, sizeof(float)});
-  } else if (cloud.origin == Vec3d{}) {
-    add_vectors(columns, kPositionColumns, ColumnType::f32, cloud.positions);
-    add_vectors(columns, kSensorColumns, ColumnType::f32, cloud.sensor_positions);
-  } else {
-    world_positions = in_world(cloud.origin, cloud.positions);
-    world_sensors = in_world(cloud.origin, cloud.sensor_positions);
-    add_vectors(columns, kPositionColumns, ColumnType::f64, world_positions);
-    add_vectors(columns, kSensorColumns, ColumnType::f64, world_sensors);
-  }
-  add_attributes(columns, cloud, "intensity");
-  columns.insert(columns.end(), more.begin(), more.end());
-  OtherViews others(columns);
-  add_others_ply(cloud.others, others);
-  std::vector<std::string> comments = crs_comments(cloud.crs);
-  if (!cloud.label_scheme.empty() && !cloud.classes.empty())
-    comments.push_back(std::string(kLabelsComment) + cloud.label_scheme);
-  write_ply(path, cloud.size(), columns, comments);
+  write_ply(path, cloud.size(), NamedColumns(cloud, more).columns(), comments_of(cloud));
+}
+
+void save_cloud_pcd(const std::filesystem::path& path, const PointCloud& cloud) {
+  write_pcd(path, cloud.size(), NamedColumns(cloud, {}).columns(), {0, 0, 0, 1, 0, 0, 0},
+            comments_of(cloud));
+}
+
+void save_cloud_csv(const std::filesystem::path& path, const PointCloud& cloud) {
+  write_csv(path, cloud.size(), NamedColumns(cloud, {}).columns(), comments_of(cloud));
 }
 
 void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,

@@ -111,33 +111,36 @@ void warn_of_steps(const std::filesystem::path& file, std::span<const Vec3d> wor
                 "coordinates, or relative to an origin nearby");
 }
 
-void warn_of_intensity_scales(std::span<const CloudPart> parts, ProgressSink& progress) {
-  constexpr double kMinFactor = 8;
-  struct Range {
-    double low = 0, median = 0, high = 0;
-    std::string file, text;
+void IntensityScales::add(const std::filesystem::path& file, std::span<const float> intensities) {
+  std::vector<double> values = sampled(
+      intensities.size(), [&](std::size_t i) { return static_cast<double>(intensities[i]); });
+  if (values.size() < kMinSamples) return;
+  std::ranges::sort(values);
+  const auto at = [&values](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   };
-  Range least, most;
-  for (const CloudPart& part : parts) {
-    const std::vector<float>& intensities = part.cloud.intensities;
-    std::vector<double> values = sampled(
-        intensities.size(), [&](std::size_t i) { return static_cast<double>(intensities[i]); });
-    if (values.size() < kMinSamples) continue;
-    std::ranges::sort(values);
-    const auto at = [&values](double share) {
-      return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-    };
-    Range range{at(0.02), at(0.5), at(0.98), part.runs.front().file.string(), {}};
-    range.text = text_of(range.low) + " to " + text_of(range.high);
-    if (!(range.median > 0)) continue;
-    if (least.file.empty() || range.median < least.median) least = range;
-    if (most.file.empty() || range.median > most.median) most = range;
-  }
-  if (most.file.empty() || most.median < kMinFactor * least.median || least.high >= most.low)
-    return;
-  progress.warn("intensities of the inputs have different scales: " + least.text + " in " +
-                least.file + ", " + most.text + " in " + most.file +
-                " (2nd to 98th percentile); bring them to one scale, or reflectances are wrong");
+  Range range{at(0.02), at(0.5), at(0.98), file.string(), {}};
+  range.text = text_of(range.low) + " to " + text_of(range.high);
+  if (!(range.median > 0)) return;
+  if (least_.file.empty() || range.median < least_.median) least_ = range;
+  if (most_.file.empty() || range.median > most_.median) most_ = range;
+}
+
+std::string IntensityScales::warning() const {
+  constexpr double kMinFactor = 8;
+  if (most_.file == least_.file || most_.median < kMinFactor * least_.median ||
+      least_.high >= most_.low)
+    return {};
+  return "intensities of the inputs have different scales: " + least_.text + " in " + least_.file +
+         ", " + most_.text + " in " + most_.file +
+         " (2nd to 98th percentile); bring them to one scale, or reflectances are wrong";
+}
+
+void warn_of_intensity_scales(std::span<const CloudPart> parts, ProgressSink& progress) {
+  IntensityScales scales;
+  for (const CloudPart& part : parts)
+    if (!part.runs.empty()) scales.add(part.runs.front().file, part.cloud.intensities);
+  if (const std::string warning = scales.warning(); !warning.empty()) progress.warn(warning);
 }
 
 }  // namespace adasplats

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/load/cloud_part.h"
@@ -18,8 +19,24 @@ namespace adasplats {
 void warn_of_steps(const std::filesystem::path& file, std::span<const Vec3d> world,
                    ProgressSink& progress);
 
-/// Warns if the intensities of two parts have no common scale: their ranges (2nd to 98th
-/// percentile) are apart, and their medians differ by a factor of at least 8.
+/// Whether the intensities of files have a common scale. Those of two files have none if their
+/// ranges (2nd to 98th percentile) are apart, and their medians differ by a factor of at least 8.
+class IntensityScales {
+ public:
+  /// Adds the points of a file, or some of them.
+  void add(const std::filesystem::path& file, std::span<const float> intensities);
+  /// Both ranges with their files; empty: a common scale.
+  std::string warning() const;
+
+ private:
+  struct Range {
+    double low = 0, median = 0, high = 0;
+    std::string file, text;
+  };
+  Range least_, most_;
+};
+
+/// Warns if the intensities of two parts have no common scale (IntensityScales).
 void warn_of_intensity_scales(std::span<const CloudPart> parts, ProgressSink& progress);
 
 }  // namespace adasplats

@@ -58,6 +58,7 @@ constexpr Name kReturnNames[] = {"returnnumber", "returnnum",  "returnno", "retu
                                  "returnid",     "echonumber", "return"};
 constexpr Name kReturnCounts[] = {"numberofreturns", "numreturns",   "numofreturns",
                                   "returncount",     "returncounts", "numberofechoes"};
+constexpr Name kWithheldNames[] = {"withheld", "withheldflag", "iswithheld"};
 constexpr Name kNormalsX[] = {"nx", "normalx", "normalsx", "normx"};
 constexpr Name kNormalsY[] = {"ny", "normaly", "normalsy", "normy"};
 constexpr Name kNormalsZ[] = {"nz", "normalz", "normalsz", "normz"};
@@ -74,6 +75,7 @@ constexpr std::pair<PointColumn, std::span<const Name>> kColumnNames[] = {
     {PointColumn::scan_index, kScanNames},
     {PointColumn::return_number, kReturnNames},
     {PointColumn::number_of_returns, kReturnCounts},
+    {PointColumn::withheld, kWithheldNames},
     {PointColumn::normal_x, kNormalsX},
     {PointColumn::normal_y, kNormalsY},
     {PointColumn::normal_z, kNormalsZ}};

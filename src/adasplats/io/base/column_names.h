@@ -21,6 +21,7 @@ enum class PointColumn : std::uint8_t {
   scan_index,
   return_number,
   number_of_returns,
+  withheld,  ///< 1: deleted
   normal_x,
   normal_y,
   normal_z,

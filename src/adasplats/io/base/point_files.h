@@ -99,8 +99,13 @@ Table read_text_points(const std::filesystem::path& path);
 /// Leica PTX: scans of columns x rows points in the scanner's frame, each with the 4x4 matrix into
 /// the world. Gives world coordinates x, y, z, intensity, if present red, green, blue, and
 /// sensor_x, sensor_y, sensor_z, the scanner's position in the world; all f64. Points without a
-/// return (0 0 0 in the scanner's frame) are left out, with a note.
+/// return (0 0 0 in the scanner's frame) are left out, with a note. A single station with the
+/// identity matrix gets a note. Errors: also data (several stations, all with the identity).
 Table read_ptx(const std::filesystem::path& path);
+
+/// Whether a file is a PTX whose first station has the identity matrix and the position 0. Errors:
+/// as read_points().
+bool is_ptx_in_own_frame(const std::filesystem::path& path);
 
 /// KITTI / SemanticKITTI scan of a sequence: float32 x, y, z, intensity ("remission"),
 /// little-endian. The format has no header, so the values are checked. Errors: data for an
@@ -119,6 +124,10 @@ Table read_bin(const std::filesystem::path& path);
 /// with the supported ones); usage (levels of a file without); std::logic_error for records of a
 /// file without random access.
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
+
+/// The lines that begin with # at the start of a PCD or text, without the sign. Errors: no_input,
+/// io, data (not a text).
+std::vector<std::string> leading_comments(const std::filesystem::path& path);
 
 /// The coordinate system of a point file, without reading the points. Errors: as read_points().
 Crs read_crs(const std::filesystem::path& path);

@@ -43,6 +43,7 @@ enum class NoteKind : std::uint8_t {
   intensity_scale,  ///< intensities that are not scaled as expected
   no_return,        ///< points without a return, not read: "2 points without a return"
   wrong_count,      ///< more points than the file states: "the file states 1 points and has 2"
+  own_frame,        ///< of a scanner: "its station has the identity matrix: ..."
   unnamed_columns,  ///< a text without names: "no line names its columns: column 4 is read as ..."
 };
 

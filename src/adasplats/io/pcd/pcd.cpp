@@ -148,6 +148,7 @@ Table read_pcd(const std::filesystem::path& path) {
     case PcdEncoding::binary: table.columns = read_binary(file, header); break;
     case PcdEncoding::binary_compressed: table.columns = read_compressed(file, header); break;
   }
+  table.crs = crs_of_comments(path, header.comments);
   table.comments = std::move(header.comments);
   return table;
 }

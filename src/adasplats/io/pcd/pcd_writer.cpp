@@ -29,7 +29,7 @@ char pcd_type(ColumnType type) {
 }
 
 std::string header_text(std::size_t rows, std::span<const ColumnView> columns,
-                        const PcdViewpoint& viewpoint) {
+                        const PcdViewpoint& viewpoint, std::span<const std::string> comments) {
   std::string fields, sizes, types, counts;
   for (const ColumnView& column : columns) {
     if (column.name.empty() || column.name.find_first_of(" \t\r\n") != std::string_view::npos)
@@ -39,7 +39,9 @@ std::string header_text(std::size_t rows, std::span<const ColumnView> columns,
     types.append(" ").append(1, pcd_type(column.type));
     counts.append(" 1");
   }
-  std::string text = "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS";
+  std::string text = "# .PCD v0.7 - Point Cloud Data file format\n";
+  for (const std::string& comment : comments) text.append("# ").append(comment).append("\n");
+  text.append("VERSION 0.7\nFIELDS");
   text.append(fields).append("\nSIZE").append(sizes).append("\nTYPE").append(types);
   text.append("\nCOUNT").append(counts).append("\nWIDTH ").append(std::to_string(rows));
   text.append("\nHEIGHT 1\nVIEWPOINT");
@@ -50,15 +52,16 @@ std::string header_text(std::size_t rows, std::span<const ColumnView> columns,
 }  // namespace
 
 void put_pcd(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
-             const PcdViewpoint& viewpoint) {
-  file.write(header_text(rows, columns, viewpoint));
+             const PcdViewpoint& viewpoint, std::span<const std::string> comments) {
+  file.write(header_text(rows, columns, viewpoint, comments));
   write_records(file, rows, columns);
 }
 
 void write_pcd(const std::filesystem::path& path, std::size_t rows,
-               std::span<const ColumnView> columns, const PcdViewpoint& viewpoint) {
+               std::span<const ColumnView> columns, const PcdViewpoint& viewpoint,
+               std::span<const std::string> comments) {
   AtomicFile file(path);
-  put_pcd(file, rows, columns, viewpoint);
+  put_pcd(file, rows, columns, viewpoint, comments);
   file.commit();
 }
 

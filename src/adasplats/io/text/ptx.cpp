@@ -21,6 +21,8 @@ struct ScanHeader {
   std::uint64_t points = 0;
   Mat3d world_from_scanner;  ///< need not be a rotation: files with scales exist
   Vec3d scanner_world;
+  /// Neither the matrix nor the stated position moves the points.
+  bool is_identity = false;
 };
 
 class PtxReader {
@@ -30,6 +32,10 @@ class PtxReader {
   Table read() {
     while (const std::optional<std::string_view> line = lines_.next_filled()) read_scan(*line);
     if (values_.empty()) throw lines_.error_here("the file has no scans");
+    if (identities_ == scans_ && scans_ > 1)
+      throw lines_.error_here("all " + std::to_string(scans_) +
+                              " stations of the file have the identity matrix: each is in its own "
+                              "frame; register them, or give one station per file");
     Table table;
     table.rows = values_.front().size();
     std::vector<std::string> names = {"x", "y", "z", "intensity"};
@@ -40,12 +46,21 @@ class PtxReader {
     if (without_return_ > 0)
       table.notes.push_back(
           {NoteKind::no_return, std::to_string(without_return_) + " points without a return"});
+    if (identities_ == scans_)
+      table.notes.push_back({NoteKind::own_frame,
+                             "its station has the identity matrix: the world is the scanner's own "
+                             "frame, with the scanner at 0, 0, 0"});
     return table;
   }
+
+  /// Whether the first scan is in its own frame. Reads its header.
+  bool begins_in_own_frame() { return read_header(next_line()).is_identity; }
 
  private:
   void read_scan(std::string_view first_line) {
     const ScanHeader scan = read_header(first_line);
+    ++scans_;
+    identities_ += scan.is_identity ? 1 : 0;
     // "0 0 0 0" and its line end.
     constexpr std::uint64_t kMinBytes = 8;
     const std::uint64_t room = (file_.remaining() + 1) / kMinBytes;
@@ -65,7 +80,8 @@ class PtxReader {
     if (__builtin_mul_overflow(columns, rows, &scan.points))
       throw lines_.error_here("columns x rows is above 2^64");
     // The scanner's position and axes; the matrix repeats them with its scale.
-    for (int k = 0; k < 4; ++k) parse_numbers<3>(next_line());
+    const std::array<double, 3> stated = parse_numbers<3>(next_line());
+    for (int k = 0; k < 3; ++k) parse_numbers<3>(next_line());
     Mat3d linear;
     for (int k = 0; k < 3; ++k) {
       const std::array<double, 4> row = parse_numbers<4>(next_line());
@@ -74,6 +90,9 @@ class PtxReader {
     scan.world_from_scanner = linear.transposed();
     const std::array<double, 4> last = parse_numbers<4>(next_line());
     scan.scanner_world = {last[0], last[1], last[2]};
+    scan.is_identity = linear.rows[0] == Vec3d{1, 0, 0} && linear.rows[1] == Vec3d{0, 1, 0} &&
+                       linear.rows[2] == Vec3d{0, 0, 1} && scan.scanner_world == Vec3d{} &&
+                       stated == std::array<double, 3>{};
     return scan;
   }
 
@@ -150,11 +169,16 @@ class PtxReader {
   LineReader lines_;
   std::size_t numbers_per_line_ = 0;
   std::uint64_t without_return_ = 0;
+  std::uint64_t scans_ = 0, identities_ = 0;
   std::vector<std::vector<double>> values_;
 };
 
 }  // namespace
 
 Table read_ptx(const std::filesystem::path& path) { return PtxReader(path).read(); }
+
+bool is_ptx_in_own_frame(const std::filesystem::path& path) {
+  return lower_case(path.extension().string()) == ".ptx" && PtxReader(path).begins_in_own_frame();
+}
 
 }  // namespace adasplats

@@ -258,7 +258,18 @@ class TextReader {
 
 Table read_text_points(const std::filesystem::path& path) {
   if (lower_case(path.extension().string()) == ".ptx") return read_ptx(path);
-  return TextReader(path).read();
+  Table table = TextReader(path).read();
+  table.crs = crs_of_comments(path, table.comments);
+  return table;
+}
+
+std::vector<std::string> leading_comments(const std::filesystem::path& path) {
+  InputFile file(path);
+  LineReader lines(file);
+  std::vector<std::string> comments;
+  for (auto line = lines.next_filled(); line && line->starts_with('#'); line = lines.next_filled())
+    comments.emplace_back(BlankTokens(line->substr(1)).rest());
+  return comments;
 }
 
 }  // namespace adasplats

@@ -163,6 +163,17 @@ TEST(Ptx, ScansAreTransformedToTheWorld) {
             (std::vector<ReaderNote>{{NoteKind::no_return, "2 points without a return"}}));
 }
 
+TEST(Ptx, SeveralStationsWithTheIdentityAreNotRegistered) {
+  const std::string axes = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
+  const std::string own = axes + "0 0 0 1\n1 2 3 4\n", moved = axes + "5 0 0 1\n1 2 3 4\n";
+  const Table one = read(own, "f.ptx");
+  ASSERT_EQ(one.notes.size(), 1U);
+  EXPECT_EQ(one.notes[0].kind, NoteKind::own_frame);
+  expect_data_error(own + own + own, {"f.ptx", "all 3 stations", "identity"}, "f.ptx");
+  EXPECT_EQ(values_of(read(own + moved, "f.ptx"), "sensor_x"), (Doubles{0, 5}));
+  EXPECT_TRUE(read(own + moved, "f.ptx").notes.empty());
+}
+
 TEST(Ptx, ColoursAndErrors) {
   const auto scan = [](const std::string& counts, const std::string& points) {
     return counts + "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n" + points;

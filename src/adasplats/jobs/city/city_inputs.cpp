@@ -13,6 +13,7 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/open_inputs.h"
+#include "adasplats/cloud/load/value_checks.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
@@ -98,6 +99,7 @@ class PiecesInCommon {
       crs_ = {file, cloud.crs};
     else if (file != crs_->first)
       require_same_crs({*crs_, {file, cloud.crs}}, warnings_);
+    scales_.add(file, cloud.intensities);
     if (!loaded.timed) return;
     const std::string clock = loaded.timed->clock;
     if (!clock_) clock_ = {file, clock};
@@ -109,8 +111,14 @@ class PiecesInCommon {
                     "); state `time_offset`, or model these inputs apart");
   }
 
+  /// Warns if the intensities of two files have no common scale.
+  void end() const {
+    if (const std::string warning = scales_.warning(); !warning.empty()) warnings_.warn(warning);
+  }
+
  private:
   ProgressSink& warnings_;
+  IntensityScales scales_;
   std::optional<std::pair<fs::path, Crs>> crs_;
   std::optional<std::pair<fs::path, std::string>> clock_;
 };
@@ -134,6 +142,7 @@ CityPoints read_files(const ModelJob& job, const OpenInputs& inputs,
     session.progress.advance(k + 1);
   }
   session.progress.end_step();
+  in_common.end();
   warnings.end();
   if (points.read == 0 && job.load.selection.extent) throw inputs.empty_extent_error();
   if (is_timed && job.calibration.on)

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -145,8 +146,28 @@ TEST(CityInputs, PiecesOfTwoCoordinateSystemsAreAnError) {
   EXPECT_NE(why.find("b.las"), std::string::npos) << why;
 }
 
-/// A file of scans of 700 points each, a metre apart.
-fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = true) {
+TEST(CityInputs, PiecesWithTwoScalesOfIntensitiesAreAWarning) {
+  const TemporaryFolder folder;
+  std::vector<fs::path> inputs;
+  for (const float factor : {1.0F, 257.0F}) {
+    const Ground ground(1500, 0, 40);
+    std::vector<float> intensities;
+    for (int i = 0; i < 1500; ++i) intensities.push_back(factor * static_cast<float>(100 + i % 40));
+    std::vector<ColumnView> columns = ground.columns();
+    columns.push_back({"intensity", ColumnType::f32, intensities.data(), 4});
+    inputs.push_back(folder.path() / (std::to_string(inputs.size()) + ".ply"));
+    write_ply(inputs.back(), 1500, columns);
+  }
+  const std::vector<std::string> warnings = taken(inputs, 1000).warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) {
+    return text.find("intensities of the inputs have different scales") != std::string::npos;
+  }));
+  EXPECT_TRUE(taken({inputs[0]}, 1000).warnings.empty());
+}
+
+/// A file of scans of 700 points each, a metre apart; the first ones can be flagged as deleted.
+fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = true,
+                     std::size_t deleted = 0) {
   const std::size_t points = 700 * scans;
   std::vector<double> x, y, z(points), sensor_x, sensor_y(points), sensor_z(points, 2);
   std::vector<std::uint32_t> numbers;
@@ -157,13 +178,16 @@ fs::path write_scans(const fs::path& file, std::size_t scans, bool in_order = tr
     y.push_back(0.01 * static_cast<double>(i % 7));
     numbers.push_back(static_cast<std::uint32_t>(in_order ? scan : scans - scan));
   }
+  std::vector<std::uint8_t> withheld(points);
+  std::fill_n(withheld.begin(), deleted, std::uint8_t{1});
   const std::vector<ColumnView> columns = {{"x", ColumnType::f64, x.data(), 8},
                                            {"y", ColumnType::f64, y.data(), 8},
                                            {"z", ColumnType::f64, z.data(), 8},
                                            {"sensor_x", ColumnType::f64, sensor_x.data(), 8},
                                            {"sensor_y", ColumnType::f64, sensor_y.data(), 8},
                                            {"sensor_z", ColumnType::f64, sensor_z.data(), 8},
-                                           {"scan_index", ColumnType::u32, numbers.data(), 4}};
+                                           {"scan_index", ColumnType::u32, numbers.data(), 4},
+                                           {"withheld", ColumnType::u8, withheld.data(), 1}};
   write_ply(file, points, columns);
   return file;
 }
@@ -208,6 +232,15 @@ TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
   EXPECT_FALSE(pieces[1].has_whole_scans);
   ASSERT_EQ(progress.warnings.size(), 1U);
   EXPECT_NE(progress.warnings[0].find("not ordered by scan"), std::string::npos);
+}
+
+TEST(FilePieces, RecordsThatAreLeftOutDoNotShiftThePieces) {
+  const TemporaryFolder folder;
+  const Taken all = taken({write_scans(folder.path() / "a.ply", 7, true, 900)}, 1500);
+  EXPECT_EQ(all.world().size(), std::size_t{7 * 700 - 900});
+  EXPECT_TRUE(std::ranges::any_of(all.warnings, [](const std::string& text) {
+    return text.find("some of its records are left out") != std::string::npos;
+  }));
 }
 
 /// A track of poses of a sensor 2 m above the ground, from `begin_s` on.

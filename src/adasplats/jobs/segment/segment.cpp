@@ -14,6 +14,7 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_check.h"
@@ -66,6 +67,35 @@ void save_numbers(const fs::path& path, const std::vector<T>& numbers) {
   AtomicFile file(path);
   file.write(numbers.data(), numbers.size() * sizeof(T));
   file.commit();
+}
+
+/// Makes `file` the same as `source`: a link, or a copy where the file system has no links.
+void link_or_copy(const fs::path& source, const fs::path& file) {
+  const fs::path target = fs::canonical(source);
+  std::error_code problem;
+  fs::create_hard_link(target, file, problem);
+  if (problem) fs::create_symlink(target, file, problem);
+  if (problem) write_file(file, read_file(target));
+}
+
+/// Completes the labels in `tree` to a sequence that other commands read: the scans and the files
+/// of poses. Nothing for scans in text (KITTI's raw data, not synced).
+void add_scans(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
+               const fs::path& tree) {
+  if (sequence.scans.front().extension() != ".bin") return;
+  fs::create_directories(tree / "velodyne");
+  for (const std::size_t index : chosen)
+    link_or_copy(sequence.scans[index], tree / "velodyne" / sequence.scans[index].filename());
+  if (is_kitti_raw_drive(sequence.folder)) {
+    const SemanticKittiPoses poses = semantickitti_poses(sequence.trajectory);
+    write_file(tree / "calib.txt", poses.calib);
+    write_file(tree / "times.txt", poses.times);
+    write_file(tree / "poses.txt", poses.poses);
+    return;
+  }
+  for (const char* const name : {"calib.txt", "times.txt", "poses.txt"})
+    if (fs::exists(sequence.folder / name))
+      write_file(tree / name, read_file(sequence.folder / name));
 }
 
 /// Numbers of the points that have a place, in the order of the scan; `nothing` for the others.
@@ -177,10 +207,11 @@ class PointSegmenter {
       KittiSequence sequence = open_kitti_sequence(sequences[k]);
       sequence.facts.unchecked = verify_poses(sequence, session_.executor);
       const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
-      segment_scans(sequence, chosen_scans(range, sequence.scans.size(), sequences[k]),
-                    [&](const fs::path& scan) {
-                      return tree / "labels" / scan.filename().replace_extension(".label");
-                    });
+      const auto chosen = chosen_scans(range, sequence.scans.size(), sequences[k]);
+      segment_scans(sequence, chosen, [&](const fs::path& scan) {
+        return tree / "labels" / scan.filename().replace_extension(".label");
+      });
+      add_scans(sequence, chosen, tree);
     }
     folder.commit();
   }
@@ -194,6 +225,8 @@ class PointSegmenter {
 
   nlohmann::ordered_json content() const {
     nlohmann::ordered_json content;
+    // A class map has numbers of its own.
+    content["labels"]["name"] = job_.class_map.empty() ? semantickitti_labels().name() : "";
     content["network"] = job_.network.empty() ? "default" : job_.network.filename().string();
     content["classes"] = nlohmann::ordered_json::array();
     for (const OutputClasses::Class& each : outputs_.classes)

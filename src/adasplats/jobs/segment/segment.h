@@ -64,15 +64,16 @@ struct SegmentResult {
 };
 
 /// Gives every point the class that the network sees there. Of sequence folders (chosen scans, put
-/// in place by their poses and looked at window by window) OUTPUT is a SemanticKITTI tree,
-/// sequences/00/labels/NNNNNN.label for the first folder and so on, a number for every point of the
-/// scan in its order; beside `labels`, on demand, confidences/NNNNNN.bin (save_floats(), a number a
-/// point) and probabilities/NNNNNN.bin (a number a class and point). Of files of points it is one
-/// PLY, LAS or LAZ of all points (LabelledPoints), of a single .bin also a .label, as its name
-/// says. Numbers are SemanticKITTI's or the class map's. Errors: usage (sequences beside files, an
-/// output of another ending, that is or lies among the inputs), data (no points; a class of the
-/// network that SemanticKITTI does not have), unavailable (built without OpenBLAS), those of
-/// read_network, read_class_map, load_cloud and OutputFolder.
+/// in place by their poses and looked at window by window) OUTPUT is a SemanticKITTI tree:
+/// sequences/00 for the first folder and so on, labels/NNNNNN.label with a number for every point
+/// of the scan in its order, links to the scans in velodyne/ and the files of poses; beside
+/// `labels`, on demand, confidences/NNNNNN.bin (save_floats(), a number a point) and
+/// probabilities/NNNNNN.bin (a number a class and point). Of files of points it is one PLY, LAS or
+/// LAZ of all points (LabelledPoints), of a single .bin also a .label, as its name says. Numbers
+/// are SemanticKITTI's or the class map's. Errors: usage (sequences beside files, an output of
+/// another ending, that is or lies among the inputs), data (no points; a class of the network that
+/// SemanticKITTI does not have), unavailable (built without OpenBLAS), those of read_network,
+/// read_class_map, load_cloud and OutputFolder.
 SegmentResult run_segment(const SegmentJob& job, Session& session);
 
 /// The keys of the command's report.

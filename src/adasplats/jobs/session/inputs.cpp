@@ -41,9 +41,9 @@ std::optional<LabelScheme> stated_scheme(const std::string& scheme) {
   return load_labels_of_model(scheme, silent);
 }
 
-/// The scheme in the adasplats.json of a folder with output of this program, or of the folders
-/// above, as far as the tree of a simulation goes.
-std::optional<LabelScheme> scheme_of_folder(fs::path folder) {
+/// The name of the scheme in the adasplats.json of a folder with output of this program, or of the
+/// folders above, as far as the tree of a simulation goes; empty if the numbers are of no scheme.
+std::optional<std::string> scheme_name_of_folder(fs::path folder) {
   constexpr int kLevels = 3;                                // OUTPUT/sequences/00
   constexpr const char* kFolderContent = "adasplats.json";  // as jobs/output has it
   folder = fs::absolute(folder / ".").lexically_normal();   // an empty path: the current folder
@@ -55,7 +55,7 @@ std::optional<LabelScheme> scheme_of_folder(fs::path folder) {
     const auto labels = content.is_object() ? content.find("labels") : content.end();
     if (!content.is_object() || labels == content.end() || !labels->is_object()) continue;
     const auto name = labels->find("name");
-    if (name != labels->end() && name->is_string()) return stated_scheme(name->get<std::string>());
+    if (name != labels->end() && name->is_string()) return name->get<std::string>();
   }
   return std::nullopt;
 }
@@ -80,12 +80,14 @@ std::optional<LabelScheme> scheme_of_file(const fs::path& file, const std::strin
     if (has_las_classes(las, label_field)) return asprs_labels();
   } else if (is_octree_part(file)) {
     if (label_field.empty()) return asprs_labels();  // made from LAS
-  } else if (extension == ".ply") {
-    for (const std::string& comment : read_ply_comments(file))
+  } else if (extension == ".ply" || extension == ".pcd" || extension == ".csv") {
+    for (const std::string& comment :
+         extension == ".ply" ? read_ply_comments(file) : leading_comments(file))
       if (comment.starts_with(kLabelsComment))
         return stated_scheme(comment.substr(kLabelsComment.size()));
   }
-  return scheme_of_folder(file.parent_path());
+  const auto name = scheme_name_of_folder(file.parent_path());
+  return name ? stated_scheme(*name) : std::nullopt;
 }
 
 }  // namespace
@@ -103,7 +105,7 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
     const std::vector<CloudInput> parts = cloud_inputs(input, SensorScans::taken);
     for (const CloudInput& one : parts) {
       if (!one.is_sequence || !fs::is_directory(one.path / "labels")) continue;
-      if (auto own = scheme_of_folder(one.path)) return own;
+      if (const auto name = scheme_name_of_folder(one.path)) return stated_scheme(*name);
       return semantickitti_labels();
     }
     // The files of a folder are of one kind: the first stands for all.

@@ -12,6 +12,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/text/gltf.h"
@@ -22,7 +23,6 @@ namespace adasplats {
 namespace {
 
 constexpr const char* kMeshComment = "adasplats.mesh 1";
-constexpr std::array<std::string_view, 4> kClassNames = {"class", "label", "semantic", "category"};
 
 bool is_ply(const std::filesystem::path& path) {
   InputFile file(path);
@@ -75,19 +75,16 @@ void set_vertices(MeshModel& model, const std::filesystem::path& path, const Tab
 
 std::vector<std::uint16_t> face_classes(const std::filesystem::path& path, const Table& faces) {
   std::vector<std::uint16_t> classes;
-  for (const std::string_view name : kClassNames) {
-    const Column* const column = faces.find(name);
-    if (column == nullptr) continue;
-    classes.reserve(faces.rows);
-    for (std::size_t i = 0; i < faces.rows; ++i) {
-      const double id = column->as_double(i);
-      if (!(id >= 0 && id <= 0xffff) || id != std::trunc(id))
-        throw data_error({path, {}, {}}, "triangle " + std::to_string(i) + ", " +
-                                             std::string(name) + ": found " + std::to_string(id) +
-                                             ", expected a whole number from 0 to 65535");
-      classes.push_back(static_cast<std::uint16_t>(id));
-    }
-    break;
+  const Column* const column = find_column(faces, PointColumn::classification);
+  if (column == nullptr) return classes;
+  classes.reserve(faces.rows);
+  for (std::size_t i = 0; i < faces.rows; ++i) {
+    const double id = column->as_double(i);
+    if (!(id >= 0 && id <= 0xffff) || id != std::trunc(id))
+      throw data_error({path, {}, {}}, "triangle " + std::to_string(i) + ", " + column->name +
+                                           ": found " + std::to_string(id) +
+                                           ", expected a whole number from 0 to 65535");
+    classes.push_back(static_cast<std::uint16_t>(id));
   }
   return classes;
 }

@@ -68,7 +68,8 @@ std::string ply_with_class(const std::string& declaration, const std::string& va
 TEST(MeshModel, ClassesOfAnyTypeAndUsualName) {
   const TemporaryFolder folder;
   for (const char* type : {"uchar", "int", "ushort", "uint", "float", "double"})
-    for (const char* name : {"class", "label", "semantic", "category"}) {
+    for (const char* name :
+         {"class", "label", "semantic", "category", "Classification", "sem_class"}) {
       const auto path =
           folder.write("m.ply", ply_with_class(std::string(type) + " " + name, "252"));
       EXPECT_EQ(load_mesh(path).mesh.classes, Classes{252}) << type << " " << name;
