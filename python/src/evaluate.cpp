@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/jobs/evaluate/evaluate_clouds.h"
 #include "adasplats/jobs/evaluate/evaluate_echoes.h"
 #include "adasplats/jobs/evaluate/evaluate_labels.h"
@@ -65,6 +66,7 @@ nearest original point and ignore its own. Raises ValueError, OSError.)";
     const ByClass classes = nearest_classes ? ByClass::nearest
                             : by_class      ? ByClass::own
                                             : ByClass::no;
+    constexpr std::array<const char*, 2> kNames = {"simulated", "original"};
     std::array<std::shared_ptr<const PointCloud>, 2> clouds;
     std::array<std::filesystem::path, 2> files;
     const std::array<py::handle, 2> given = {simulated, original};
@@ -72,9 +74,14 @@ nearest original point and ignore its own. Raises ValueError, OSError.)";
       if (py::isinstance<PointCloud>(given[k]))
         clouds[k] = given[k].cast<std::shared_ptr<PointCloud>>();
       else
-        files[k] = path_of(given[k], k == 0 ? "simulated" : "original");
+        files[k] = path_of(given[k], kNames[k]);
     }
     return reported(work, [&](Session& session) {
+      if (!clouds[0] && !clouds[1]) {
+        const CloudPair pair = load_clouds({files[0], files[1], labels}, session);
+        return evaluate_clouds(pair.simulated, pair.original, classes,
+                               pair.labels ? &*pair.labels : nullptr, session);
+      }
       for (std::filesystem::path& file : files)
         if (!file.empty()) file = resolve_cloud_input(file);
       const auto scheme = label_scheme_for(labels, files);
@@ -83,6 +90,10 @@ nearest original point and ignore its own. Raises ValueError, OSError.)";
           clouds[k] = std::make_shared<PointCloud>(
               load_cloud(std::span(files).subspan(k, 1), {}, session.executor, session.progress)
                   .first);
+      const auto name = [&](std::size_t k) {
+        return files[k].empty() ? std::filesystem::path(kNames[k]) : files[k];
+      };
+      require_same_crs({{name(0), clouds[0]->crs}, {name(1), clouds[1]->crs}}, session.progress);
       return evaluate_clouds(*clouds[0], *clouds[1], classes, scheme ? &*scheme : nullptr, session);
     });
   }

@@ -7,6 +7,7 @@
 #include "adasplats/jobs/scene/drive.h"
 #include "scenes.h"
 #include "trajectories.h"
+#include "work.h"
 
 namespace adasplats::python {
 namespace {
@@ -52,11 +53,13 @@ py::object poses_at_places(const std::shared_ptr<SceneObject>& object, py::handl
   drive.height_m = height_m;
   check_drive(drive);
   Trajectory poses;
+  PythonProgress progress{py::none()};
   {
     const py::gil_scoped_release released;
     const auto lock = object->lock();
-    poses = poses_at(*object->scene, drive.at, height_m, object->executor);
+    poses = poses_at(*object->scene, drive.at, height_m, object->executor, progress);
   }
+  progress.issue_warnings();
   return trajectory_object(std::move(poses));
 }
 
@@ -74,12 +77,14 @@ py::object poses_on_corners(const std::shared_ptr<SceneObject>& object, py::hand
   if (!spacing) drive.rate_hz = rate;
   check_drive(drive);
   Trajectory poses;
+  PythonProgress progress{py::none()};
   {
     const py::gil_scoped_release released;
     const auto lock = object->lock();
     poses = poses_on_path(*object->scene, drive.path, {height_m, speed, rate, spacing},
-                          object->executor);
+                          object->executor, progress);
   }
+  progress.issue_warnings();
   return trajectory_object(std::move(poses));
 }
 

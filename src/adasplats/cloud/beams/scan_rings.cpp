@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/points/scan_runs.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -322,6 +323,69 @@ void place_unknown(const PointCloud& cloud, std::span<const double> elevations_r
   scan.sums = sums_of(cloud, scan, elevations_rad.size());
 }
 
+/// RingPattern::along and anisotropy.
+void add_neighbours(std::span<const Vec3d> directions, RingPattern& pattern) {
+  constexpr Vec3d kAlong{0.48, 0.6, 0.64};       // as in ways_to_neighbours()
+  constexpr double kLevel = 0.26, kSteep = 0.7;  // sines of the way's elevation
+  constexpr double kMax_rad = 0.1;
+  std::vector<std::pair<double, Vec3d>> sorted;
+  sorted.reserve(directions.size());
+  for (const Vec3d d : directions) sorted.emplace_back(dot(kAlong, d), d);
+  std::ranges::sort(sorted, {}, [](const std::pair<double, Vec3d>& e) { return e.first; });
+  const std::size_t stride = std::max<std::size_t>(1, sorted.size() / kNeighbourPoints);
+  std::size_t points = 0, along = 0;
+  std::vector<double> ratios, steps_rad;
+  for (std::size_t at = stride / 2; at < sorted.size(); at += stride) {
+    double level = kMax_rad, steep = kMax_rad, other = kMax_rad;  // rad
+    const auto look = [&](std::size_t k) {
+      if (std::fabs(sorted[k].first - sorted[at].first) > std::max(level, steep)) return false;
+      const Vec3d to = sorted[k].second - sorted[at].second;
+      const double distance = length(to), rise = std::fabs(to.z);
+      if (distance <= kSameBeam_rad) return true;
+      double& nearest = rise < kLevel * distance ? level : rise > kSteep * distance ? steep : other;
+      nearest = std::min(nearest, distance);
+      return true;
+    };
+    for (std::size_t k = at + 1; k < sorted.size() && look(k);) ++k;
+    for (std::size_t k = at; k > 0 && look(k - 1);) --k;
+    if (std::min({level, steep, other}) == kMax_rad) continue;
+    ++points;
+    along += level < std::min(steep, other) ? 1 : 0;
+    if (level == kMax_rad) continue;
+    ratios.push_back(steep / level);
+    const Vec3d d = sorted[at].second;
+    steps_rad.push_back(level / std::max(std::hypot(d.x, d.y), 1e-6));
+  }
+  if (ratios.empty()) return;
+  pattern.along = static_cast<double>(along) / static_cast<double>(points);
+  pattern.anisotropy = upper_median_of(ratios);
+  constexpr double kUsual = 0.2;
+  const double usual_rad = upper_median_of(steps_rad);
+  pattern.even =
+      static_cast<double>(std::ranges::count_if(
+          steps_rad,
+          [&](double step) { return std::fabs(step - usual_rad) < kUsual * usual_rad; })) /
+      static_cast<double>(steps_rad.size());
+}
+
+/// RingPattern::uneven.
+double share_uneven(std::span<const Vec3d> points, std::span<const double> elevations_rad) {
+  constexpr std::size_t kSteps = 181, kMinPoints = 20;
+  constexpr double kUneven = 1.1;
+  std::vector<std::vector<double>> ranges_m(kSteps);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ranges_m[static_cast<std::size_t>(elevations_rad[i] / kDegree + 90)].push_back(
+        length(points[i]));
+  std::size_t filled = 0, uneven = 0;
+  for (std::vector<double>& step : ranges_m) {
+    if (step.size() < kMinPoints) continue;
+    ++filled;
+    std::ranges::sort(step);
+    if (step[step.size() * 9 / 10] > kUneven * step[step.size() / 10]) ++uneven;
+  }
+  return filled == 0 ? 0 : static_cast<double>(uneven) / static_cast<double>(filled);
+}
+
 RecordingRings rings_of_lasers(const PointCloud& cloud, std::vector<ScanRings> scans,
                                const ScanRingOptions& options, const Executor& executor) {
   std::vector<std::uint16_t> most(scans.size());
@@ -419,6 +483,21 @@ Vec3d beam_direction(const PointCloud& cloud, std::size_t i) {
       vec_cast<double>(cloud.positions[i]) - vec_cast<double>(cloud.sensor_positions[i]);
   const double range_m = length(beam);
   return range_m > 0 ? beam / range_m : Vec3d{};
+}
+
+RingPattern ring_pattern(std::span<const Vec3d> points) {
+  RingPattern pattern;
+  std::vector<Vec3d> directions;
+  directions.reserve(points.size());
+  for (const Vec3d p : points) directions.push_back(normalized(p));
+  add_neighbours(directions, pattern);
+  const std::vector<double> elevations_rad = elevations_about({0, 0, 1}, directions);
+  pattern.uneven = share_uneven(points, elevations_rad);
+  const std::vector<double> rings_rad = peaks_of(elevations_rad);
+  pattern.rings = rings_rad.size();
+  if (pattern.rings < 2) return pattern;
+  pattern.near = share_near(elevations_rad, rings_rad);
+  return pattern;
 }
 
 RecordingRings find_scan_rings(const PointCloud& cloud, const ScanRingOptions& options,

@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 
@@ -48,6 +50,24 @@ struct RecordingRings {
 /// The direction in which the beam of a point left its sensor, unit, world axes. Zero where the
 /// point is where the sensor is.
 Vec3d beam_direction(const PointCloud& cloud, std::size_t i);
+
+/// How points lie on rings about the z axis, as seen from the origin.
+struct RingPattern {
+  std::size_t rings = 0;  ///< peaks of the histogram of elevations
+  double near = 0;        ///< share of the points near a ring (ScanRingOptions::min_near)
+  /// Share of the elevations, in steps of a degree, whose ranges differ by more than a tenth.
+  double uneven = 0;
+  double along = 0;  ///< share of the points whose nearest neighbour is at about their elevation
+  /// How much farther the nearest neighbour above or below is than the one at the same elevation,
+  /// median.
+  double anisotropy = 0;
+  /// Share of the points whose nearest neighbour at the same elevation is at the usual step of
+  /// azimuth.
+  double even = 0;
+};
+
+/// `points`: finite, none at the origin.
+RingPattern ring_pattern(std::span<const Vec3d> points);
 
 /// Finds the axis that the sensor turned about in every scan and the ring of every point. With
 /// lasers and scan poses these say it (the sensor's z is its axis). Without, from directions alone:

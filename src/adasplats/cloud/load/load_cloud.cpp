@@ -167,7 +167,7 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
 
 /// Rejects a file that is one scan in the sensor frame of a known pose, and reports others.
 void check_frame(const std::filesystem::path& file, const CloudPart& part,
-                 const LoadOptions& options, LoadReport& report, ProgressSink& progress) {
+                 const LoadOptions& options, LoadReport& report) {
   if (options.viewpoint || !part.world_sensors.empty()) return;
   const std::optional<std::filesystem::path> drive = drive_with_scan(file);
   if (!drive && !part.sensor_frame) return;
@@ -185,7 +185,29 @@ void check_frame(const std::filesystem::path& file, const CloudPart& part,
     throw Error(ErrorKind::data, what + ", at the pose in its VIEWPOINT; " +
                                      advice_for_scans(file, "POSES.csv") +
                                      ", with the pose in POSES.csv (time,x,y,z,qw,qx,qy,qz)");
-  progress.warn(what + " of unknown pose; the sensor frame is used as the world");
+}
+
+/// check_frame() of all files. Points alone show a scan only if all files look like one: files in
+/// world coordinates may begin near the origin. Scans of unknown poses are one warning.
+void check_frames(std::span<const OpenInput> sources, std::vector<CloudPart>& parts,
+                  const LoadOptions& options, LoadReport& report, ProgressSink& progress) {
+  const bool all_scans = std::ranges::all_of(
+      parts, [](const CloudPart& part) { return !part.is_sequence && part.sensor_frame; });
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (parts[p].is_sequence) continue;
+    if (parts[p].sensor_frame && parts[p].sensor_frame->by_points && !all_scans)
+      parts[p].sensor_frame.reset();
+    check_frame(sources[p].input.path, parts[p], options, report);
+  }
+  if (options.accept_sensor_frame || report.sensor_frames.empty()) return;
+  const auto& [file, because] = report.sensor_frames.front();
+  const std::size_t scans = report.sensor_frames.size();
+  progress.warn(file.string() + ": is one scan in the sensor frame (" + because +
+                ") of unknown pose; the sensor frame is used as the world" +
+                (scans == 1 ? ""
+                            : ", also for " + std::to_string(scans - 1) +
+                                  " more scans, as if the sensor stood still") +
+                "; " + advice_for_scans(scans == 1 ? file : file.parent_path(), "POSES.csv"));
 }
 
 /// Measures the parts of loading.
@@ -523,9 +545,7 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
     none.crs = std::move(crs);
     return {std::move(none), std::move(report)};
   }
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    if (!parts[p].is_sequence)
-      check_frame(sources[p].input.path, parts[p], options, report, progress);
+  check_frames(sources, parts, options, report, progress);
   Gathered gathered{std::move(parts)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);

@@ -132,9 +132,18 @@ FrameVerdict frame_of_single(const SensorFrames& frames, const Executor& executo
   ProgressSink silent;
   const CloudPart part = read_file_part(frames.files.front(), {}, silent);
   if (!part.world_sensors.empty()) return {PointsIn::world, "it has sensor positions"};
-  if (part.sensor_frame) return {PointsIn::sensor, part.sensor_frame->because};
-  if (frames.poses.by_order) return {PointsIn::found, "a single pose is no evidence"};
-  return find_frame(frames, executor);
+  const bool looks_like_scan = part.sensor_frame && part.sensor_frame->by_points;
+  if (part.sensor_frame && !looks_like_scan) return {PointsIn::sensor, part.sensor_frame->because};
+  FrameVerdict verdict{PointsIn::found, "a single pose is no evidence"};
+  if (!frames.poses.by_order) verdict = find_frame(frames, executor);
+  if (verdict.points_in != PointsIn::found || !looks_like_scan) return verdict;
+  // World points measured from near the origin look like a scan from there, too.
+  const RigidTransform& pose = frames.poses.of_scans.front().world_from_sensor;
+  std::vector<Vec3d> from_pose = part.world_positions;
+  for (Vec3d& p : from_pose) p = pose.inverse() * p;
+  constexpr double kSame_m = 0.05;
+  if (length(pose.translation) > kSame_m && scan_pattern_of(from_pose, executor)) return verdict;
+  return {PointsIn::sensor, part.sensor_frame->because};
 }
 
 /// Opens files with points in world coordinates.

@@ -309,6 +309,13 @@ DeclaredClock declared_clock_of(const PointFile& file) {
   return is_adjusted ? DeclaredClock::adjusted_gps : DeclaredClock::gps_week;
 }
 
+/// Whether a file may be in the frame of a sensor without saying so: E57 and PTX have a pose per
+/// scan, and files with a coordinate system are in it.
+bool can_lack_pose(const std::filesystem::path& path, const Table& table) {
+  const std::string extension = lower_case(path.extension().string());
+  return extension != ".e57" && extension != ".ptx" && table.crs.empty();
+}
+
 }  // namespace
 
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
@@ -319,6 +326,13 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
   CloudPart part = part_of_table(path, table, options, progress);
   if (part.world_sensors.empty())
     part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
+  const bool is_single = part.world_sensors.empty() && !part.sensor_frame;
+  if (is_single && options.selection.is_all() && can_lack_pose(path, table)) {
+    const Executor own(1);
+    part.sensor_frame =
+        scan_pattern_of(part.world_positions, executor != nullptr ? *executor : own);
+    if (part.sensor_frame) part.sensor_frame->has_pose = has_viewpoint(table);
+  }
   return part;
 }
 

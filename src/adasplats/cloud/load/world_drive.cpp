@@ -251,7 +251,17 @@ void check_clock(const DriveInput& drive, const Overview& overview, const Trajec
     if (!drive.time_offset_s) throw Error(ErrorKind::data, drive.folder.string() + text.data());
     progress.warn(drive.folder.string() + text.data());
   }
-  if (resolved_s == 0)
+  double reach_m = 0;
+  for (const TimedPose& pose : vehicle)
+    reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
+                                       vehicle.front().world_from_sensor.translation));
+  constexpr double kStands_m = 0.5;
+  if (resolved_s == 0 && reach_m < kStands_m)
+    std::snprintf(text.data(), text.size(),
+                  "cannot check that points and poses share a clock: the vehicle stands (its poses "
+                  "span %.2f m)",
+                  reach_m);
+  else if (resolved_s == 0)
     std::snprintf(text.data(), text.size(),
                   "cannot check that points and poses share a clock: the vehicle drives too evenly "
                   "to distinguish a shift of the clock from one of the mount");

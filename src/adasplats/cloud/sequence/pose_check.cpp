@@ -308,12 +308,88 @@ void require_times_of_scans(const KittiSequence& sequence) {
   throw Error(ErrorKind::data, sequence.folder.string() + text.data());
 }
 
+/// A way in which axes of poses are commonly confused.
+struct WrongAxes {
+  const char* how;  ///< for throw_contradiction()
+  Mat3d right_from_given;
+  bool turns_rotations;  ///< else only the translations are wrong
+};
+
+/// Mirrors and exchanged axes. Mirrored rotations are M R M, which are rotations again.
+constexpr std::array kWrongAxes = {
+    WrongAxes{"with the y of their translations negated (is their y axis to the right?)",
+              {{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}},
+              false},
+    WrongAxes{
+        "with the x of their translations negated", {{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, false},
+    WrongAxes{"with x and y of their translations exchanged (are they north and east?)",
+              {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}},
+              false},
+    WrongAxes{"with y and yaw negated (are they in a left-handed system?)",
+              {{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}},
+              true}};
+
+/// Throws data if the scans align clearly better with other axes of the poses than as given, and
+/// as well as in any way of weigh_poses().
+void require_axes(const KittiSequence& given, const PoseEvidence& as_given,
+                  const Executor& executor) {
+  for (const WrongAxes& axes : kWrongAxes) {
+    KittiSequence other = given;
+    const Mat3d& m = axes.right_from_given;
+    for (TimedPose& pose : other.trajectory) {
+      RigidTransform& at = pose.world_from_sensor;
+      at.translation = m * at.translation;
+      if (axes.turns_rotations) at.rotation = m * at.rotation * m;
+    }
+    const PoseEvidence evidence = weigh_poses(other, executor);
+    if (evidence.confirms() && evidence.share(0) >= kMinGain * as_given.share(0) &&
+        evidence.share(0) >= as_given.share(as_given.best_other()))
+      throw_contradiction(given, as_given.points, as_given.pairs, as_given.met[0],
+                          static_cast<std::size_t>(std::lround(
+                              evidence.share(0) * static_cast<double>(as_given.points))),
+                          axes.how);
+  }
+}
+
+/// Why poses that stand still are not those of the scans: by them the scans at the ends do not
+/// align, at least not as well as neighbouring ones. Empty if the sensor may have stood.
+std::string standing_text(const KittiSequence& sequence, double reach_m, const Executor& executor) {
+  constexpr double kMinOfNeighbours = 0.8, kMaxOfEnds = 0.75, kNone = 0.5;
+  const std::size_t last = sequence.trajectory.size() - 1;
+  const auto share_of = [&](std::array<ScanNumbers, 2> pairs) {
+    PoseEvidence sum;
+    for (const ScanNumbers& pair : pairs) {
+      const PoseEvidence one = pose_evidence(sequence, pair, executor);
+      sum.points += one.points;
+      sum.met[0] += one.met[0];
+    }
+    return sum.share(0);
+  };
+  const double neighbours = share_of({{{0, 1}, {last - 1, last}}});
+  const double ends = share_of({{{0, last}, {last / 2, last}}});
+  const bool has_moved = ends < kNone || (ends < kMaxOfEnds && neighbours > kMinOfNeighbours);
+  if (ends == 0 || !has_moved) return {};  // 0: too few upright objects
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(),
+                "the poses span only %.2f m, but the sensor moved: of points on upright objects "
+                "%.0f %% align between neighbouring scans, %.0f %% with the last scan; these are "
+                "not the poses of the scans",
+                reach_m, 100 * neighbours, 100 * ends);
+  return text.data();
+}
+
 /// In one line: why the unit of the poses was not checked.
-std::string unchecked_text(const KittiSequence& sequence, const PoseEvidence& evidence) {
+std::string unchecked_text(const KittiSequence& sequence, const PoseEvidence& evidence,
+                           const Executor& executor) {
   double reach_m = 0;
   for (const TimedPose& pose : sequence.trajectory)
     reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
                                        sequence.trajectory.front().world_from_sensor.translation));
+  constexpr std::size_t kMinScans = 4;  // for neighbours and ends
+  if (reach_m < kMinApart_m && sequence.trajectory.size() >= kMinScans) {
+    std::string moved = standing_text(sequence, reach_m, executor);
+    if (!moved.empty()) return moved;
+  }
   if (sequence.trajectory.size() < 2 || reach_m == 0) return {};
   std::array<char, 300> text{};
   if (reach_m < kMinApart_m)
@@ -409,6 +485,7 @@ std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Exe
 std::string verify_poses(const KittiSequence& sequence, const Executor& executor) {
   require_times_of_scans(sequence);
   const PoseEvidence evidence = weigh_poses(sequence, executor);
+  if (evidence.points != 0 && !evidence.confirms()) require_axes(sequence, evidence, executor);
   if (evidence.contradicts()) {
     const std::size_t other = evidence.best_other();
     throw_contradiction(sequence, evidence.points, evidence.pairs, evidence.met[0],
@@ -421,7 +498,7 @@ std::string verify_poses(const KittiSequence& sequence, const Executor& executor
           sequence, scale.points, scale.pairs, scale.met_given, scale.met,
           "with their translations times " + factor_text(scale.factor) + " (are they in metres?)");
   }
-  return unchecked_text(sequence, evidence);
+  return unchecked_text(sequence, evidence, executor);
 }
 
 }  // namespace adasplats

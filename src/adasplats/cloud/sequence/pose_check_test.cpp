@@ -93,6 +93,42 @@ TEST(PoseCheck, FaultsAreNamedWithFigures) {
   reject(kHonest, "in world coordinates already", true);
 }
 
+TEST(PoseCheck, MirroredTranslationsAreNamed) {
+  const TemporaryFolder folder;
+  // Along a diagonal, where a mirrored way is another one.
+  const Mat3d turn = rotation_from_yaw_pitch_roll(0.3, 0, 0);
+  const auto reject = [&](const Way& mirrored, const std::string& what) {
+    KittiSequence wrong = drive(folder, street(), 12, kHonest);
+    for (TimedPose& pose : wrong.trajectory) {
+      const RigidTransform turned = RigidTransform{turn, {}} * pose.world_from_sensor;
+      pose.world_from_sensor = mirrored(turned);
+    }
+    expect_error(ErrorKind::data, {folder.path().string(), "contradict", what},
+                 [&] { verify_poses(wrong, Executor(2)); });
+  };
+  reject(
+      [](const RigidTransform& p) {
+        const Vec3d t = p.translation;
+        return RigidTransform{p.rotation, {t.x, -t.y, t.z}};
+      },
+      "y of their translations negated");
+  reject(
+      [](const RigidTransform& p) {
+        const Vec3d t = p.translation;
+        return RigidTransform{p.rotation, {t.y, t.x, t.z}};
+      },
+      "x and y of their translations exchanged");
+}
+
+TEST(PoseCheck, PosesThatStandWhileTheScansMoveAreReported) {
+  const TemporaryFolder folder;
+  const auto stands = [](const RigidTransform&) { return RigidTransform{}; };
+  KittiSequence wrong = drive(folder, street(), 12, stands, 0.4);
+  EXPECT_NE(verify_poses(wrong, Executor(2)).find("the sensor moved"), std::string::npos);
+  const KittiSequence right = drive(folder, street(), 12, kHonest, 0);
+  EXPECT_EQ(verify_poses(right, Executor(2)).find("the sensor moved"), std::string::npos);
+}
+
 Way scaled_by(double factor) {
   return [factor](const RigidTransform& pose) {
     return RigidTransform{pose.rotation, factor * pose.translation};

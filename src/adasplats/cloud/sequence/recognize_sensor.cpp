@@ -28,6 +28,13 @@ std::vector<Vec3d> usable_points(std::span<const Vec3d> points) {
   return kept;
 }
 
+std::vector<ConeTable> usable_tables(std::span<const SensorCones> candidates) {
+  std::vector<ConeTable> tables;
+  for (const SensorCones& cones : candidates)
+    if (cones.cones.size() >= kFewestCones) tables.emplace_back(cones);
+  return tables;
+}
+
 /// Whether a table and a mount may be those of the points, however near these are to the cones.
 bool is_plausible(const ConeFit& fit) {
   const Vec3d origin = fit.mount.translation;
@@ -95,9 +102,7 @@ std::optional<Recognition> recognize_sensor(std::span<const Vec3d> points,
                                             const Executor& executor) {
   const std::vector<Vec3d> good = usable_points(points);
   if (good.size() < kFewestPoints) return std::nullopt;
-  std::vector<ConeTable> tables;
-  for (const SensorCones& cones : candidates)
-    if (cones.cones.size() >= kFewestCones) tables.emplace_back(cones);
+  const std::vector<ConeTable> tables = usable_tables(candidates);
   // Points in the sensor's own frame need no search.
   const std::vector<ConeFit> here = fits_near(good, tables, {}, executor);
   if (const auto best = best_of(here)) return unrivalled(tables, here, *best);
@@ -108,6 +113,17 @@ std::optional<Recognition> recognize_sensor(std::span<const Vec3d> points,
     if (const auto best = best_of(there)) return unrivalled(tables, there, *best);
   }
   return std::nullopt;
+}
+
+std::optional<Recognition> recognize_in_place(std::span<const Vec3d> points,
+                                              std::span<const SensorCones> candidates,
+                                              const Executor& executor) {
+  const std::vector<Vec3d> good = usable_points(points);
+  if (good.size() < kFewestPoints) return std::nullopt;
+  const std::vector<ConeTable> tables = usable_tables(candidates);
+  const std::vector<ConeFit> fits = fits_near(good, tables, {}, executor);
+  const auto best = best_of(fits);
+  return best ? unrivalled(tables, fits, *best) : std::nullopt;
 }
 
 double residual_near(std::span<const Vec3d> points, const SensorCones& sensor,

@@ -34,6 +34,11 @@ std::optional<Recognition> recognize_sensor(std::span<const Vec3d> points,
                                             std::span<const SensorCones> candidates,
                                             const Executor& executor);
 
+/// The same for points in the sensor's own frame, without a search for the mount.
+std::optional<Recognition> recognize_in_place(std::span<const Vec3d> points,
+                                              std::span<const SensorCones> candidates,
+                                              const Executor& executor);
+
 /// How near points lie to the cones of one sensor about the best of the mounts near a given one,
 /// without a search: the mean angle, rad (each at most half a degree). `points` as recognize_sensor
 /// takes them; 0 where fewer than a sensor is recognised by.

@@ -3,7 +3,9 @@
 #include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -104,6 +106,68 @@ void write_beam_picture(const ResimulateJob& job, const ScanErrors& scan, Sessio
   session.progress.end_step();
 }
 
+/// "x 1.0 to 2.0, y 3.0 to 4.0".
+std::string extent_text(Vec3d low, Vec3d high) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), "x %.1f to %.1f, y %.1f to %.1f", low.x, high.x, low.y,
+                high.y);
+  return text.data();
+}
+
+/// Where the scans of a sequence were measured from and where the model is.
+struct Places {
+  Vec3d low, high;                    ///< of the poses
+  std::pair<Vec3d, Vec3d> model_box;  ///< of the middle 98 %
+
+  Places(const ModelScene& scene, const KittiSequence& sequence) : model_box(scene.middle_box()) {
+    low = high = sequence.trajectory.front().world_from_sensor.translation;
+    for (const TimedPose& pose : sequence.trajectory) {
+      low = min(low, pose.world_from_sensor.translation);
+      high = max(high, pose.world_from_sensor.translation);
+    }
+  }
+
+  /// Horizontal distance between the two, m.
+  double apart_m() const {
+    const Vec3d gap = max(max(low - model_box.second, model_box.first - high), Vec3d{});
+    return std::hypot(gap.x, gap.y);
+  }
+
+  std::string text() const {
+    return "the sensor was at " + extent_text(low, high) + ", most of the model is at " +
+           extent_text(model_box.first, model_box.second);
+  }
+};
+
+constexpr const char* kOtherPlace =
+    "; check that model and scans are of one place and in one coordinate system";
+
+/// Throws data if the scans were measured out of reach of the model.
+void require_same_place(const ModelScene& scene, const KittiSequence& sequence) {
+  constexpr double kReach_m = 250;
+  if (sequence.trajectory.empty()) return;
+  const Places places(scene, sequence);
+  if (places.apart_m() > kReach_m)
+    throw Error(ErrorKind::data, sequence.folder.string() + ": its scans are out of reach of the " +
+                                     "model: " + places.text() + kOtherPlace);
+}
+
+/// Warns if most beams disagree with the model.
+void warn_of_other_place(const ModelScene& scene, const KittiSequence& sequence,
+                         const BeamAccuracy& all, ProgressSink& progress) {
+  constexpr double kMaxNoHit = 0.5, kMinWithin = 0.4, kBound_m = 0.50;
+  const auto within = all.within.find(kBound_m);
+  if (all.rays == 0 || within == all.within.end()) return;
+  if (all.no_hit <= kMaxNoHit && within->second >= kMinWithin) return;
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(),
+                ": the model does not explain its beams: %.0f %% hit nothing, %.0f %% end within "
+                "50 cm of the measured point; ",
+                100 * all.no_hit, 100 * within->second);
+  progress.warn(sequence.folder.string() + text.data() + Places(scene, sequence).text() +
+                kOtherPlace);
+}
+
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
@@ -175,11 +239,13 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
     return resimulate(scene.tracer(), scene.view(), scene.origin(), scans, scheme, options,
                       session.executor, session.progress, keep);
   };
+  require_same_place(scene, sequence);
   HeldOutResult result;
   if (extras.all_poses) result.with_given = cast(sequence);
   const std::optional<std::size_t> of_model = scans_of_model(scene, sequence);
   result.poses = calibrate_held_out(scene, sequence, session.progress);
   static_cast<ResimulateResult&>(result) = cast(sequence, extras.keep);
+  warn_of_other_place(scene, sequence, result.all, session.progress);
   result.empty = cast_empty_beams(scene.tracer(), scene.origin(), sequence, session.executor);
   result.returns = beam_returns(result.all, result.empty);
   result.upward_returns = beam_returns(result.upward, result.empty);

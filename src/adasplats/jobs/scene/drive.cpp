@@ -111,12 +111,13 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   PathDrive path_drive;
   path_drive.height_m = drive.height_m.value_or(kRoofHeight_m);
   if (!drive.at.empty())
-    return scans_at(drive, sensor, poses_at(scene, drive.at, path_drive.height_m, executor), {},
+    return scans_at(drive, sensor,
+                    poses_at(scene, drive.at, path_drive.height_m, executor, progress), {},
                     progress);
   path_drive.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
   path_drive.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
   path_drive.spacing_m = drive.spacing_m;
-  const Trajectory poses = poses_on_path(scene, drive.path, path_drive, executor);
+  const Trajectory poses = poses_on_path(scene, drive.path, path_drive, executor, progress);
   return scans_at(drive, sensor, poses, poses, progress);
 }
 

@@ -18,12 +18,14 @@ namespace adasplats {
 namespace {
 
 constexpr double kPeriod_s = 0.1;  // as in read_trajectory for poses without times
-constexpr std::array<double, 4> kGroundRadii_m = {0.5, 1, 2, 4};
+constexpr std::array<double, 6> kGroundRadii_m = {0.5, 1, 2, 4, 8, 16};
+constexpr double kHoleOfDrive_m = 4;   // larger holes are where the vehicle stood
 constexpr int kGridSteps = 3;          // of rays from the middle to the radius: 29 in all
 constexpr int kGroundHits = 32;        // of a ray, from below: roofs are farther up
 constexpr double kBeyondModel_m = 50;  // above and below the model's middle 98 %
 constexpr float kMinLevel = 0.7F;      // z of a unit normal: 45 degrees
-constexpr double kMinShareOfRays = 0.4;
+constexpr double kMinShareOfRays = 0.4, kMinShareAroundHole = 0.2;
+constexpr double kNear_m = 1;  // ground farther away is reported
 constexpr double kMaxPoses = 1e7;
 
 /// Whether a primitive is as level as ground can be.
@@ -42,6 +44,7 @@ bool is_level(const SceneView& view, std::uint32_t primitive) {
 struct LevelHit {
   double z_m;  ///< world
   std::size_t ray;
+  double distance_m;  ///< horizontal
 };
 
 /// Casts rays upwards from below the model, within `radius_m` of a position; returns their number.
@@ -49,14 +52,17 @@ std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double
                          const std::pair<Vec3d, Vec3d>& box, const Executor& executor,
                          std::vector<LevelHit>& found) {
   std::vector<Ray> rays;
+  std::vector<double> distances_m;
+  const int steps = radius_m > kHoleOfDrive_m ? 3 * kGridSteps : kGridSteps;
   const double from_z = box.first.z - kBeyondModel_m;
   const auto reach = static_cast<float>(box.second.z + kBeyondModel_m - from_z);
-  for (int i = -kGridSteps; i <= kGridSteps; ++i) {
-    for (int j = -kGridSteps; j <= kGridSteps; ++j) {
-      if (i * i + j * j > kGridSteps * kGridSteps) continue;
-      const double step_m = radius_m / kGridSteps;
+  for (int i = -steps; i <= steps; ++i) {
+    for (int j = -steps; j <= steps; ++j) {
+      if (i * i + j * j > steps * steps) continue;
+      const double step_m = radius_m / steps;
       const Vec3d from = Vec3d{x_m + i * step_m, y_m + j * step_m, from_z} - scene.origin();
       rays.push_back({vec_cast<float>(from), 0, {0, 0, 1}, reach});
+      distances_m.push_back(std::hypot(i * step_m, j * step_m));
     }
   }
   std::vector<Hit> hits(rays.size() * kGroundHits);
@@ -65,25 +71,26 @@ std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const Hit& hit = hits[k];
     if (!hit.valid() || !is_level(view, hit.primitive)) continue;
-    found.push_back({from_z + static_cast<double>(hit.t), k / kGroundHits});
+    const std::size_t ray = k / kGroundHits;
+    found.push_back({from_z + static_cast<double>(hit.t), ray, distances_m[ray]});
   }
   return rays.size();
 }
 
-/// The median height of the lowest layer, `thickness_m` thick, that enough rays hit. A ray counts
-/// once.
-std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t min_rays,
+/// The hits of the lowest layer, `thickness_m` thick, that enough rays hit, one of a ray; empty:
+/// none.
+std::vector<LevelHit> lowest_layer(std::vector<LevelHit> hits, std::size_t min_rays,
                                    double thickness_m) {
   std::ranges::sort(hits, {}, &LevelHit::z_m);
   for (std::size_t begin = 0; begin < hits.size(); ++begin) {
     std::set<std::size_t> rays;
-    std::vector<double> heights;
+    std::vector<LevelHit> layer;
     for (std::size_t k = begin; k < hits.size() && hits[k].z_m <= hits[begin].z_m + thickness_m;
          ++k)
-      if (rays.insert(hits[k].ray).second) heights.push_back(hits[k].z_m);
-    if (rays.size() >= min_rays) return heights[heights.size() / 2];
+      if (rays.insert(hits[k].ray).second) layer.push_back(hits[k]);
+    if (rays.size() >= min_rays) return layer;
   }
-  return std::nullopt;
+  return {};
 }
 
 /// "12.50,-3.00".
@@ -93,15 +100,54 @@ std::string xy_text(double x_m, double y_m) {
   return text.data();
 }
 
-double required_ground(const ModelScene& scene, double x_m, double y_m, const Executor& executor) {
-  if (const std::optional<double> z_m = ground_height(scene, x_m, y_m, executor)) return *z_m;
-  const auto [low, high] = scene.middle_box();
-  throw Error(ErrorKind::data,
-              "no ground at " + xy_text(x_m, y_m) + ": within " +
-                  std::to_string(static_cast<int>(kGroundRadii_m.back())) +
-                  " m the model has no level surface; most of the model is between " +
-                  xy_text(low.x, low.y) + " and " + xy_text(high.x, high.y));
-}
+/// Heights of the ground below positions, and the positions whose ground is not near.
+class GroundHeights {
+ public:
+  GroundHeights(const ModelScene& scene, const Executor& executor)
+      : scene_(scene), executor_(executor) {}
+
+  /// Errors: data (no ground).
+  double at(double x_m, double y_m) {
+    const std::optional<Ground> ground = find_ground(scene_, x_m, y_m, executor_);
+    if (!ground) throw_none(x_m, y_m);
+    if (ground->distance_m > kNear_m && ground->distance_m > farthest_.distance_m) {
+      farthest_ = *ground;
+      where_ = xy_text(x_m, y_m);
+    }
+    far_ += ground->distance_m > kNear_m ? 1 : 0;
+    return ground->z_m;
+  }
+
+  /// Warns once about ground that is not near.
+  void report(ProgressSink& progress) const {
+    if (far_ == 0) return;
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(),
+                  ": the model has no ground within %.0f m (a hole below the recording vehicle?); "
+                  "the height %.2f m is from the ground around, %.1f m away",
+                  kNear_m, farthest_.z_m, farthest_.distance_m);
+    progress.warn("at " + where_ +
+                  (far_ == 1 ? "" : " and " + std::to_string(far_ - 1) + " more positions") +
+                  text.data());
+  }
+
+ private:
+  [[noreturn]] void throw_none(double x_m, double y_m) const {
+    const auto [low, high] = scene_.middle_box();
+    throw Error(ErrorKind::data,
+                "no ground at " + xy_text(x_m, y_m) + ": within " +
+                    std::to_string(static_cast<int>(kGroundRadii_m.back())) +
+                    " m the model has no level surface; most of the model is between " +
+                    xy_text(low.x, low.y) + " and " + xy_text(high.x, high.y) +
+                    "; give the height of the sensor, X,Y,Z");
+  }
+
+  const ModelScene& scene_;
+  const Executor& executor_;
+  Ground farthest_{0, 0};
+  std::string where_;
+  std::size_t far_ = 0;
+};
 
 RigidTransform level_pose(double yaw_rad, Vec3d position) {
   return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), position};
@@ -153,36 +199,46 @@ class PathLine {
 
 }  // namespace
 
-std::optional<double> ground_height(const ModelScene& scene, double x_m, double y_m,
-                                    const Executor& executor) {
+std::optional<Ground> find_ground(const ModelScene& scene, double x_m, double y_m,
+                                  const Executor& executor) {
   const std::pair<Vec3d, Vec3d> box = scene.middle_box();
   for (const double radius_m : kGroundRadii_m) {
     std::vector<LevelHit> hits;
     const std::size_t rays = cast_upwards(scene, x_m, y_m, radius_m, box, executor, hits);
-    const auto min_rays =
-        static_cast<std::size_t>(std::ceil(kMinShareOfRays * static_cast<double>(rays)));
+    const bool is_around_hole = radius_m > kHoleOfDrive_m;
+    const double share = is_around_hole ? kMinShareAroundHole : kMinShareOfRays;
+    const auto min_rays = static_cast<std::size_t>(std::ceil(share * static_cast<double>(rays)));
     // Streets rise by up to a fifth of the way.
     const double thickness_m = 0.2 + 2 * 0.2 * radius_m;
-    if (const auto z_m = lowest_level(std::move(hits), min_rays, thickness_m)) return z_m;
+    std::vector<LevelHit> layer = lowest_layer(std::move(hits), min_rays, thickness_m);
+    if (layer.empty()) continue;
+    const double distance_m = std::ranges::min(layer, {}, &LevelHit::distance_m).distance_m;
+    if (is_around_hole) {
+      std::ranges::stable_sort(layer, {}, &LevelHit::distance_m);
+      layer.resize((layer.size() + 2) / 3);
+      std::ranges::sort(layer, {}, &LevelHit::z_m);
+    }
+    return Ground{layer[layer.size() / 2].z_m, distance_m};
   }
   return std::nullopt;
 }
 
 Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> positions,
-                    double height_m, const Executor& executor) {
+                    double height_m, const Executor& executor, ProgressSink& progress) {
   Trajectory trajectory;
+  GroundHeights ground(scene, executor);
   for (const SensorPlace& at : positions) {
-    const double z_m =
-        at.z_m ? *at.z_m : required_ground(scene, at.x_m, at.y_m, executor) + height_m;
+    const double z_m = at.z_m ? *at.z_m : ground.at(at.x_m, at.y_m) + height_m;
     const double time_s = kPeriod_s * static_cast<double>(trajectory.size());
     trajectory.push_back(
         {time_s, level_pose(at.yaw_deg * std::numbers::pi / 180, {at.x_m, at.y_m, z_m})});
   }
+  ground.report(progress);
   return trajectory;
 }
 
 Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> corners,
-                         const PathDrive& drive, const Executor& executor) {
+                         const PathDrive& drive, const Executor& executor, ProgressSink& progress) {
   const PathLine line(corners);
   const double step_m = drive.spacing_m ? *drive.spacing_m : drive.speed_mps / drive.rate_hz;
   // Rounding must not lose a pose at the last corner.
@@ -190,15 +246,17 @@ Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> co
   if (!(steps < kMaxPoses))
     throw Error(ErrorKind::usage, "`path` would have more than ten million poses");
   Trajectory trajectory;
+  GroundHeights ground(scene, executor);
   for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {
     executor.check_interruption();
     const double way_m = static_cast<double>(k) * step_m;
     const PathCorner at = line.at(way_m);
-    const double ground_m = required_ground(scene, at.x_m, at.y_m, executor);
+    const double ground_m = ground.at(at.x_m, at.y_m);
     trajectory.push_back(
         {way_m / drive.speed_mps,
          level_pose(line.yaw_rad(way_m), {at.x_m, at.y_m, ground_m + drive.height_m})});
   }
+  ground.report(progress);
   return trajectory;
 }
 

@@ -43,21 +43,28 @@ struct PathDrive {
   std::optional<double> spacing_m;    ///< poses so far apart instead; more than 0
 };
 
-/// World height of the ground below or above a position, m: the lowest level surface that enough
-/// rays from below hit, within half a metre of the position or else up to 4 m (models have holes
-/// below the recording vehicle); the median of the hits. In a building it is the lowest storey, on
-/// a bridge the ground below. Nothing if there is no such surface.
-std::optional<double> ground_height(const ModelScene& scene, double x_m, double y_m,
-                                    const Executor& executor);
+/// The ground below or above a position.
+struct Ground {
+  double z_m;         ///< world
+  double distance_m;  ///< horizontal, to the nearest hit
+};
 
-/// A level pose at each position, 0.1 s apart. Errors: data (no ground at a position without z).
+/// The lowest level surface that enough rays from below hit, within half a metre of the position or
+/// else up to 16 m (models have holes below the recording vehicle, larger where it stood); the
+/// median height of the hits, beyond 4 m of the nearest third of them. In a building it is the
+/// lowest storey, on a bridge the ground below. Nothing if there is no such surface.
+std::optional<Ground> find_ground(const ModelScene& scene, double x_m, double y_m,
+                                  const Executor& executor);
+
+/// A level pose at each position, 0.1 s apart. Warns if the model has no ground within 1 m of
+/// positions. Errors: data (no ground at a position without z).
 Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> positions,
-                    double height_m, const Executor& executor);
+                    double height_m, const Executor& executor, ProgressSink& progress);
 
 /// Level poses along a polyline from its first corner, with the x axis along the path (turning
-/// within a metre of a corner). Errors: usage (fewer than two different corners, more than ten
-/// million poses), data (no ground).
+/// within a metre of a corner). Warns as poses_at(). Errors: usage (fewer than two different
+/// corners, more than ten million poses), data (no ground).
 Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> corners,
-                         const PathDrive& drive, const Executor& executor);
+                         const PathDrive& drive, const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

@@ -48,25 +48,26 @@ class PlacedPoses : public testing::Test {
   OwnSession session_{on_cpu(), 2};
   ModelScene scene_{street(), std::nullopt, session_};
   const Executor& executor_ = session_.executor;
+  ProgressSink progress_;
 };
 
 // Oracle: the plane that the street is.
 TEST_F(PlacedPoses, GroundIsTheLowestLevelThatManyRaysMeet) {
   for (const double x : {-15.0, -3.0, 0.0, 5.0, 15.0}) {
-    const auto z = ground_height(scene_, kOrigin.x + x, kOrigin.y, executor_);
-    ASSERT_TRUE(z) << x;
-    EXPECT_NEAR(*z - kOrigin.z, 0.1 * x, 0.12) << x;
+    const auto ground = find_ground(scene_, kOrigin.x + x, kOrigin.y, executor_);
+    ASSERT_TRUE(ground) << x;
+    EXPECT_NEAR(ground->z_m - kOrigin.z, 0.1 * x, 0.12) << x;
   }
-  EXPECT_NEAR(*ground_height(scene_, kOrigin.x - 3, kOrigin.y + 3, executor_), kOrigin.z - 0.3,
+  EXPECT_NEAR(find_ground(scene_, kOrigin.x - 3, kOrigin.y + 3, executor_)->z_m, kOrigin.z - 0.3,
               0.03);
-  EXPECT_FALSE(ground_height(scene_, kOrigin.x + 40, kOrigin.y, executor_));
-  EXPECT_FALSE(ground_height(scene_, 0, 0, executor_));
+  EXPECT_FALSE(find_ground(scene_, kOrigin.x + 40, kOrigin.y, executor_));
+  EXPECT_FALSE(find_ground(scene_, 0, 0, executor_));
 }
 
 TEST_F(PlacedPoses, PlacesStandAboveTheGroundOrWhereTheySay) {
   const std::vector<SensorPlace> places = {{kOrigin.x - 5, kOrigin.y + 2, {}, 90},
                                            {kOrigin.x + 90, kOrigin.y, 300.25, 0}};
-  const Trajectory poses = poses_at(scene_, places, 2, executor_);
+  const Trajectory poses = poses_at(scene_, places, 2, executor_, progress_);
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_NEAR(poses[0].world_from_sensor.translation.z, kOrigin.z - 0.5 + 2, 0.05);
   EXPECT_NEAR(poses[0].world_from_sensor.rotation.rows[1].x, 1, 1e-12);
@@ -74,7 +75,30 @@ TEST_F(PlacedPoses, PlacesStandAboveTheGroundOrWhereTheySay) {
   EXPECT_EQ(poses[1].time_s, 0.1);
   const SensorPlace outside{kOrigin.x + 90.5, kOrigin.y, {}, 0};
   expect_error(ErrorKind::data, {"no ground at 448352.50,5411932.00"},
-               [&] { poses_at(scene_, std::span(&outside, 1), 2, executor_); });
+               [&] { poses_at(scene_, std::span(&outside, 1), 2, executor_, progress_); });
+}
+
+/// As a standing vehicle leaves it: no ground within 6 m.
+TEST(PlacedPosesInHole, HeightIsOfTheGroundAround) {
+  SplatModel model;
+  for (int i = -80; i < 80; ++i)
+    for (int k = -60; k < 60; ++k) {
+      const float x = 0.25F * static_cast<float>(i), y = 0.25F * static_cast<float>(k);
+      if (std::hypot(x, y) > 6) model.disks.push_back({{x, y, -1.7F}, 0.25F, {0, 0, 1}});
+    }
+  class Warnings : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { text += message; }
+    std::string text;
+  } warnings;
+  OwnSession session(on_cpu(), 2);
+  const ModelScene scene(std::move(model), std::nullopt, session);
+  const SensorPlace place{0, 0, {}, 0};
+  const Trajectory poses = poses_at(scene, std::span(&place, 1), 2, session.executor, warnings);
+  EXPECT_NEAR(poses.front().world_from_sensor.translation.z, 0.3, 1e-3);
+  EXPECT_NE(warnings.text.find("at 0.00,0.00: the model has no ground within 1 m"),
+            std::string::npos)
+      << warnings.text;
 }
 
 // Oracle: the corners, the way and the speed by hand.
@@ -85,7 +109,7 @@ TEST_F(PlacedPoses, PathsAreDrivenAtASpeed) {
                                            {kOrigin.x - 2, kOrigin.y + 4}};
   PathDrive drive;
   drive.speed_mps = 5;
-  const Trajectory poses = poses_on_path(scene_, corners, drive, executor_);
+  const Trajectory poses = poses_on_path(scene_, corners, drive, executor_, progress_);
   ASSERT_EQ(poses.size(), 33U);  // 16 m, a pose every half metre
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double way = 0.5 * static_cast<double>(k);
@@ -105,12 +129,13 @@ TEST_F(PlacedPoses, PathsAreDrivenAtASpeed) {
     }
   }
   drive.spacing_m = 4;
-  EXPECT_EQ(poses_on_path(scene_, corners, drive, executor_).size(), 5U);
+  EXPECT_EQ(poses_on_path(scene_, corners, drive, executor_, progress_).size(), 5U);
   drive.spacing_m = 1e-7;
   expect_error(ErrorKind::usage, {"path", "ten million"},
-               [&] { poses_on_path(scene_, corners, drive, executor_); });
-  expect_error(ErrorKind::usage, {"two corners"},
-               [&] { poses_on_path(scene_, std::span(corners).first(2), drive, executor_); });
+               [&] { poses_on_path(scene_, corners, drive, executor_, progress_); });
+  expect_error(ErrorKind::usage, {"two corners"}, [&] {
+    poses_on_path(scene_, std::span(corners).first(2), drive, executor_, progress_);
+  });
 }
 
 TEST_F(PlacedPoses, WaysThereAndBackTurnAtTheTip) {
@@ -118,7 +143,7 @@ TEST_F(PlacedPoses, WaysThereAndBackTurnAtTheTip) {
                                            {kOrigin.x - 4, kOrigin.y + 3},
                                            {kOrigin.x - 10, kOrigin.y + 3}};
   PathDrive drive;
-  const Trajectory poses = poses_on_path(scene_, corners, drive, executor_);
+  const Trajectory poses = poses_on_path(scene_, corners, drive, executor_, progress_);
   ASSERT_EQ(poses.size(), 13U);
   EXPECT_NEAR(poses[2].world_from_sensor.rotation.rows[0].x, 1, 1e-12);
   EXPECT_NEAR(poses[10].world_from_sensor.rotation.rows[0].x, -1, 1e-12);
