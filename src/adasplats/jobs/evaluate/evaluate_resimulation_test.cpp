@@ -7,7 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
@@ -64,6 +70,48 @@ TEST(HeldOutProtocol, UnknownValuesAreNullAndDifferencesAreListed) {
   result.scans_of_model = 3;
   EXPECT_EQ(to_json(result)["intensity"]["rmse"], 0.0);
   EXPECT_EQ(to_json(result)["scans_of_model"], 3);
+}
+
+/// Three scans of one pose, `x_m` along x, that measured a wall 5 m ahead of the sensor.
+KittiSequence wall_scans(const TemporaryFolder& folder, double x_m) {
+  KittiSequence sequence;
+  sequence.folder = folder.path();
+  std::vector<float> values;
+  for (int i = -10; i <= 10; ++i)
+    for (int k = -5; k <= 5; ++k)
+      values.insert(values.end(),
+                    {5, 0.2F * static_cast<float>(i), 0.1F * static_cast<float>(k), 0.5F});
+  for (int scan = 0; scan < 3; ++scan) {
+    sequence.scans.push_back(folder.write("velodyne/" + std::to_string(scan) + ".bin", values));
+    sequence.trajectory.push_back(pose_at(0.1 * scan, x_m));
+  }
+  return sequence;
+}
+
+TEST(EvaluateResimulation, ModelsOfOtherPlacesAreReported) {
+  class Warnings : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { text += message; }
+    std::string text;
+  };
+  const TemporaryFolder folder;
+  OwnSession session(on_cpu(), 1);
+  const auto evaluate = [&](double x_m) {
+    SplatModel wall;
+    wall.disks = {{{5, 0, 2}, 4, {-1, 0, 0}}};
+    const ModelScene scene(std::move(wall), std::nullopt, session);
+    KittiSequence sequence = wall_scans(folder, x_m);
+    Warnings warnings;
+    Session reporting{session.executor, warnings, session.seed, session.device};
+    evaluate_resimulation(scene, sequence, "semantickitti", {}, {}, reporting);
+    return warnings.text;
+  };
+  EXPECT_EQ(evaluate(0), "");
+  const std::string other = evaluate(-40);
+  EXPECT_NE(other.find("the model does not explain its beams"), std::string::npos) << other;
+  EXPECT_NE(other.find("x -40.0 to -40.0"), std::string::npos) << other;
+  expect_error(ErrorKind::data, {folder.path().string(), "out of reach of the model", "x 2000.0"},
+               [&] { evaluate(2000); });
 }
 
 }  // namespace
