@@ -109,7 +109,6 @@ bool are_apart(const RigidTransform& a, const RigidTransform& b) {
 void put_in_order(FrameEdge& edge) {
   constexpr std::size_t kMaxShare = 10;  // one in
   replace_missing_times(edge);
-  std::size_t others = 0;
   std::vector<std::size_t> order(edge.stamps_ns.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return edge.stamps_ns[k]; });
@@ -118,16 +117,16 @@ void put_in_order(FrameEdge& edge) {
   for (const std::size_t k : order) {
     TimedPose pose = edge.parent_from_child[k];
     if (before_ns == edge.stamps_ns[k]) {
-      if (are_apart(poses.back().world_from_sensor, pose.world_from_sensor)) ++others;
+      if (are_apart(poses.back().world_from_sensor, pose.world_from_sensor)) ++edge.repeated;
       continue;
     }
     before_ns = edge.stamps_ns[k];
     if (!poses.empty()) pose.time_s = time_after(poses.back().time_s, pose.time_s);
     poses.push_back(pose);
   }
-  if (others > order.size() / kMaxShare && edge.fault.empty())
-    edge.fault = std::to_string(others) + " of " + std::to_string(order.size()) + " poses of '" +
-                 edge.child + "' in '" + edge.parent +
+  if (edge.repeated > order.size() / kMaxShare && edge.fault.empty())
+    edge.fault = std::to_string(edge.repeated) + " of " + std::to_string(order.size()) +
+                 " poses of '" + edge.child + "' in '" + edge.parent +
                  "' have the time of another pose in their headers; expected distinct times";
   edge.parent_from_child = std::move(poses);
   edge.stamps_ns = edge.logged_ns = {};

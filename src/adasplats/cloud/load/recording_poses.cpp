@@ -63,7 +63,10 @@ const FrameEdge& edge_of_topic(const TopicSurvey& topic) {
 std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
   return (edge.child.empty() ? "" : "of '" + edge.child + "' ") + "in '" + edge.parent + "' by " +
          topic +
-         (edge.is_timed_by_log ? " at the times of the log, since its headers have none" : "");
+         (edge.is_timed_by_log ? " at the times of the log, since its headers have none" : "") +
+         (edge.repeated == 0
+              ? ""
+              : " without " + std::to_string(edge.repeated) + " other poses of the same times");
 }
 
 /// The poses of a topic with one pair of frames.
