@@ -71,7 +71,7 @@ std::string joined_names(const std::vector<ExportFormat>& formats) {
 InputKind kind_of(const fs::path& input) {
   if (is_splat_model(input)) return InputKind::model;
   if (fs::is_directory(input)) {
-    return is_kitti_sequence(input) && !lacks_poses(input) ? InputKind::sequence : InputKind::cloud;
+    return is_kitti_sequence(input) ? InputKind::sequence : InputKind::cloud;
   }
   if (is_mesh_file(input)) {
     throw Error(ErrorKind::usage, input.string() +

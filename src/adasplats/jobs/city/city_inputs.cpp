@@ -95,14 +95,14 @@ class PiecesInCommon {
   /// points is another, so one of the two was not understood, or if several files are in the sensor
   /// frame.
   void require(const fs::path& file, const PointCloud& cloud, const LoadReport& loaded) {
-    if (!crs_)
-      crs_ = {file, cloud.crs};
-    else if (file != crs_->first)
-      require_same_crs({*crs_, {file, cloud.crs}}, warnings_);
     for (const auto& frame : loaded.sensor_frames)
       if (scans_.sensor_frames.empty() || scans_.sensor_frames.back() != frame)
         scans_.sensor_frames.push_back(frame);
     require_poses_of_scans(file.parent_path().string(), scans_);
+    if (!crs_)
+      crs_ = {file, cloud.crs};
+    else if (file != crs_->first)
+      require_same_crs({*crs_, {file, cloud.crs}}, warnings_);
     if (!loaded.timed) return;
     const std::string clock = loaded.timed->clock;
     if (!clock_) clock_ = {file, clock};
@@ -116,9 +116,9 @@ class PiecesInCommon {
 
  private:
   ProgressSink& warnings_;
-  LoadReport scans_;  ///< its sensor_frames: those of all pieces
   std::optional<std::pair<fs::path, Crs>> crs_;
   std::optional<std::pair<fs::path, std::string>> clock_;
+  LoadReport scans_;  ///< its sensor_frames: those of all pieces
 };
 
 CityPoints read_files(const ModelJob& job, const OpenInputs& inputs,
