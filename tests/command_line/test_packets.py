@@ -334,7 +334,7 @@ class Captures(ProgramTest):
         self.assertIn("packets of the sensor, ", text)
         alone = self.folder / "alone.pcap"
         alone.write_bytes((folder / "drive.pcap").read_bytes())
-        self.assertIn("packet_sensor", run("info", alone).stdout)
+        self.assertIn("velodyne-vlp-16 by their format", run("info", alone).stdout)
         text = run("info", folder / "drive.pcap", "--trajectory", folder / "poses.csv").stdout
         self.assertIn("as measured", text)
 

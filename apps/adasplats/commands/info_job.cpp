@@ -354,7 +354,7 @@ FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
   } catch (const Error& error) {
     facts = {};
     facts.kind = kind;
-    facts.rows.emplace_back("no drive", error.what());
+    facts.rows.emplace_back("no drive", with_settings_as_options(error.what()));
     facts.json["no_drive"] = error.what();
   }
   if (survey.decoder) {
@@ -403,7 +403,7 @@ FileFacts cloud_topic_facts(const RecordingSurvey& survey, const std::optional<L
     // The list of topics shows what to select.
     FileFacts facts;
     facts.kind = "recording";
-    facts.rows.emplace_back("no drive", error.what());
+    facts.rows.emplace_back("no drive", with_settings_as_options(error.what()));
     facts.json["no_drive"] = error.what();
     return facts;
   }

@@ -125,13 +125,23 @@ std::vector<double> matrix_of(const Metadata& metadata, const char* key) {
   return matrix;
 }
 
+/// Of metadata without lidar_origin_to_beam_origin_mm, as Ouster's SDK assumes
+/// (default_lidar_origin_to_beam_origin): that of the first generation unless prod_line states one.
+double default_beam_origin_mm(const std::string& line) {
+  if (line.starts_with("OS-0-")) return 27.67;
+  if (line.starts_with("OS-1-")) return 15.806;
+  if (line.starts_with("OS-2-")) return 13.762;
+  return 12.163;
+}
+
 /// The beams' origin relative to the sensor's axis, x along the encoder's azimuth; m.
 Vec3d beam_origin(const Metadata& metadata) {
   const std::vector<double> matrix = matrix_of(metadata, "beam_to_lidar_transform");
   if (metadata.find("beam_to_lidar_transform") != nullptr)
     return kMillimetre_m * Vec3d{matrix[3], matrix[7], matrix[11]};
   const Json* along_mm = metadata.find("lidar_origin_to_beam_origin_mm");
-  if (along_mm == nullptr) return {};
+  if (along_mm == nullptr)
+    return {kMillimetre_m * default_beam_origin_mm(metadata.text("prod_line")), 0, 0};
   if (!along_mm->is_number())
     throw metadata.fault("lidar_origin_to_beam_origin_mm is not a number");
   return {kMillimetre_m * along_mm->get<double>(), 0, 0};

@@ -205,5 +205,18 @@ TEST_F(OusterJson, HostileFilesAreErrorsNotCrashes) {
   expect_data_error(std::string("{\"a\0\xff\xfe", 6), "not valid JSON");
 }
 
+// Oracle: default_lidar_origin_to_beam_origin() of Ouster's SDK.
+TEST_F(OusterJson, BeamsOfOldMetadataStartOffTheAxis) {
+  const auto along_m = [&](const std::string& line) {
+    return load(R"({"beam_altitude_angles": [10, -10.5], "beam_azimuth_angles": [3, -1],
+                    "lidar_mode": "512x20")" +
+                line + "}")
+        .beam_origins_m[0]
+        .x;
+  };
+  EXPECT_NEAR(along_m(""), 0.012163, 1e-9);
+  EXPECT_NEAR(along_m(R"(, "prod_line": "OS-0-2")"), 0.02767, 1e-9);
+}
+
 }  // namespace
 }  // namespace adasplats

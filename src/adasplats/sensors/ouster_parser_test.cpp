@@ -91,7 +91,7 @@ std::string channel_words(std::uint16_t steps_of_8_mm, std::uint8_t reflectivity
 }
 
 TEST_F(OusterPackets, LowDataRateIsRead) {
-  const PacketDecoder one = decoder({});
+  const PacketDecoder one = decoder({.more = ", \"lidar_origin_to_beam_origin_mm\": 0"});
   NewPacket sent;
   sent.channel = channel_words(2500, 200);
   const std::string packet = sent.bytes();
@@ -103,7 +103,7 @@ TEST_F(OusterPackets, LowDataRateIsRead) {
   PacketPoints points;
   one.add_points(packet, 3, one.columns(packet)[3], points);
   ASSERT_EQ(points.positions.size(), 1U);
-  // The beam axes meet at the default origin of old metadata, 36.18 mm up.
+  // The beam axes meet at the default height of old metadata, 36.18 mm.
   EXPECT_NEAR(length(points.positions[0] - Vec3d{0, 0, 0.03618}), 20.0, 1e-5);
   EXPECT_EQ(points.rings[0], 5);
   EXPECT_EQ(points.intensities[0], 200);

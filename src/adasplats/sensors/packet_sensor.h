@@ -33,6 +33,8 @@ struct PacketSensor {
   std::vector<std::uint16_t> ring_of_laser, laser_of_ring;
   /// One a ring, m; added to a packet's range, which then starts at the origin of the beam.
   std::vector<double> range_offsets_m;
+  /// A VLP-16 whose packets state the HDL-32E in their factory bytes, as those of 2014.
+  bool states_hdl_32e = false;
 
   std::size_t lasers() const { return ring_of_laser.size(); }
   /// Null but for an AT128.

@@ -51,8 +51,9 @@ std::optional<std::string> objection_to_factory(const PacketSensor& sensor,
                                                                {PacketFormat::vls_128, 0xA1}};
   const auto mode = value_at<std::uint8_t>(payload, kVelodyneTail + 4);
   const auto model = value_at<std::uint8_t>(payload, kVelodyneTail + 5);
+  constexpr std::uint8_t kHdl32e = 0x21;
   for (const auto& [other, code] : kModels)
-    if (code == model && other != sensor.format)
+    if (code == model && other != sensor.format && !(sensor.states_hdl_32e && model == kHdl32e))
       return "are from model " + hexadecimal(model) + ", " +
              std::string(word_of(other, kPacketFormats));
   if (sensor.format == PacketFormat::vlp_16)

@@ -88,9 +88,35 @@ std::string list_of(const Folder& folder) {
   return list;
 }
 
+/// The point files without the extension of most; empty if no extension is that of more than half.
+std::vector<fs::path> odd_files(const std::vector<fs::path>& files) {
+  std::map<std::string, std::size_t> counts;
+  for (const fs::path& file : files) ++counts[lower_case(file.extension().string())];
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& count) { return count.second; });
+  std::vector<fs::path> odd;
+  if (most == counts.end() || 2 * most->second <= files.size()) return odd;
+  for (const fs::path& file : files)
+    if (lower_case(file.extension().string()) != most->first) odd.push_back(file);
+  return odd;
+}
+
 /// The folder holds several kinds of input.
 Error ambiguous_folder(const Folder& folder) {
   const auto points = folder.files.find(FileKind::points);
+  const bool only_points = folder.files.size() == 1 && folder.sequences.empty();
+  if (points != folder.files.end() && only_points) {
+    std::vector<fs::path> usual = points->second;
+    const std::vector<fs::path> odd = odd_files(usual);
+    std::erase_if(usual,
+                  [&](const fs::path& file) { return std::ranges::find(odd, file) != odd.end(); });
+    if (!odd.empty())
+      return Error(ErrorKind::usage,
+                   folder.path.string() + ": contains point files of several formats: " +
+                       names_of(folder, odd) + " beside " + names_of(folder, usual) + "; move " +
+                       (odd.size() == 1 ? "it" : "them") +
+                       " out of the folder, or give single files");
+  }
   std::string one;
   if (points != folder.files.end()) one = points->second.front().string();
   if (!folder.sequences.empty())

@@ -121,7 +121,7 @@ TEST(CloudInputs, TilesOfOneExtension) {
   folder.write("a.prj", "PROJCS");
   EXPECT_EQ(names_of(folder.path()), (std::vector<std::string>{"a.XYZ", "b.xyz"}));
   folder.write("c.csv", "x,y,z\n1,2,3\n");
-  expect_error(ErrorKind::usage, {"a.XYZ, b.xyz, c.csv", "give one of them instead"},
+  expect_error(ErrorKind::usage, {"c.csv beside a.XYZ, b.xyz; move it out of the folder"},
                [&] { cloud_inputs(folder.path()); });
 }
 
@@ -211,6 +211,15 @@ TEST(CloudInputs, WhatIsNoPoints) {
                [&] { require_points(folder.write("s.ply", kModel)); });
   expect_error(ErrorKind::data, {"t.csv", "trajectory", "`trajectory`"},
                [&] { require_points(folder.write("t.csv", kPoses)); });
+}
+
+TEST(CloudInputs, AFileOfAnotherFormatAmongScansIsNamed) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.ply", "b.ply", "c.ply"}) folder.write(name, kCloud);
+  folder.write("keyframes.txt", "1 2 3 4 5 6 7 8 9\n");
+  expect_error(ErrorKind::usage,
+               {"several formats: keyframes.txt beside a.ply, b.ply, c.ply; move it out"},
+               [&] { cloud_inputs(folder.path()); });
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ struct FileScan {
   std::vector<double> times;  ///< empty: none
   std::vector<float> intensities;
   std::vector<std::uint16_t> classes, instances;
-  std::size_t left_out = 0;  ///< points of the file that do not belong to the scan
+  std::vector<std::uint16_t> lasers;  ///< of packets, topmost 0; else empty
+  std::size_t left_out = 0;           ///< points of the file that do not belong to the scan
 
   std::size_t size() const { return positions.size(); }
   /// First and last time of points with valid positions; times that are not finite are skipped. {0,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -18,6 +19,9 @@ struct FrameEdge {
   Trajectory parent_from_child;              ///< of a static one a single pose
   std::vector<std::int64_t> stamps_ns = {};  ///< of the poses while they are read
   std::string fault;                         ///< why it cannot be used; thrown on use
+  std::vector<std::int64_t> logged_ns = {};  ///< when the poses were recorded, while they are read
+  bool is_timed_by_log = false;              ///< the headers have no times
+  std::size_t repeated = 0;                  ///< other poses of the same times, left out
 };
 
 /// The frames of a recording, named as in ROS transforms (tf2): each has at most one parent.

@@ -547,6 +547,7 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   }
   check_frames(sources, parts, options, report, progress);
   Gathered gathered{std::move(parts)};
+  require_poses_of_scans(name, report);
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive = std::ranges::any_of(sources, &OpenInput::is_frame_drive);
@@ -591,6 +592,17 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
 }
 
 }  // namespace
+
+void require_poses_of_scans(const std::string& name, const LoadReport& report) {
+  const std::size_t scans = report.sensor_frames.size();
+  if (scans < 2) return;
+  const auto& [file, because] = report.sensor_frames.front();
+  throw Error(ErrorKind::data,
+              name + ": " + std::to_string(scans) +
+                  " of its files are scans in the sensor frame (" + file.string() + ": " + because +
+                  "), which cannot be joined without their poses; give the folder of the scans "
+                  "with the poses as `trajectory`, or `viewpoint` 0,0,0 if the sensor stood still");
+}
 
 std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
                                                    ProgressSink& progress) const {

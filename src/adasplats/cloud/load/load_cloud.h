@@ -246,7 +246,8 @@ struct LoadReport {
 /// - Attributes: if only some inputs have one, it is dropped with a warning. Sensor positions are
 ///   kept; points without one get OriginKind::none.
 /// - A file that is one scan in the sensor frame (sensor_frame_of()) is an error if its pose is
-///   known, else a warning: the sensor frame is the world. `viewpoint` states that it is.
+///   known, else a warning: the sensor frame is the world. `viewpoint` states that it is. Several
+///   are an error.
 /// - Scans are numbered from 0 over all sequences, which must not start at the same pose
 ///   (require_distinct_starts).
 /// - Coordinate system: that of the inputs. An input without one, or without one for heights, is
@@ -271,6 +272,10 @@ struct LoadReport {
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);
+
+/// Errors: data for a report of several files in the sensor frame, whose poses are unknown. `name`
+/// is that of the inputs.
+void require_poses_of_scans(const std::string& name, const LoadReport& report);
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, origin_kind (OriginKind; if not all are measured), intensity, label, instance,

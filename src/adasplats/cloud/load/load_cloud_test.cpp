@@ -240,6 +240,26 @@ TEST(LoadCloud, NoReturnsAreSaid) {
       << listener.warnings[0];
 }
 
+TEST(LoadCloud, SeveralScansWithoutPosesAreAnError) {
+  const TemporaryFolder folder;
+  std::string text = "x,y,z,range\n";
+  for (int k = 3; k < 20; ++k) text += std::to_string(k) + ",0,0," + std::to_string(k) + "\n";
+  const auto a = folder.write("a.csv", text), b = folder.write("b.csv", text);
+  EXPECT_EQ(load({a}).first.size(), 17U);
+  LoadOptions options;
+  for (const bool describes : {false, true}) {
+    options.accept_sensor_frame = describes;
+    expect_error(ErrorKind::data,
+                 {"2 of its files are scans in the sensor frame", "a.csv: its column 'range'",
+                  "`trajectory`", "`viewpoint`"},
+                 [&] {
+                   load({a, b}, options);
+                 });
+  }
+  options.viewpoint = Vec3d{};
+  EXPECT_EQ(load({a, b}, options).first.size(), 34U);
+}
+
 /// `near` points of a place and `far` of another, 500 km away.
 std::string two_places(int near, int far) {
   std::string text;

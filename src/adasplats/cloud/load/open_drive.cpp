@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
@@ -146,12 +147,64 @@ FrameVerdict frame_of_single(const SensorFrames& frames, const Executor& executo
   return {PointsIn::sensor, part.sensor_frame->because};
 }
 
+/// Why files are scans in the sensor frame rather than tiles of a map, by the first and the last:
+/// by their columns, or because both have points on all sides of the origin, and points or
+/// poses have no times. Empty: they may be tiles.
+std::string evidence_of_scans(const std::vector<std::filesystem::path>& files,
+                              const std::filesystem::path& trajectory) {
+  std::string because;
+  for (const std::filesystem::path& file : {files.front(), files.back()}) {
+    if (!can_be_scan(file)) return {};
+    ProgressSink silent;
+    const CloudPart part = read_file_part(file, {}, silent);
+    if (!part.world_sensors.empty()) return {};
+    if (part.sensor_frame) return file.string() + ": " + part.sensor_frame->because;
+    if (!part.times_s.empty() && has_times(trajectory)) return {};
+    constexpr double kMaxRange_m = 500;
+    Vec3d low, high;
+    for (const Vec3d p : part.world_positions) {
+      if (!is_finite(p)) continue;
+      low = min(low, p);
+      high = max(high, p);
+    }
+    const bool is_around = low.x < 0 && low.y < 0 && high.x > 0 && high.y > 0;
+    if (!is_around || length(low) > kMaxRange_m || length(high) > kMaxRange_m) return {};
+    because = "points on all sides of the origin";
+  }
+  return because;
+}
+
+/// Neither times nor names nor the number of poses match files and poses.
+Error undetermined_poses(const DriveInput& drive, const std::vector<std::filesystem::path>& files,
+                         const std::string& because) {
+  const bool timed = has_times(drive.trajectory);
+  return {ErrorKind::data,
+          drive.folder.string() +
+              ": the poses of its scans are undetermined: " + std::to_string(files.size()) +
+              " point files, " + std::to_string(read_trajectory(drive.trajectory).size()) +
+              (timed ? " poses in " : " poses without times in ") + drive.trajectory.string() +
+              ", and neither the file names nor times of points match them; give " +
+              (timed ? "`scan_times`"
+                     : "one pose per file, or poses with times (a column time, or a times.txt next "
+                       "to KITTI's rows) in the clock of the points or with `scan_times`") +
+              (because.empty() ? ""
+                               : ". The points are assumed to be in the sensor frame (" + because +
+                                     "); if they are in world coordinates, set `points_in` to "
+                                     "world")};
+}
+
 /// Opens files with points in world coordinates.
 std::optional<KittiSequence> open_as_world(const DriveInput& drive,
                                            const std::vector<std::filesystem::path>& files,
                                            const Executor& executor, ProgressSink& progress) {
   // With a stated mount the sensor need not be recognised.
   if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
+  if (!has_times(drive.trajectory))
+    throw Error(ErrorKind::data,
+                drive.trajectory.string() + ": its poses have no times, but the points of " +
+                    drive.folder.string() +
+                    " do; give poses with times in the clock of the points (a column time, or a "
+                    "times.txt next to KITTI's rows)");
   WorldFrames frames;
   frames.files = files;
   frames.vehicle = read_trajectory(drive.trajectory);
@@ -162,10 +215,64 @@ std::optional<KittiSequence> open_as_world(const DriveInput& drive,
   return sequence;
 }
 
+/// The files of scans of a folder; of a SemanticKITTI sequence without poses those in `velodyne`.
+std::vector<std::filesystem::path> files_of_drive(const std::filesystem::path& folder) {
+  return scan_files(lacks_poses(folder) ? folder / "velodyne" : folder);
+}
+
+/// Scans with labels of SemanticKITTI.
+class LabelledScans final : public ScanSource {
+ public:
+  LabelledScans(std::shared_ptr<const ScanSource> scans, std::filesystem::path labels)
+      : scans_(std::move(scans)), labels_(std::move(labels)) {}
+
+  FileScan read(const std::filesystem::path& scan) const override {
+    FileScan read = scans_->read(scan);
+    const std::filesystem::path file = labels_of(scan);
+    const std::vector<std::uint32_t> labels = read_kitti_labels(file);
+    if (labels.size() != read.size())
+      throw Error(ErrorKind::data, file.string() + ": " + std::to_string(labels.size()) +
+                                       " labels, but the scan has " + std::to_string(read.size()) +
+                                       " points; expected one per point");
+    read.classes.clear();
+    read.instances.clear();
+    for (const std::uint32_t label : labels) {
+      read.classes.push_back(static_cast<std::uint16_t>(label & 0xffffU));
+      read.instances.push_back(static_cast<std::uint16_t>(label >> 16U));
+    }
+    return read;
+  }
+  std::filesystem::path labels_of(const std::filesystem::path& scan) const {
+    return labels_ / (scan.stem().string() + ".label");
+  }
+
+ private:
+  std::shared_ptr<const ScanSource> scans_;
+  std::filesystem::path labels_;
+};
+
+/// Adds the labels of scans in a folder `velodyne`, if `labels` next to it has any, as in
+/// SemanticKITTI. Errors: data (a scan without labels).
+void add_labels_of_sequence(SensorFrames& frames) {
+  const std::filesystem::path folder = frames.files.front().parent_path();
+  const std::filesystem::path labels = folder.parent_path() / "labels";
+  if (std::filesystem::absolute(folder).filename() != "velodyne" ||
+      files_by_name(labels, ".label").empty())
+    return;
+  const auto source = std::make_shared<const LabelledScans>(frames.source, labels);
+  for (const std::filesystem::path& scan : frames.files)
+    if (!std::filesystem::exists(source->labels_of(scan)))
+      throw Error(ErrorKind::data,
+                  source->labels_of(scan).string() +
+                      ": is missing; other scans have labels, expected one file per scan or none");
+  frames.source = source;
+  frames.labels = "of " + labels.string();
+}
+
 /// Opens a folder of files, one per scan, or a file that is one.
 std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor& executor,
                                         ProgressSink& progress) {
-  const std::vector<std::filesystem::path> files = scan_files(drive.folder);
+  const std::vector<std::filesystem::path> files = files_of_drive(drive.folder);
   const bool is_single = files.size() == 1 && drive.points_in == PointsIn::found;
   if (is_single && !can_be_scan(files.front())) return std::nullopt;
   if (files.size() < 2 && !is_single && drive.points_in != PointsIn::sensor) return std::nullopt;
@@ -181,24 +288,22 @@ std::optional<KittiSequence> open_files(const DriveInput& drive, const Executor&
   if (!files.empty()) frames = sensor_frames_of(drive, files, executor, progress);
   FrameVerdict verdict{PointsIn::sensor, "as stated"};
   if (drive.points_in == PointsIn::sensor) {
-    if (!frames)
-      throw Error(
-          ErrorKind::data,
-          drive.folder.string() +
-              ": the poses of its scans are undetermined: " + std::to_string(files.size()) +
-              " point files, " + std::to_string(read_trajectory(drive.trajectory).size()) +
-              " poses in " + drive.trajectory.string() +
-              ", and neither the file names nor times of points match them; give `scan_times`");
+    if (!frames) throw undetermined_poses(drive, files, "");
   } else {
     if (is_single && !(frames && frames->times.fits)) return std::nullopt;
+    if (!frames)
+      if (const std::string because = evidence_of_scans(files, drive.trajectory); !because.empty())
+        throw undetermined_poses(drive, files, because);
     // This reports what is wrong with the times.
     if (!frames) return open_as_world(drive, files, executor, progress);
     progress.begin_step("frame of the points", 0);
     verdict = is_single ? frame_of_single(*frames, executor) : find_frame(*frames, executor);
     progress.end_step();
   }
-  if (verdict.points_in == PointsIn::sensor)
+  if (verdict.points_in == PointsIn::sensor) {
+    if (drive.with_classes) add_labels_of_sequence(*frames);
     return open_sensor_frames(drive, *frames, verdict.because, executor, progress);
+  }
   // A file that is not shown to be a scan is a cloud in world coordinates.
   if (is_single) return std::nullopt;
   if (verdict.points_in == PointsIn::found)

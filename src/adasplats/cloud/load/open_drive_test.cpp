@@ -259,5 +259,85 @@ TEST(DriveInput, FilesWithoutTimesAreNone) {
   EXPECT_FALSE(has_timed_frames(folder.path() / "a.xyz"));
 }
 
+/// Twelve points around (x_m, 0, 0).
+std::string points_around(double x_m) {
+  std::string text = "x y z\n";
+  for (int k = 0; k < 12; ++k)
+    text += std::to_string(x_m + 9 * std::cos(0.5 * k)) + " " +
+            std::to_string(9 * std::sin(0.5 * k)) + " 1\n";
+  return text;
+}
+
+TEST(DriveInput, AnotherNumberOfPosesThanScansIsAnError) {
+  const TemporaryFolder folder;
+  ProgressSink quiet;
+  for (const char* name : {"f/a.xyz", "f/b.xyz", "f/c.xyz"}) folder.write(name, points_around(0));
+  std::string tum, kitti;
+  for (int k = 0; k < 4; ++k) {
+    tum += std::to_string(100 + k) + " " + std::to_string(k) + " 0 0 0 0 0 1\n";
+    kitti += "1 0 0 " + std::to_string(k) + " 0 1 0 0 0 0 1 0\n";
+  }
+  DriveSettings settings;
+  settings.trajectory = folder.write("four.tum", tum);
+  const auto open = [&] {
+    return open_drive(drive_of(folder.path() / "f", settings), Executor(1), quiet);
+  };
+  expect_error(ErrorKind::data,
+               {"3 point files, 4 poses in", "four.tum", "`scan_times`", "all sides of the origin",
+                "`points_in`"},
+               open);
+  settings.trajectory = folder.write("four.txt", kitti);
+  expect_error(ErrorKind::data,
+               {"3 point files, 4 poses without times in", "four.txt", "times.txt"}, open);
+  settings.points_in = PointsIn::world;
+  EXPECT_FALSE(open());
+  // Tiles, whose sensor positions are unknown.
+  settings.points_in = PointsIn::found;
+  folder.write("f/c.xyz", points_around(30));
+  EXPECT_FALSE(open());
+}
+
+TEST(DriveInput, PointsWithTimesNeedPosesWithTimes) {
+  const Drive drive;
+  ProgressSink quiet;
+  std::string rows;
+  for (int k = 0; k < Drive::kScans; ++k) rows += "1 0 0 5 0 1 0 0 0 0 1 0\n";
+  DriveSettings settings;
+  settings.trajectory = drive.folder().write("rows.txt", rows);
+  settings.points_in = PointsIn::world;
+  expect_error(ErrorKind::data, {"rows.txt: its poses have no times", "times.txt"},
+               [&] { open_drive(drive_of(drive.frames(), settings), Executor(1), quiet); });
+}
+
+TEST(DriveInput, ASequenceWithPosesOfAnotherFileKeepsItsLabels) {
+  const TemporaryFolder folder;
+  std::vector<float> values;
+  std::vector<std::uint32_t> labels;
+  for (int k = 0; k < 12; ++k) {
+    const float turned = 0.5F * static_cast<float>(k);
+    values.insert(values.end(), {9 * std::cos(turned), 9 * std::sin(turned), 1.0F, 0.5F});
+    labels.push_back(static_cast<std::uint32_t>((3 << 16) + 40 + k));
+  }
+  folder.write("00/velodyne/000000.bin", values);
+  const auto label_file = folder.write("00/labels/000000.label", labels);
+  LoadOptions options;
+  options.trajectory = folder.write("one.txt", "1 0 0 5 0 1 0 0 0 0 1 0\n");
+  options.own_body_m = options.driven_path_m = 0;
+  ProgressSink quiet;
+  for (const char* input : {"00", "00/velodyne"}) {
+    const std::filesystem::path path = folder.path() / input;
+    const PointCloud cloud = load_cloud(std::span(&path, 1), options, Executor(1), quiet).first;
+    ASSERT_EQ(cloud.size(), 12U) << input;
+    ASSERT_EQ(cloud.classes.size(), 12U) << input;
+    EXPECT_EQ(cloud.classes[11], 51) << input;
+    EXPECT_EQ(cloud.instances[11], 3) << input;
+    EXPECT_NEAR(cloud.sensor_positions[0].x + cloud.origin.x, 5, 1e-5) << input;
+  }
+  std::filesystem::rename(label_file, folder.path() / "00/labels/000001.label");
+  const std::filesystem::path path = folder.path() / "00";
+  expect_error(ErrorKind::data, {"000000.label: is missing"},
+               [&] { load_cloud(std::span(&path, 1), options, Executor(1), quiet); });
+}
+
 }  // namespace
 }  // namespace adasplats

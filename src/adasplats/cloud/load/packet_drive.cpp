@@ -14,6 +14,7 @@
 #include "adasplats/cloud/load/recording_poses.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/sensors/packet_layout.h"
 
 namespace adasplats {
@@ -200,7 +201,99 @@ std::int64_t SensorClock::time_ns(std::int64_t sensor_ns, std::uint64_t captured
 
 namespace {
 
+std::shared_ptr<const PacketDecoder> decoder_of(const LidarModel& model) {
+  return std::make_shared<const PacketDecoder>(packet_sensor(model));
+}
+
+/// The first datagrams of each source.
+using FirstPackets = std::map<std::string, std::vector<std::string>>;
+
+/// The median time between packets by the sensor's clock, and that of the model; 0: unknown.
+struct PacketPace {
+  double measured_us = 0, expected_us = 0;
+
+  PacketPace(const PacketDecoder& decoder, const std::vector<std::string>& payloads) {
+    constexpr std::size_t kMinSteps = 5;
+    std::vector<double> steps_us;
+    std::optional<std::int64_t> last_ns;
+    for (const std::string& payload : payloads) {
+      if (!decoder.accepts(payload)) continue;
+      const std::vector<MeasuredColumn> columns = decoder.columns(payload);
+      const std::int64_t time_ns = columns.front().time_ns;
+      expected_us = 1e6 * decoder.column_s() * static_cast<double>(columns.size());
+      if (last_ns) steps_us.push_back(1e-3 * static_cast<double>(time_ns - *last_ns));
+      last_ns = time_ns;
+    }
+    if (steps_us.size() >= kMinSteps) measured_us = upper_median_of(steps_us);
+  }
+  bool fits() const {
+    constexpr double kSamePace = 0.05;
+    return measured_us > 0 && std::fabs(measured_us / expected_us - 1) < kSamePace;
+  }
+};
+
+/// For the packets of VLP-16 of 2014, whose factory bytes are those of the HDL-32E (0x21).
+std::shared_ptr<const PacketDecoder> early_vlp_16(PacketSensor sensor) {
+  sensor.states_hdl_32e = true;
+  return std::make_shared<const PacketDecoder>(std::move(sensor));
+}
+
+/// PacketSource::candidates.
+std::vector<std::string> candidates_for(const std::vector<std::string>& payloads) {
+  std::vector<std::string> names;
+  for (const std::string& name : lidar_model_names()) {
+    const LidarModel model = load_lidar_model(name);
+    if (!model.packets) continue;
+    const PacketDecoder decoder(packet_sensor(model));
+    const auto accepted = static_cast<std::size_t>(std::ranges::count_if(
+        payloads, [&](const std::string& payload) { return decoder.accepts(payload); }));
+    if (2 * accepted > payloads.size()) names.push_back(name);
+  }
+  return names;
+}
+
+/// Judges the sensor by the first packets of each source. The HDL-32E in the factory bytes is
+/// contradicted by packets as far apart as those of the VLP-16, which is then the only candidate.
+void judge_sensor(const FirstPackets& first, PacketSurvey& survey) {
+  const auto is_good = [](const auto& source) { return source.second.packets > 0; };
+  const bool is_hdl_32e =
+      survey.decoder && survey.decoder->sensor().format == PacketFormat::hdl_32e;
+  if (survey.decoder && !is_hdl_32e && std::ranges::any_of(survey.sources, is_good)) return;
+  const LidarModel vlp_16 = load_lidar_model("velodyne-vlp-16");
+  const auto early = early_vlp_16(packet_sensor(vlp_16));
+  for (const auto& [name, payloads] : first) {
+    PacketSource& source = survey.sources.at(name);
+    const PacketPace pace(*early, payloads);
+    const PacketPace stated(survey.decoder ? *survey.decoder : *early, payloads);
+    if (is_hdl_32e && source.packets > 0 && pace.fits() && !stated.fits()) {
+      std::array<char, 160> text{};
+      std::snprintf(text.data(), text.size(),
+                    "are %.0f us apart, those of an HDL-32E %.0f us and of a VLP-16 %.0f us",
+                    stated.measured_us, stated.expected_us, pace.expected_us);
+      source.contradiction = text.data();
+      source.contradictions = source.packets;
+    }
+    if (survey.decoder && source.packets > 0 && source.contradictions == 0) continue;
+    source.candidates = candidates_for(payloads);
+    if (pace.fits()) source.candidates = {vlp_16.name};
+  }
+}
+
+/// The decoder for packets of an early VLP-16 if that is the survey's sensor; else null.
+std::shared_ptr<const PacketDecoder> early_decoder(const FirstPackets& first,
+                                                   const PacketSurvey& survey) {
+  if (!survey.decoder) return nullptr;
+  const PacketSensor& sensor = survey.decoder->sensor();
+  if (sensor.format != PacketFormat::vlp_16 || sensor.states_hdl_32e) return nullptr;
+  auto early = early_vlp_16(sensor);
+  for (const auto& [name, payloads] : first)
+    if (survey.sources.at(name).packets == 0 && PacketPace(*early, payloads).fits()) return early;
+  return nullptr;
+}
+
 PacketSurvey surveyed(PacketSurvey survey, ProgressSink& progress) {
+  constexpr std::size_t kFirst = 64;
+  FirstPackets first;
   std::map<std::string, RevolutionFinder> finders;
   std::uint64_t done = 0;
   progress.begin_step("read " + survey.path.filename().string(), 0);
@@ -213,6 +306,8 @@ PacketSurvey surveyed(PacketSurvey survey, ProgressSink& progress) {
                                        std::to_string(kMaxSources) +
                                        " sources; this is not the capture of a sensor");
     ++source.datagrams;
+    if (std::vector<std::string>& kept = first[name]; kept.size() < kFirst)
+      kept.emplace_back(packet.bytes);
     if (!survey.decoder || !survey.decoder->has_size(packet.bytes)) return;
     if (const auto objection = survey.decoder->objection(packet.bytes)) {
       if (source.objection.empty()) source.objection = *objection;
@@ -229,11 +324,16 @@ PacketSurvey surveyed(PacketSurvey survey, ProgressSink& progress) {
                                    std::to_string(source.packets + 1) + " of " + name);
   });
   progress.end_step();
+  if (auto early = early_decoder(first, survey)) {
+    progress.warn(survey.path.string() +
+                  ": its packets state an HDL-32E (0x21), but their times are those of " +
+                  survey.decoder->sensor().model.name + "; they are read as of an early VLP-16");
+    survey.decoder = std::move(early);
+    survey.sources.clear();
+    return surveyed(std::move(survey), progress);
+  }
+  judge_sensor(first, survey);
   return survey;
-}
-
-std::shared_ptr<const PacketDecoder> decoder_of(const LidarModel& model) {
-  return std::make_shared<const PacketDecoder>(packet_sensor(model));
 }
 
 /// "/ouster" of "/ouster/lidar_packets".
@@ -373,6 +473,7 @@ class PacketScans final : public ScanSource {
     for (const double late_s : points.late_s) scan.times.push_back(time_s + late_s);
     scan.intensities.insert(scan.intensities.end(), points.intensities.begin(),
                             points.intensities.end());
+    scan.lasers.insert(scan.lasers.end(), points.rings.begin(), points.rings.end());
   }
 
   std::shared_ptr<const PacketFile> file_;
@@ -400,10 +501,29 @@ bool contradicts_file(const PacketSource& source) {
          (source.odd_turns > 0 && 2 * source.odd_turns + 1 >= source.revolutions.size());
 }
 
+/// "; those of 10.0.0.1:2368 are of velodyne-vlp-16: give ... as `packet_sensor`", if known.
+std::string advice_on_sensor(const PacketSurvey& survey) {
+  for (const auto& [name, source] : survey.sources) {
+    std::string list;
+    for (const std::string& candidate : source.candidates)
+      list += (list.empty() ? "" : " or ") + candidate;
+    if (list.empty()) continue;
+    const bool needs_file = list.starts_with("ouster");
+    return "; those of " + name + " are of " + list + " by their format: give " +
+           (needs_file ? "the metadata (JSON) of the device"
+                       : "it, or the maker's file of the "
+                         "device,") +
+           " as `packet_sensor`";
+  }
+  return {};
+}
+
 Error wrong_file(const PacketSurvey& survey, const std::string& name, const PacketSource& source) {
-  return {ErrorKind::data, survey.path.string() + ": packets of " + name + " " +
-                               source.contradiction +
-                               "; give the file of this sensor in this mode as `packet_sensor`"};
+  const std::string advice = advice_on_sensor(survey);
+  return {ErrorKind::data,
+          survey.path.string() + ": packets of " + name + " " + source.contradiction +
+              (advice.empty() ? "; give the file of this sensor in this mode as `packet_sensor`"
+                              : advice)};
 }
 
 /// The given source, else the only one.
@@ -426,7 +546,7 @@ const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& 
                 survey.path.string() + ": has no packets of " +
                     survey.decoder->sensor().model.name + " (" +
                     std::to_string(survey.decoder->sensor().payload_bytes()) + " bytes)" +
-                    (stated.empty() ? "" : " from " + stated) + sources);
+                    (stated.empty() ? "" : " from " + stated) + sources + advice_on_sensor(survey));
   if (count > 1)
     throw Error(ErrorKind::usage,
                 survey.path.string() +
@@ -565,14 +685,53 @@ std::shared_ptr<const PacketDecoder> decoder_of_capture(const fs::path& capture,
   return decoder_of(load_lidar_model(sensor));
 }
 
+namespace {
+
+bool are_same(const SensorCones& a, const SensorCones& b) {
+  constexpr double kMax_rad = 2e-4, kMax_m = 2e-3;  // files round angles to hundredths of a degree
+  const auto same = [](const SensorCones::Cone& c, const SensorCones::Cone& d) {
+    return std::fabs(c.elevation_rad - d.elevation_rad) < kMax_rad &&
+           std::fabs(c.height_m - d.height_m) < kMax_m &&
+           std::fabs(c.outward_m - d.outward_m) < kMax_m &&
+           std::fabs(c.aside_m - d.aside_m) < kMax_m;
+  };
+  return std::ranges::equal(a.cones, b.cones, same);
+}
+
+/// The cones of the packets' sensor, named so that load_lidar_model() finds it: the sensor of the
+/// library with these beams, else the file. Without cones if rings have none (mirrors).
+SensorCones cones_of_packets(const PacketSurvey& survey, const DriveInput& drive) {
+  LidarModel model = survey.decoder->sensor().model;
+  model.window_begin = 0;
+  model.window_end = 1;
+  SensorCones cones = cones_of(model);
+  if (survey.decoder->sensor().mirror() != nullptr || cones.cones.size() != model.rings())
+    cones.cones.clear();
+  if (std::ranges::count(lidar_model_names(), model.name) > 0) return cones;
+  for (const SensorCones& known : library_cones()) {
+    if (!cones.cones.empty() && are_same(cones, known)) cones.sensor = known.sensor;
+    if (cones.sensor == known.sensor) return cones;
+  }
+  fs::path file = drive.packets_of;
+  if (file.empty() && survey.recording == nullptr)
+    file = survey.path.parent_path() / fs::path(sensor_of_capture(survey.path, "")).filename();
+  if (file.has_filename()) cones.sensor = file.string();
+  return cones;
+}
+
+}  // namespace
+
 KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& survey,
                                 const Executor& executor, ProgressSink& progress) {
   DriveInput drive = given;
-  if (!survey.decoder)
+  if (!survey.decoder) {
+    const std::string advice = advice_on_sensor(survey);
     throw Error(ErrorKind::usage,
-                survey.path.string() +
-                    ": the sensor of its packets is unknown; give `packet_sensor`, a sensor of the "
-                    "library or the maker's file (its folder contains none)");
+                survey.path.string() + ": the sensor of its packets is unknown" +
+                    (advice.empty() ? "; give `packet_sensor`, a sensor of the library or the "
+                                      "maker's file (its folder contains none)"
+                                    : advice));
+  }
   require_options_of_packets(drive, survey.recording != nullptr);
   const auto& [name, source] = source_of(survey, drive.topic);
   warn_of_packets(survey, name, source, progress);
@@ -586,6 +745,7 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;
+  frames.sensor = cones_of_packets(survey, drive);
   const RecordedPoses found = poses_of_packets(drive, survey, name, scans.middles_s);
   if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks
   const Track track = track_of(found.poses);

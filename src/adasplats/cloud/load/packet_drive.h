@@ -39,6 +39,9 @@ struct PacketSource {
   std::string contradiction;
   std::uint64_t contradictions = 0;  ///< packets that do
   std::uint64_t odd_turns = 0;       ///< ends of revolutions after another number of columns
+  /// Sensors of the library whose packets the first ones may be ("velodyne-vlp-16"), if the sensor
+  /// is unknown or another.
+  std::vector<std::string> candidates;
   std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
   std::vector<Revolution> revolutions;
 };

@@ -61,7 +61,8 @@ void add_metadata(const RecordedMessage& message, const std::string& what, Topic
     topic.metadata = ros_string(message.bytes, message.topic.encoding, what);
 }
 
-void add_pose(const RosPose& pose, bool is_static, const std::string& what, TopicSurvey& topic) {
+void add_pose(const RosPose& pose, bool is_static, std::uint64_t logged_ns, const std::string& what,
+              TopicSurvey& topic) {
   const auto [found, is_new] = topic.edges.try_emplace({pose.header.frame, pose.child_frame});
   FrameEdge& edge = found->second;
   if (is_new) edge = {pose.header.frame, pose.child_frame, is_static, {}, {}, {}};
@@ -77,31 +78,59 @@ void add_pose(const RosPose& pose, bool is_static, const std::string& what, Topi
   if (is_static) {  // the last one counts
     edge.parent_from_child.clear();
     edge.stamps_ns.clear();
+    edge.logged_ns.clear();
   }
   edge.stamps_ns.push_back(pose.header.stamp_ns);
+  edge.logged_ns.push_back(static_cast<std::int64_t>(logged_ns));
   edge.parent_from_child.push_back(
       {seconds_of(pose.header.stamp_ns),
        {rotation_from_quaternion(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm),
         pose.position}});
 }
 
+/// Uses the times of the log if no header has one.
+void replace_missing_times(FrameEdge& edge) {
+  const auto is_zero = [](std::int64_t stamp_ns) { return stamp_ns == 0; };
+  if (edge.is_static || edge.stamps_ns.size() < 2 || !std::ranges::all_of(edge.stamps_ns, is_zero))
+    return;
+  edge.is_timed_by_log = true;
+  edge.stamps_ns = edge.logged_ns;
+  for (std::size_t k = 0; k < edge.stamps_ns.size(); ++k)
+    edge.parent_from_child[k].time_s = seconds_of(edge.stamps_ns[k]);
+}
+
+bool are_apart(const RigidTransform& a, const RigidTransform& b) {
+  constexpr double kSame_m = 1e-3, kSame_rad = 1e-3;
+  return length(a.translation - b.translation) > kSame_m ||
+         angle_between(a.rotation, b.rotation) > kSame_rad;
+}
+
 /// Sorts by time and removes repeated times: publishers repeat unchanged poses. Doubles cannot
-/// distinguish stamps a few nanoseconds apart.
+/// distinguish stamps a few nanoseconds apart. Many other poses of the same times are a fault.
 void put_in_order(FrameEdge& edge) {
+  constexpr std::size_t kMaxShare = 10;  // one in
+  replace_missing_times(edge);
   std::vector<std::size_t> order(edge.stamps_ns.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return edge.stamps_ns[k]; });
   Trajectory poses;
   std::optional<std::int64_t> before_ns;
   for (const std::size_t k : order) {
-    if (before_ns == edge.stamps_ns[k]) continue;
-    before_ns = edge.stamps_ns[k];
     TimedPose pose = edge.parent_from_child[k];
+    if (before_ns == edge.stamps_ns[k]) {
+      if (are_apart(poses.back().world_from_sensor, pose.world_from_sensor)) ++edge.repeated;
+      continue;
+    }
+    before_ns = edge.stamps_ns[k];
     if (!poses.empty()) pose.time_s = time_after(poses.back().time_s, pose.time_s);
     poses.push_back(pose);
   }
+  if (edge.repeated > order.size() / kMaxShare && edge.fault.empty())
+    edge.fault = std::to_string(edge.repeated) + " of " + std::to_string(order.size()) +
+                 " poses of '" + edge.child + "' in '" + edge.parent +
+                 "' have the time of another pose in their headers; expected distinct times";
   edge.parent_from_child = std::move(poses);
-  edge.stamps_ns = {};
+  edge.stamps_ns = edge.logged_ns = {};
 }
 
 /// The same for clouds, which are all kept.
@@ -150,7 +179,7 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
     const bool is_static = topic.topic.name.ends_with("tf_static");
     for (const RosPose& pose :
          ros_poses(message.bytes, topic.topic.type, topic.topic.encoding, what))
-      add_pose(pose, is_static, what, topic);
+      add_pose(pose, is_static, message.time_ns, what, topic);
   });
   progress.end_step();
   for (auto& [name, topic] : survey.topics) {

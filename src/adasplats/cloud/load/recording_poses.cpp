@@ -62,7 +62,11 @@ const FrameEdge& edge_of_topic(const TopicSurvey& topic) {
 /// "of 'base_link' in 'odom' by /odometry".
 std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
   return (edge.child.empty() ? "" : "of '" + edge.child + "' ") + "in '" + edge.parent + "' by " +
-         topic;
+         topic +
+         (edge.is_timed_by_log ? " at the times of the log, since its headers have none" : "") +
+         (edge.repeated == 0
+              ? ""
+              : " without " + std::to_string(edge.repeated) + " other poses of the same times");
 }
 
 Error no_frame(const TopicSurvey& clouds) {
@@ -119,11 +123,14 @@ Error no_poses(const RecordingSurvey& survey, const FrameTree& tree, const Topic
   if (tree.has(clouds.frame))
     found = "'" + clouds.frame + "' does not move in '" + tree.root_of(clouds.frame) + "' (" +
             found + ")";
-  return Error(ErrorKind::data,
-               "the clouds of " + clouds.topic.name + " are in frame '" + clouds.frame +
-                   "', whose poses are unknown: " + found +
-                   "; topics of poses: " + list_of_topics(survey, holds_points) +
-                   "; record tf from a fixed frame to it, or give `poses_topic` or `trajectory`");
+  return Error(
+      ErrorKind::data,
+      "the clouds of " + clouds.topic.name + " are in frame '" + clouds.frame +
+          "', whose poses are unknown: " + found +
+          "; topics of poses: " + list_of_topics(survey, holds_points) +
+          "; record tf from a fixed frame to it, or give `poses_topic` or `trajectory` (of "
+          "a sensor that stands still: twice the same pose, before the first cloud and "
+          "after the last)");
 }
 
 /// The topic with that name. Errors: usage if it has no poses.

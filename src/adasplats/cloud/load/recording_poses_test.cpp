@@ -128,5 +128,24 @@ TEST_F(RecordedWays, CloudsOfAnotherClockAreRefused) {
   expect_error(ErrorKind::data, {"drive.mcap", "clocks"}, [&] { read(); });
 }
 
+// Oracle: the times of the log, in steps of 10 ms.
+TEST_F(RecordedWays, PosesWithoutTimesInTheirHeadersHaveThoseOfTheLog) {
+  const auto add = [&](std::int64_t stamp_ns) {
+    messages.clear();
+    for (int k = 0; k < 5; ++k)
+      messages.push_back({"/pose", "geometry_msgs/msg/PoseStamped",
+                          static_cast<std::uint64_t>(at_step(k)),
+                          bags_test::pose_message(stamp_ns, "map", {1.0 * k, 0, 0, 0, 0, 0, 1})});
+  };
+  add(0);
+  const RecordedTrajectory way = read();
+  ASSERT_EQ(way.poses.size(), 5U);
+  EXPECT_NEAR(way.poses[4].time_s - way.poses[0].time_s, 0.04, 1e-6);
+  EXPECT_NE(way.by.find("times of the log"), std::string::npos) << way.by;
+  add(kTenSeconds_ns);
+  expect_error(ErrorKind::data, {"drive.mcap", "4 of 5 poses", "time of another pose"},
+               [&] { read(); });
+}
+
 }  // namespace
 }  // namespace adasplats

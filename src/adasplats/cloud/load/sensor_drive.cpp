@@ -11,6 +11,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
@@ -78,6 +79,7 @@ class SweepReader final : public ScanReader {
   KittiScan read(const std::filesystem::path& file) const override {
     FileScan points = source_->read(file);
     const std::vector<double> times = std::move(points.times);
+    std::vector<std::uint16_t> lasers = std::move(points.lasers);
     const std::vector<Vec3d> given = points.positions;
     KittiScan scan = scan_of(std::move(points));
     if (!with_classes_) scan.classes = {}, scan.instances = {};
@@ -88,6 +90,7 @@ class SweepReader final : public ScanReader {
           file.string() +
               ": its points have no times, unlike other files; remove the file, or add the column");
     const TimedPose& pose = poses_.at(file.string());
+    if (finding_.sensor) scan.lasers = std::move(lasers);
     if (moves || finding_.sensor) add_beams(file, given, times, pose, scan);
     if (!boxes_.empty()) mark_boxes(times, pose, scan);
     return scan;
@@ -115,6 +118,16 @@ class SweepReader final : public ScanReader {
     }
   }
 
+  /// The laser of a point in the sensor's frame, and its position there. Known lasers: of packets.
+  std::pair<std::uint16_t, Vec3d> laser_of(Vec3d in_sensor, std::uint16_t known) const {
+    const SensorCones& cones = finding_.sensor->cones;
+    if (known == kNoLaser && cones.cones.empty()) return {kNoLaser, {}};
+    const std::uint16_t laser = known == kNoLaser ? cones.nearest(in_sensor).first : known;
+    // A mirror's beams have no cones.
+    if (laser >= cones.cones.size()) return {laser, {}};
+    return {laser, cones.origin_of(laser, in_sensor)};
+  }
+
   void mark_boxes(const std::vector<double>& times, const TimedPose& pose, KittiScan& scan) const {
     const bool timed =
         times_.kind != PointTimes::Kind::none && times.size() == scan.positions.size();
@@ -136,14 +149,12 @@ class SweepReader final : public ScanReader {
       scan.positions[i] = vec_cast<float>(scan_from_then * given);
     Vec3d origin;  // in the sensor frame
     std::uint16_t laser = kNoLaser;
-    if (finding_.sensor && is_finite(scan.positions[i])) {
-      const SensorCones& cones = finding_.sensor->cones;
-      const Vec3d seen = mount.inverse() * then;
-      laser = cones.nearest(seen).first;
-      origin = cones.origin_of(laser, seen);
-    }
+    const bool is_known = i < scan.lasers.size();
+    if (finding_.sensor && is_finite(scan.positions[i]))
+      std::tie(laser, origin) =
+          laser_of(mount.inverse() * then, is_known ? scan.lasers[i] : kNoLaser);
     scan.origins.push_back(vec_cast<float>(scan_from_then * (mount * origin)));
-    scan.lasers.push_back(laser);
+    if (!is_known) scan.lasers.push_back(laser);
   }
 
   std::shared_ptr<const ScanSource> source_;
@@ -304,18 +315,22 @@ SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
                             const Executor& executor) {
   const std::vector<Way> ways = possible_ways(frames, stated);
   const Sample sample(frames);
-  const Residuals residuals = residuals_of(sample, ways, executor);
+  Residuals residuals;
+  if (!frames.sensor) residuals = residuals_of(sample, ways, executor);
   SweepFinding finding;
   finding.sensor = residuals.best;
+  if (frames.sensor) finding.sensor = Recognition{*frames.sensor, {}, 0, 0, 0};
   finding.scan_poses = frames.poses.of_scans;
   if (ways.front().points == SweepPoints::found) {
     if (stated != SweepPoints::found)
       throw Error(ErrorKind::usage,
                   frames.files.front().parent_path().string() +
                       ": `sweep_points` needs scans with times for points and poses");
-    finding.motion =
-        "unknown, since the points have no times; the sensor is assumed to be at rest during a "
-        "scan";
+    finding.motion = std::string("unknown, since the ") +
+                     (frames.times.kind == PointTimes::Kind::none
+                          ? "points have no times"
+                          : "poses have no times in the clock of the points") +
+                     "; the sensor is assumed to be at rest during a scan";
     return finding;
   }
   finding.moved_m = sample.moved_m();
@@ -447,7 +462,9 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
     sequence.trajectory = finding.scan_poses;
     if (finding.sensor) {
       sequence.beams.sensor = finding.sensor->cones.sensor;
-      sequence.beams.recognised = beams_text(finding);
+      sequence.beams.recognised =
+          frames.sensor ? finding.sensor->cones.sensor + ", the sensor of the packets, by its file"
+                        : beams_text(finding);
     }
   }
   progress.end_step();

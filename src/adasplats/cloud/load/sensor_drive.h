@@ -34,6 +34,9 @@ struct SensorFrames {
   std::vector<TimeSpan> spans_s;
   bool poses_are_matched = true;    ///< else they are those at the middles of the files' times
   std::string intensities, labels;  ///< for DriveFacts
+  /// The sensor whose packets these are: the points are in its frame, and its file defines lasers
+  /// and origins. Nothing: it is to be recognised.
+  std::optional<SensorCones> sensor;
 };
 
 /// The sensor of the scans, and how it moves within a sweep.
@@ -45,9 +48,9 @@ struct SweepFinding {
   std::string motion;  ///< one line for users
 };
 
-/// Recognises the sensor by the cones of its beams. Points as measured are on the cones as given;
-/// motion-compensated points are on them once the compensation is undone. `stated` overrides what
-/// would be inferred.
+/// Recognises the sensor, unless it is known, by the cones of its beams. Points as measured are on
+/// the cones as given; motion-compensated points are on them once the compensation is undone.
+/// `stated` overrides what would be inferred.
 SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
                             const Executor& executor);
 

@@ -46,6 +46,13 @@ constexpr const char* kExpected =
     "position.x, ...) and a quaternion whose names say its order (qw, qx, qy, qz; quat_w, ...; "
     "orientation.w, ...)";
 
+constexpr Word kAngleWords[] = {"roll", "pitch", "yaw", "heading", "azimuth"};
+constexpr const char* kConvertAngles =
+    "; angles are not read, since makers differ in their axes and order: convert them to a "
+    "quaternion (for x forward, y left and z up, Python's "
+    "scipy.spatial.transform.Rotation.from_euler('ZYX', [yaw, pitch, roll]).as_quat() is qx, qy, "
+    "qz, qw)";
+
 bool is_one_of_words(Word word, std::span<const Word> words) {
   return std::ranges::find(words, word) != words.end();
 }
@@ -192,7 +199,7 @@ class RoleTable {
         heading.problem =
             "names the columns " + list_of_fields(fields_) + ": no " + missing +
             (numbered_ ? "; a quaternion by numbers does not say which is the scalar" : "") + "; " +
-            kExpected;
+            kExpected + (has_angles() ? kConvertAngles : "");
       return heading;
     }
     if (!problem_.empty()) {
@@ -208,6 +215,11 @@ class RoleTable {
   }
 
  private:
+  bool has_angles() const {
+    return std::ranges::any_of(
+        fields_, [](std::string_view field) { return parts_of(field).has_any(kAngleWords); });
+  }
+
   void take(std::size_t column, const ColumnMeaning& meaning) {
     if (meaning.role == PoseRole::other) return;
     if (problem_.empty()) problem_ = meaning.problem;

@@ -174,7 +174,7 @@ TEST(PoseColumns, WhatIsNotClearIsAnErrorThatSaysWhatIsExpected) {
   reject("time,x,y,z,q0,q1,q2,q3", "txyzabcd", {":1:", "no qw, qx, qy, qz", "scalar", "quat_w"});
   reject("time,x,y,z,q1,q2,q3,q4", "txyzbcda", {"scalar"});
   reject("x,y,z,qw,qx,qy,qz", "xyzabcd", {"no time", "timestamp_ns"});
-  reject("time,x,y,z,roll,pitch,yaw", "txyz---", {"no qw, qx, qy, qz"});
+  reject("time,x,y,z,roll,pitch,yaw", "txyz---", {"no qw, qx, qy, qz", "from_euler"});
   reject("time,x,y,z,rot_x,rot_y,rot_z", "txyzbcd", {"no qw;"});
   reject("time,stamp,x,y,z,qw,qx,qy,qz", "ttxyzabcd", {"'time' and 'stamp'"});
   reject("time,x,y,z,qw,qx,qy,qz,quat_x", "txyzabcd-", {"'qx' and 'quat_x'"});

@@ -141,7 +141,8 @@ class AscendingTimes {
       const bool ascends = exact && exact_ ? *exact > *exact_ : time_s > time_s_;
       if (!ascends)
         throw data_error({path_, {}, line}, "time " + std::string(text) +
-                                                " does not come after the one before, " + text_);
+                                                " does not come after the one before, " + text_ +
+                                                fraction_hint(text));
       time_s = time_after(time_s_, time_s);
     }
     text_ = text;
@@ -151,6 +152,17 @@ class AscendingTimes {
   }
 
  private:
+  /// Nanoseconds printed without their zeros: "7.15205860" for 7.015205860.
+  std::string fraction_hint(std::string_view text) const {
+    const std::string_view before = text_;
+    const std::size_t point = before.find('.');
+    if (point == std::string_view::npos || point != text.find('.') ||
+        before.substr(0, point) != text.substr(0, point) || before.size() == text.size())
+      return {};
+    return "; their fractions have " + std::to_string(text.size() - point - 1) + " and " +
+           std::to_string(before.size() - point - 1) + " digits: were zeros after the point lost?";
+  }
+
   std::filesystem::path path_;
   std::string text_;
   std::optional<ExactTime> exact_;

@@ -169,7 +169,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n", 3,
                 "time 1 does not come after the one before, 2"},
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n2,0,0,0,1,0,0,0\n", 3,
-                "time 2 does not come after the one before, 2"}));
+                "time 2 does not come after the one before, 2"},
+        BadFile{"poses.csv",
+                "time,x,y,z,qw,qx,qy,qz\n2.15205860,0,0,0,1,0,0,0\n2.115218878,0,0,0,1,0,0,0\n", 3,
+                "9 and 8 digits: were zeros after the point lost?"}));
 
 TEST(ReadTrajectory, TimesThatDoNotFit) {
   const TemporaryFolder folder;

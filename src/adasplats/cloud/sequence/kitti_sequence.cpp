@@ -127,6 +127,12 @@ bool is_kitti_sequence(const std::filesystem::path& folder) {
   return std::filesystem::is_directory(folder / "velodyne", ignored) || is_kitti_raw_drive(folder);
 }
 
+bool lacks_poses(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(folder / "velodyne", ignored) &&
+         !std::filesystem::exists(folder / "poses.txt", ignored);
+}
+
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   if (is_kitti_raw_drive(folder)) return open_kitti_raw_drive(folder);
   if (!is_kitti_sequence(folder))
@@ -152,7 +158,7 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
     throw Error(ErrorKind::no_input,
                 poses_file.string() +
                     ": is missing; every scan of a sequence needs a pose (poses of another file: "
-                    "give the folder 'velodyne' as input and the file as `trajectory`)");
+                    "give it as `trajectory`)");
   sequence.trajectory = poses_of_scans(poses_file, read_trajectory(poses_file), sequence.scans);
   return sequence;
 }

@@ -65,6 +65,9 @@ struct KittiSequence {
 /// (is_kitti_raw_drive()).
 bool is_kitti_sequence(const std::filesystem::path& folder);
 
+/// Whether a folder has a `velodyne` folder but no poses.txt: its poses are those of another file.
+bool lacks_poses(const std::filesystem::path& folder);
+
 /// Lists a sequence and reads its poses; scans are not read. Errors: no_input, data (poses of
 /// another count than scans, labels of another count), those of open_kitti_raw_drive.
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder);

@@ -92,9 +92,14 @@ class PiecesInCommon {
  public:
   explicit PiecesInCommon(ProgressSink& warnings) : warnings_(warnings) {}
 
-  /// Throws data where a piece is in another coordinate system than the first, or the clock of its
-  /// points is another: one of the two was not understood.
+  /// Throws data where a piece is in another coordinate system than the first, the clock of its
+  /// points is another, so one of the two was not understood, or if several files are in the sensor
+  /// frame.
   void require(const fs::path& file, const PointCloud& cloud, const LoadReport& loaded) {
+    for (const auto& frame : loaded.sensor_frames)
+      if (scans_.sensor_frames.empty() || scans_.sensor_frames.back() != frame)
+        scans_.sensor_frames.push_back(frame);
+    require_poses_of_scans(file.parent_path().string(), scans_);
     if (!crs_)
       crs_ = {file, cloud.crs};
     else if (file != crs_->first)
@@ -121,6 +126,7 @@ class PiecesInCommon {
   IntensityScales scales_;
   std::optional<std::pair<fs::path, Crs>> crs_;
   std::optional<std::pair<fs::path, std::string>> clock_;
+  LoadReport scans_;  ///< its sensor_frames: those of all pieces
 };
 
 CityPoints read_files(const ModelJob& job, const OpenInputs& inputs,

@@ -52,7 +52,7 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
   if (!scans.motion.empty())
     throw Error(ErrorKind::usage,
                 "`motion` is for raw scans of a sequence; these scans have a trajectory");
-  if (is_kitti_sequence(scans.sequence))
+  if (is_kitti_sequence(scans.sequence) && !lacks_poses(scans.sequence))
     throw Error(ErrorKind::usage, scans.sequence.string() +
                                       ": has its own poses; `trajectory` is for a folder of "
                                       "scans, one per file");

@@ -38,7 +38,7 @@ KittiSequence open_ring_scans(const std::filesystem::path& given,
     throw Error(ErrorKind::usage,
                 given.string() + ": is a file, expected a sequence or a folder of scans");
   const std::filesystem::path folder = resolve_cloud_input(given);
-  if (is_kitti_sequence(folder)) {
+  if (is_kitti_sequence(folder) && (trajectory.empty() || !lacks_poses(folder))) {
     KittiSequence sequence = open_kitti_sequence(folder);
     sequence.beams = recognize_beams(sequence, session.executor);
     return sequence;

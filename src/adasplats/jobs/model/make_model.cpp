@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/model/make_model.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/base/engines.h"
@@ -30,6 +34,35 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
                   std::to_string(built.points_noise) +
                   " as noise, and no surface was found in the rest; it takes several points of "
                   "each surface (see cell, neighbors, denoise and remove)");
+}
+
+/// Whether points are in one plane and were measured from within it.
+bool is_from_flat_scanner(const PointCloud& cloud) {
+  constexpr std::size_t kSample = 20'000;
+  constexpr double kThick_m = 0.02, kWide_m = 0.2, kFromPlane_m = 0.05;
+  if (cloud.sensor_positions.empty()) return false;
+  std::vector<std::size_t> sample;
+  for (std::size_t i = 0; i < cloud.size(); i += cloud.size() / kSample + 1)
+    if (cloud.origin_kinds.empty() || cloud.origin_kinds[i] == OriginKind::measured)
+      sample.push_back(i);
+  if (sample.empty()) return false;
+  const auto count = static_cast<double>(sample.size());
+  Vec3d mean;
+  for (const std::size_t i : sample) mean = mean + vec_cast<double>(cloud.positions[i]) / count;
+  SymmetricMat3d sum;
+  for (const std::size_t i : sample) {
+    const Vec3d d = vec_cast<double>(cloud.positions[i]) - mean;
+    sum.xx += d.x * d.x, sum.xy += d.x * d.y, sum.xz += d.x * d.z;
+    sum.yy += d.y * d.y, sum.yz += d.y * d.z, sum.zz += d.z * d.z;
+  }
+  const SymmetricEigen eigen = symmetric_eigen(sum);
+  if (!(eigen.values[2] < kThick_m * kThick_m * count) ||
+      !(eigen.values[1] > kWide_m * kWide_m * count))
+    return false;
+  return std::ranges::all_of(sample, [&](std::size_t i) {
+    const Vec3d from = vec_cast<double>(cloud.sensor_positions[i]) - mean;
+    return std::fabs(dot(from, eigen.vectors[2])) <= kFromPlane_m;
+  });
 }
 
 /// Makes one model from the points of `load_points`. Building consumes the points; if it fails on a
@@ -79,6 +112,10 @@ class ModelMaker {
     const Stopwatch watch;
     PointCloud cloud = load_points_();
     result.steps.push_back({"load", watch.seconds()});
+    if (is_from_flat_scanner(cloud))
+      session_.progress.warn(
+          "all points and sensor positions are in one plane, as those of a 2-D scanner: the "
+          "normals of surfaces are unknown, and the splats lie in that plane");
     correct(cloud, result);
     if (!classes_.empty()) cloud.classes = classes_;
     return cloud;

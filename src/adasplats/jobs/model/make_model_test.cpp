@@ -117,5 +117,20 @@ TEST_F(MakeModelTest, NoPointsAreAnError) {
   EXPECT_THROW(make_model(PointCloud(), ModelOptions(), session_), Error);
 }
 
+TEST_F(MakeModelTest, A2dScannerIsReported) {
+  class Listener : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { warnings += message; }
+    std::string warnings;
+  } listener;
+  Session session{executor_, listener, 1, device_};
+  PointCloud cloud = plane();
+  make_model(cloud, {}, session);
+  EXPECT_EQ(listener.warnings.find("2-D scanner"), std::string::npos);
+  for (Vec3f& position : cloud.sensor_positions) position.z = 0;
+  make_model(cloud, {}, session);
+  EXPECT_NE(listener.warnings.find("2-D scanner"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace adasplats

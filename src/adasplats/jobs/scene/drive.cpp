@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/scene/drive.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "adasplats/cloud/load/recording_poses.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/jobs/session/inputs.h"
 
@@ -30,6 +35,38 @@ void require_finite(const DriveOptions& drive) {
   if (!good) throw Error(ErrorKind::usage, "the numbers of `at` and `path` must be finite");
 }
 
+/// Warns of a sensor that does not move, and of one that lies on its side.
+void warn_of_poses(const DriveOptions& drive, const Trajectory& poses, ProgressSink& progress) {
+  constexpr std::size_t kMinPoses = 10;
+  constexpr double kStands_m = 0.05, kTilted_deg = 45;
+  if (drive.trajectory.empty() || poses.size() < kMinPoses) return;
+  double reach_m = 0;
+  std::vector<double> tilts_deg;
+  for (const TimedPose& pose : poses) {
+    reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
+                                       poses.front().world_from_sensor.translation));
+    const Vec3d axis = pose.world_from_sensor.rotation * Vec3d{0, 0, 1};
+    tilts_deg.push_back(std::acos(std::clamp(axis.z, -1.0, 1.0)) / kDegree);
+  }
+  std::array<char, 300> text{};
+  if (reach_m < kStands_m) {
+    std::snprintf(text.data(), text.size(),
+                  ": the sensor stands still: its %zu poses span %.3f m; check that the file has "
+                  "the positions",
+                  poses.size(), reach_m);
+    progress.warn(drive.trajectory.string() + text.data());
+  }
+  const double tilt_deg = upper_median_of(tilts_deg);
+  if (tilt_deg > kTilted_deg) {
+    std::snprintf(
+        text.data(), text.size(),
+        ": the axis of the sensor (its z) is %.0f deg from up in the median; if the poses "
+        "are not those of the sensor, give `mount` and `mount_rotation`",
+        tilt_deg);
+    progress.warn(drive.trajectory.string() + text.data());
+  }
+}
+
 /// The scans at these poses.
 std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
                                  const Trajectory& all, const Trajectory& motion,
@@ -38,6 +75,7 @@ std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& se
   for (std::size_t i = 0; i < all.size(); i += drive.every) chosen.push_back(all[i]);
   if (chosen.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
   const Trajectory poses = shifted(mounted(std::move(chosen), drive.mount), drive.offset_m);
+  warn_of_poses(drive, poses, progress);
   if (!drive.rolling_shutter || fires_at_once(sensor)) return still_scans(poses);
   if (motion.size() < 2)
     throw Error(ErrorKind::data,
