@@ -158,14 +158,14 @@ bool looks_like_nclt(const Table& table) {
 }
 
 /// Rejects a file where more than half of the points have a coordinate that no scan has: beyond
-/// 1000 km, or too small for the precision of a float.
+/// 1000 km, or below an atom's size but not 0.
 void require_coordinates(const std::filesystem::path& path, const Table& table) {
-  constexpr float kMax_m = 1e6F;
+  constexpr float kMin_m = 1e-10F, kMax_m = 1e6F;
   std::size_t wrong = 0;
   for (std::size_t row = 0; row < table.rows; ++row) {
     const auto is_wrong = [&](std::size_t axis) {
       const float size = std::fabs(floats(table, axis)[row]);
-      return size > kMax_m || std::fpclassify(size) == FP_SUBNORMAL;
+      return size > kMax_m || (size > 0 && size < kMin_m);
     };
     if (is_wrong(0) || is_wrong(1) || is_wrong(2)) ++wrong;
   }
@@ -173,7 +173,7 @@ void require_coordinates(const std::filesystem::path& path, const Table& table) 
   throw data_error(
       {path, {}, {}},
       "not a KITTI scan (float32 x, y, z, intensity): coordinates of " + std::to_string(wrong) +
-          " of " + std::to_string(table.rows) + " points would be above 1000 km or below 1e-38 m" +
+          " of " + std::to_string(table.rows) + " points would be above 1000 km or below 1e-10 m" +
           (looks_like_nclt(table)
                ? "; it seems to have 8 bytes a point (uint16 x, y, z, uint8 intensity, laser), as "
                  "velodyne_sync of NCLT"
