@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,12 +92,12 @@ double mean_step(std::span<const float> values, std::size_t width) {
   return sum / static_cast<double>(values.size() - width);
 }
 
-/// The 5th to 95th percentile of every `width`-th float, from `first` on.
+/// The 5th to 95th percentile of every `width`-th float, from `first` on; NaN if none is finite.
 double spread_of(std::span<const float> values, std::size_t width, std::size_t first) {
   std::vector<float> column;
   for (std::size_t i = first; i < values.size(); i += width)
     if (std::isfinite(values[i])) column.push_back(values[i]);
-  if (column.empty()) return 0;
+  if (column.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::ranges::sort(column);
   const std::size_t margin = column.size() / 20;
   return static_cast<double>(column[column.size() - 1 - margin]) -
@@ -110,7 +111,7 @@ bool differ_in_halves(std::span<const float> values, std::size_t width) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double first = spread_of(values, 2 * width, axis);
     const double second = spread_of(values, 2 * width, axis + width);
-    if (std::max(first, second) > kClear * std::min(first, second)) return true;
+    if (first > kClear * second || second > kClear * first) return true;
   }
   return false;
 }
