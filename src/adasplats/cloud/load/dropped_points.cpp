@@ -42,7 +42,7 @@ void report_dropped(const std::string& input, const LoadReport& report, const Lo
                                        ": " + cure + "raise `max_dropped` to drop them anyway");
     progress.warn(what + " and are dropped");
   };
-  report_points(report.no_returns, "are missing returns (x, y and z are NaN)", "");
+  report_points(report.no_returns, "are missing returns (x, y and z are NaN or 0)", "");
   report_points(report.dropped_not_finite - report.no_returns, "have a position that is not finite",
                 "check the program that wrote the file, or ");
   report_points(report.dropped_far,
