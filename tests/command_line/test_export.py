@@ -228,6 +228,21 @@ class Export(ProgramTest):
         glb = self.export(cloud, "far.glb").read_bytes()
         self.assertIn(b'"origin":[448000,5412000,0]', glb)
 
+    def test_scans_as_las_keep_intensities_above_1(self):
+        model = self.folder / "model.ply"
+        header = ["ply", "format ascii 1.0", "element vertex 441"]
+        header += [f"property float {name}" for name in "x y z nx ny nz radius intensity".split()]
+        splats = [f"{x} {y} 0 0 0 1 0.8 {200 if x > 0 else 100}"
+                  for x in range(-10, 11) for y in range(-10, 11)]
+        model.write_text("\n".join([*header, "end_header", *splats, ""]))
+        las = (self.simulate(model, "scans", "--format", "las") / "000000.las").read_bytes()
+        start, = struct.unpack_from("<I", las, 96)
+        size, = struct.unpack_from("<H", las, 105)
+        found = {struct.unpack_from("<H", las, place + 12)[0]
+                 for place in range(start, len(las) - size + 1, size)}
+        self.assertGreater(len(found), 0)
+        self.assertLessEqual(max(found), 200)
+
 
 if __name__ == "__main__":
     unittest.main()

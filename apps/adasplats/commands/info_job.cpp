@@ -19,6 +19,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/jobs/model/make_model.h"
@@ -57,7 +58,8 @@ class Survey {
   void describe(FileFacts& facts, const char* unit) const {
     facts.rows.emplace_back(unit, grouped(count_));
     facts.json[unit] = count_;
-    if (not_finite_ > 0) facts.rows.emplace_back("not finite", grouped(not_finite_));
+    if (not_finite_ > 0)
+      facts.rows.emplace_back("missing returns or not finite", grouped(not_finite_));
     if (count_ == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string name(1, "xyz"[axis]);
@@ -125,22 +127,25 @@ void describe_las(const LasFacts& las, FileFacts& facts) {
                        {"offset", {las.offset.x, las.offset.y, las.offset.z}}};
 }
 
-/// What a file says before its points are loaded.
-void describe_file(const fs::path& input, const LoadOptions& options, FileFacts& facts,
-                   Session& session) {
+/// What a file says before its points are loaded. Returns the name of its column of intensities.
+std::string describe_file(const fs::path& input, const LoadOptions& options, FileFacts& facts,
+                          Session& session) {
   const Table table =
       read_points(input, {options.salvage, &session.executor, options.selection, true});
   if (is_las(input)) describe_las(read_las_facts(input), facts);
   const std::string fields = fields_of(table);
   facts.rows.emplace_back("fields", fields);
   facts.json["fields"] = fields;
+  const Column* const intensity = find_column(table, PointColumn::intensity);
+  return intensity == nullptr ? std::string() : intensity->name;
 }
 
 FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                       const LoadOptions& options, Session& session) {
   FileFacts facts;
   facts.kind = "point cloud";
-  if (fs::is_regular_file(input)) describe_file(input, options, facts, session);
+  std::string intensity;  // the name of its column, in one file
+  if (fs::is_regular_file(input)) intensity = describe_file(input, options, facts, session);
   LoadOptions described = options;
   described.accept_sensor_frame = true;
   const auto [cloud, report] =
@@ -155,7 +160,10 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   for (std::size_t i = 0; i < cloud.size(); ++i) survey.add(cloud.world(i));
   for (const std::uint16_t id : cloud.classes) survey.add_class(id);
   survey.describe(facts, "points");
-  facts.rows.emplace_back("dropped: not finite", grouped(report.dropped_not_finite));
+  if (report.no_returns > 0)
+    facts.rows.emplace_back("dropped: missing returns", grouped(report.no_returns));
+  facts.rows.emplace_back("dropped: not finite",
+                          grouped(report.dropped_not_finite - report.no_returns));
   facts.rows.emplace_back("dropped: too far", grouped(report.dropped_far));
   facts.rows.emplace_back("dropped: the recording vehicle itself", grouped(report.own_body));
   facts.rows.emplace_back("dropped: where it drove", grouped(report.driven_path));
@@ -166,7 +174,12 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
     facts.rows.emplace_back("by their times", report.timed->description());
     facts.json["timed_origins"] = to_json(*report.timed);
   }
-  facts.rows.emplace_back("intensities", cloud.intensities.empty() ? "no" : "yes");
+  const bool has_intensities =
+      std::ranges::any_of(cloud.intensities, [](float value) { return std::isfinite(value); });
+  facts.rows.emplace_back("intensities", !has_intensities ? "no"
+                                         : intensity.empty()
+                                             ? "yes"
+                                             : "yes, of column '" + intensity + "'");
   survey.describe_classes(facts, scheme);
   return facts;
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
@@ -52,6 +53,7 @@ struct CloudPart {
   std::optional<SensorFrame> sensor_frame;
   std::vector<Vec3f> scan_origins;     ///< of sequences with an origin per point, sensor frames
   std::vector<std::uint8_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
+  std::vector<std::string> remarks;    ///< warnings on columns, without the file's name
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence

@@ -137,6 +137,22 @@ struct ReadParts {
   Crs crs;
 };
 
+/// Warns of each remark on a file, once for all files that have it.
+void warn_of_remarks(std::span<const CloudPart> parts, ProgressSink& progress) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> files_with;
+  for (const CloudPart& part : parts)
+    for (const std::string& remark : part.remarks) {
+      auto known = std::ranges::find(files_with, remark, [](const auto& e) { return e.first; });
+      if (known == files_with.end()) known = files_with.insert(known, {remark, {}});
+      known->second.push_back(part.runs.front().file.string());
+    }
+  for (const auto& [remark, files] : files_with) {
+    const std::string more =
+        files.size() == 1 ? "" : " and " + std::to_string(files.size() - 1) + " more files";
+    progress.warn(files.front() + more + ": " + remark);
+  }
+}
+
 ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& options,
                      const Executor& executor, ProgressSink& progress) {
   std::vector<CloudPart> parts;
@@ -161,6 +177,7 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
   for (const CloudPart& part : parts)
     if (!part.is_sequence) warn_of_steps(part.runs.front().file, part.world_positions, progress);
+  warn_of_remarks(parts, progress);
   warn_of_intensity_scales(parts, progress);
   return {std::move(parts), crs.crs()};
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/core/temporary_folder_test.h"
@@ -762,6 +763,130 @@ TEST(LoadCloud, OneFrameOfKittisObjectBenchmarkFromItsSensor) {
     EXPECT_EQ(cloud.origin_kind(i), OriginKind::stated);
     EXPECT_LT(length(cloud.origin + vec_cast<double>(cloud.sensor_positions[i])), 1e-5);
   }
+}
+
+// RIEGL's reflectances are in decibels.
+TEST(LoadCloud, DecibelsAreNoIntensities) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.csv", "x,y,z,Reflectance\n1,2,3,-12.5\n4,5,6,0.75\n");
+  Listener listener;
+  const PointCloud cloud =
+      load_cloud(std::span(&file, 1), all_columns(), Executor(1), listener).first;
+  EXPECT_TRUE(cloud.intensities.empty());
+  EXPECT_EQ(other(cloud, "reflectance").as_double(0), -12.5);
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("'reflectance' has values of -12.5 to 0.75"),
+            std::string::npos)
+      << listener.warnings[0];
+  const auto both =
+      folder.write("b.csv", "x,y,z,Reflectance,Amplitude\n1,2,3,-12.5,20\n4,5,6,0.75,30\n");
+  const PointCloud amplitudes = load({both}, all_columns()).first;
+  EXPECT_EQ(amplitudes.intensities, (std::vector<float>{20, 30}));
+  EXPECT_EQ(amplitudes.others.columns.size(), 2U);  // both keep their names
+}
+
+// Oracle: table 7 of the LAS specification: intensity is 0 when not included.
+TEST(LoadCloud, LasWithoutIntensitiesHasUnknownOnes) {
+  const TemporaryFolder folder;
+  const std::vector<double> x = {1, 2};
+  const auto las = [&](const char* name, std::vector<std::uint16_t> values) {
+    const ColumnView columns[] = {{"x", ColumnType::f64, x.data(), 8},
+                                  {"y", ColumnType::f64, x.data(), 8},
+                                  {"z", ColumnType::f64, x.data(), 8},
+                                  {"intensity", ColumnType::u16, values.data(), 2}};
+    write_las(folder.path() / name, 2, columns, {});
+    return folder.path() / name;
+  };
+  const std::vector<std::filesystem::path> both = {las("a.las", {0, 0}), las("b.laz", {0, 9})};
+  Listener listener;
+  const PointCloud cloud = load_cloud(both, {}, Executor(1), listener).first;
+  ASSERT_EQ(cloud.intensities.size(), 4U);
+  EXPECT_EQ(std::ranges::count_if(cloud.intensities, [](float v) { return std::isnan(v); }), 2);
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("a.las: the intensities of all 2 points are 0"),
+            std::string::npos)
+      << listener.warnings[0];
+}
+
+std::string pcd_header(const char* height, const char* viewpoint) {
+  return std::string("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT ") +
+         height + "\nVIEWPOINT " + viewpoint + "\nDATA ascii\n";
+}
+
+TEST(LoadCloud, ZerosOfAnOrganisedCloudAreMissingReturns) {
+  const TemporaryFolder folder;
+  const std::string points = "-0 0 0\n1 2 3\n0 0 0\n4 5 6\n";
+  const auto grid = folder.write("a.pcd", pcd_header("2", "0 0 0 1 0 0 0") + points);
+  const auto [cloud, report] = load({grid});
+  EXPECT_EQ(cloud.size(), 2U);
+  EXPECT_EQ(report.no_returns, 2U);
+  const auto row = folder.write("b.pcd", pcd_header("1", "0 0 0 1 0 0 0") + "0 0 0\n1 2 3\n");
+  EXPECT_EQ(load({row}).first.size(), 2U);
+  // Others write the grid as a row.
+  std::string many = "x y z\n1 2 3\n";
+  for (int k = 0; k < 100; ++k) many += "0 0 0\n";
+  EXPECT_EQ(load({folder.write("c.xyz", many)}).second.no_returns, 100U);
+}
+
+// CloudCompare writes its shift into VIEWPOINT, other programs the pose of the sensor.
+TEST(LoadCloud, ViewpointsOfPcdAreNotIgnored) {
+  const TemporaryFolder folder;
+  const auto load_one = [&](const char* viewpoint, Listener& listener) {
+    const auto file = folder.write("a.pcd", pcd_header("1", viewpoint) + "1 2 3\n4 5 6\n");
+    return load_cloud(std::span(&file, 1), {}, Executor(1), listener).first;
+  };
+  Listener shifted, posed, none;
+  EXPECT_TRUE(load_one("600000 6.339e+06 -0 1 0 0 0", shifted).world(1) ==
+              (Vec3d{600004, 6339005, 6}));
+  ASSERT_EQ(shifted.warnings.size(), 1U);
+  EXPECT_NE(shifted.warnings[0].find("600000, 6339000, 0 m"), std::string::npos)
+      << shifted.warnings[0];
+  EXPECT_TRUE(load_one("1.5 2 3 1 0 0 0", posed).world(1) == (Vec3d{4, 5, 6}));
+  ASSERT_EQ(posed.warnings.size(), 1U);
+  EXPECT_NE(posed.warnings[0].find("VIEWPOINT 1.5 2 3 1 0 0 0"), std::string::npos)
+      << posed.warnings[0];
+  load_one("0 0 0 1 0 0 0", none);
+  EXPECT_TRUE(none.warnings.empty());
+}
+
+TEST(LoadCloud, SecondsAndNanosecondsAreOneTime) {
+  const TemporaryFolder folder;
+  const auto file =
+      folder.write("a.csv", "timestamp_nanosec,timestamp_sec,x,y,z\n500000000,17,1,2,3\n");
+  ProgressSink quiet;
+  EXPECT_EQ(read_file_part(file, {}, quiet).times_s, (std::vector<double>{17.5}));
+}
+
+// An EPT has thousands of files.
+TEST(LoadCloud, FilesShareAWarning) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> files;
+  for (const char* const name : {"a.csv", "b.csv", "c.csv"})
+    files.push_back(folder.write(name, "x,y,z,intensty\n1,2,3,4\n"));
+  Listener listener;
+  load_cloud(files, {}, Executor(1), listener);
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("a.csv and 2 more files: column 'intensty'"),
+            std::string::npos)
+      << listener.warnings[0];
+}
+
+// Oracle: the values that were written.
+TEST(SaveCloud, ColumnsOfOtherProgramsFillTheFieldsOfLas) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.csv",
+                                 "x,y,z,scalar_ReturnNumber,scalar_NumberOfReturns,scalar_GpsTime,"
+                                 "ScanAngleRank,PointSourceId\n1,2,3,2,4,575.25,-12,70\n");
+  save_cloud_las(folder.path() / "a.las", load({file}, all_columns()).first);
+  const Table table = read_las(folder.path() / "a.las", {.all_fields = true});
+  const std::pair<const char*, double> values[] = {{"return_number", 2},
+                                                   {"number_of_returns", 4},
+                                                   {"gps_time", 575.25},
+                                                   {"scan_angle", -12},
+                                                   {"point_source_id", 70}};
+  for (const auto& [name, value] : values)
+    EXPECT_NEAR(table.find(name)->as_double(0), value, 1e-4) << name;
+  EXPECT_EQ(table.find("scalar_gpstime"), nullptr);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +17,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/column_names.h"
+#include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 
@@ -249,6 +252,11 @@ void keep_others(const PointFile& file, std::span<const Column* const> used, Kep
   part.cloud.others.has_adjusted_times = part.declared_clock == DeclaredClock::adjusted_gps;
 }
 
+bool is_las_name(const std::filesystem::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  return extension == ".las" || extension == ".laz";
+}
+
 /// Reports a note of the reader as a warning or an error.
 void report(const PointFile& file, const ReaderNote& note, ProgressSink& progress) {
   const std::string start = file.path.string() + ": ";
@@ -282,28 +290,109 @@ void report(const PointFile& file, const ReaderNote& note, ProgressSink& progres
   }
 }
 
-/// Warns about columns that the user may have expected to be read.
-void warn_about_columns(const PointFile& file, const CloudPart& part, const LoadOptions& options,
-                        ProgressSink& progress) {
-  const std::string start = file.path.string() + ": ";
+/// Least and greatest value of a column, for messages.
+std::string range_text(const Column& column) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for_each_value(column, [&](std::size_t, auto value) {
+    least = std::min(least, static_cast<double>(value));
+    most = std::max(most, static_cast<double>(value));
+  });
+  return decimal_text(least) + " to " + decimal_text(most);
+}
+
+/// Remarks on columns that the user may have expected to be read.
+void remark_on_columns(const PointFile& file, const LoadOptions& options, CloudPart& part) {
   for (const Column& column : file.table.columns) {
     if (column.name == options.label_field || column.name == options.sensor_x_field ||
         column.name == options.sensor_y_field || column.name == options.sensor_z_field)
       continue;
     if (const auto likely = likely_column_name(column.name))
-      progress.warn(start + "column " + shown(column.name) + " is not read, did you mean '" +
-                    *likely + "'? Rename the column to use it");
+      part.remarks.push_back("column " + shown(column.name) + " is not read, did you mean '" +
+                             *likely + "'? Rename the column to use it");
+    if (part.cloud.intensities.empty() && is_in_decibels(column))
+      part.remarks.push_back("column " + shown(column.name) + " has values of " +
+                             range_text(column) +
+                             ", so it is in decibels and not used as intensity; add a column "
+                             "'intensity' of linear values, such as 10^(dB / 10), to use it");
   }
   if (!options.trajectory.empty() && part.times_s.empty() && part.world_sensors.empty() &&
       has_times(options.trajectory))
-    progress.warn(start + "no column of times (found " + file.column_list() +
-                  "); sensor positions on the trajectory need one");
+    part.remarks.push_back("no column of times (found " + file.column_list() +
+                           "); sensor positions on the trajectory need one");
+}
+
+/// Intensities of LAS are "0 when not included": if all are 0, they are unknown.
+void read_intensities(const PointFile& file, const Column& column, const LoadOptions& options,
+                      CloudPart& part) {
+  std::vector<float>& intensities = part.cloud.intensities;
+  intensities.resize(file.table.rows);
+  for_each_value(column, [&intensities](std::size_t i, auto value) {
+    intensities[i] = static_cast<float>(value);
+  });
+  if (!is_las_name(file.path) || column.name != "intensity" || intensities.empty() ||
+      std::ranges::any_of(intensities, [](float value) { return value != 0; }))
+    return;
+  std::ranges::fill(intensities, std::numeric_limits<float>::quiet_NaN());
+  if (options.selection.is_all())
+    part.remarks.push_back("the intensities of all " + std::to_string(intensities.size()) +
+                           " points are 0, so none are stored; they are unknown");
+}
+
+/// Points at exactly 0, 0, 0 in a grid of beams, or at least 100 and a thousandth of all, are
+/// missing returns: they become NaN, as PCL writes them.
+void mark_missing_returns(const PointFile& file, std::vector<Vec3d>& positions) {
+  constexpr std::ptrdiff_t kMany = 100, kShare = 1000;
+  const auto is_nothing = [](Vec3d p) { return p == Vec3d{}; };
+  const std::ptrdiff_t count = std::ranges::count_if(positions, is_nothing);
+  const bool is_grid = std::ranges::any_of(file.table.comments, [](const std::string& comment) {
+    return comment.starts_with("HEIGHT ");
+  });
+  const bool are_many =
+      count >= kMany && kShare * count >= static_cast<std::ptrdiff_t>(positions.size());
+  if (count == std::ssize(positions) || !(is_grid || are_many)) return;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::ranges::replace_if(positions, is_nothing, Vec3d{kNone, kNone, kNone});
+}
+
+/// What to do with the VIEWPOINT of a PCD whose points are not known to be in the sensor's frame.
+/// CloudCompare stores the shift of its coordinates there, others the pose of the sensor.
+void apply_viewpoint(const PointFile& file, const LoadOptions& options, CloudPart& part) {
+  constexpr std::string_view kKey = "VIEWPOINT ";
+  constexpr double kMinShift_m = 10e3;
+  const auto comment = std::ranges::find_if(
+      file.table.comments, [](const std::string& text) { return text.starts_with(kKey); });
+  if (comment == file.table.comments.end()) return;
+  std::array<double, 7> values{};
+  BlankTokens tokens(std::string_view(*comment).substr(kKey.size()));
+  for (double& value : values) value = parse_number<double>(tokens.next()).value_or(0);
+  const Vec3d place{values[0], values[1], values[2]};
+  const bool is_turned = values[4] != 0 || values[5] != 0 || values[6] != 0;
+  if (!is_turned && place == Vec3d{}) return;
+  double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0;
+  for (const Vec3d p : part.world_positions) {
+    if (!is_finite(p)) continue;
+    nearest_m = std::min(nearest_m, length(p - place));
+    farthest_m = std::max(farthest_m, length(p));
+  }
+  if (!is_turned && nearest_m > kMinShift_m && farthest_m < length(place)) {
+    for (Vec3d& p : part.world_positions) p = p + place;
+    part.remarks.push_back(
+        "VIEWPOINT is far from the points and not turned, so it is the shift "
+        "of their coordinates (CloudCompare), and added: " +
+        decimal_text(place.x) + ", " + decimal_text(place.y) + ", " + decimal_text(place.z) + " m");
+    return;
+  }
+  if (options.viewpoint) return;
+  part.remarks.push_back(
+      "its " + *comment +
+      " (x y z qw qx qy qz) is not used: for points in the world, give the "
+      "sensor's position as `viewpoint`; for a scan in the sensor's frame, give its folder and the "
+      "pose in a file as `trajectory`");
 }
 
 /// Only LAS declares its clock: adjusted GPS time if a note reports it, else seconds of the week.
 DeclaredClock declared_clock_of(const PointFile& file) {
-  const std::string extension = lower_case(file.path.extension().string());
-  if (extension != ".las" && extension != ".laz") return DeclaredClock::none;
+  if (!is_las_name(file.path)) return DeclaredClock::none;
   const bool is_adjusted = std::ranges::find(file.table.notes, NoteKind::adjusted_gps,
                                              &ReaderNote::kind) != file.table.notes.end();
   return is_adjusted ? DeclaredClock::adjusted_gps : DeclaredClock::gps_week;
@@ -316,6 +405,22 @@ bool can_lack_pose(const std::filesystem::path& path, const Table& table) {
   return extension != ".e57" && extension != ".ptx" && table.crs.empty();
 }
 
+/// With the unit in the column's name, and a second column of nanoseconds.
+void read_times(const PointFile& file, CloudPart& part) {
+  const Column* const time = find_column(file.table, PointColumn::time);
+  if (time == nullptr) return;
+  const double unit_s = time_unit_of_name(time->name);
+  part.times_s.resize(file.table.rows);
+  for_each_value(*time, [&](std::size_t i, auto value) {
+    part.times_s[i] = unit_s * static_cast<double>(value);
+  });
+  if (const Column* const fractions = nanoseconds_beside(file.table, *time))
+    for_each_value(*fractions, [&](std::size_t i, auto value) {
+      part.times_s[i] += 1e-9 * static_cast<double>(value);
+    });
+  part.declared_clock = declared_clock_of(file);
+}
+
 }  // namespace
 
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
@@ -324,15 +429,16 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
   const Table table = read_points(path, {options.salvage, executor, options.selection,
                                          options.other_columns == KeptColumns::all});
   CloudPart part = part_of_table(path, table, options, progress);
-  if (part.world_sensors.empty())
-    part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
-  const bool is_single = part.world_sensors.empty() && !part.sensor_frame;
-  if (is_single && options.selection.is_all() && can_lack_pose(path, table)) {
+  mark_missing_returns({path, table}, part.world_positions);
+  if (!part.world_sensors.empty()) return part;
+  part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
+  if (!part.sensor_frame && options.selection.is_all() && can_lack_pose(path, table)) {
     const Executor own(1);
     part.sensor_frame =
         scan_pattern_of(part.world_positions, executor != nullptr ? *executor : own);
     if (part.sensor_frame) part.sensor_frame->has_pose = has_viewpoint(table);
   }
+  if (!part.sensor_frame) apply_viewpoint({path, table}, options, part);
   return part;
 }
 
@@ -359,14 +465,7 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
     part.world_sensors = read_vectors(file, *columns);
     used.insert(used.end(), columns->begin(), columns->end());
   }
-  if (const Column* const time = find_column(table, PointColumn::time)) {
-    const double unit_s = time_unit_of_name(time->name);
-    part.times_s.resize(table.rows);
-    for_each_value(*time, [&](std::size_t i, auto value) {
-      part.times_s[i] = unit_s * static_cast<double>(value);
-    });
-    part.declared_clock = declared_clock_of(file);
-  }
+  read_times(file, part);
   PointCloud& cloud = part.cloud;
   if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())
     read_origin_kinds(file, *use(column), cloud);
@@ -378,13 +477,14 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
     read_instances(file, *column, cloud);
   if (const Column* column = use(find_column(table, PointColumn::scan_index)))
     cloud.scan_indices = read_whole_numbers(file, *column);
-  if (const Column* column = use(find_column(table, PointColumn::intensity))) {
-    cloud.intensities.resize(table.rows);
-    for_each_value(*column, [&cloud](std::size_t i, auto value) {
-      cloud.intensities[i] = static_cast<float>(value);
-    });
+  if (const Column* column = find_column(table, PointColumn::intensity)) {
+    read_intensities(file, *column, options, part);
+    // An amplitude, which need not be linear, also keeps its name.
+    if (lower_case(column->name).find("amplitude") == std::string::npos) use(column);
+    // One that is 0 throughout gave way to another.
+    if (const Column* const zeros = file.find("intensity"); zeros != column) use(zeros);
   }
-  warn_about_columns(file, part, options, progress);
+  remark_on_columns(file, options, part);
   const bool has_origins =
       !part.world_sensors.empty() || options.viewpoint || !options.trajectory.empty();
   if (!has_origins && options.other_columns != KeptColumns::all) orient_by_normals(file, part);

@@ -13,6 +13,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/pcd/pcd_writer.h"
@@ -109,14 +110,15 @@ class OtherViews {
  public:
   explicit OtherViews(std::vector<ColumnView>& columns) : columns_(columns) {}
 
+  bool has(const std::string& name) const {
+    return std::ranges::any_of(columns_, [&name](const ColumnView& other) {
+      return lower_case(other.name) == lower_case(name);
+    });
+  }
+
   /// Under the column's name, or a free one.
   void add(Column column) {
-    const auto is_taken = [this](const std::string& name) {
-      return std::ranges::any_of(columns_, [&name](const ColumnView& other) {
-        return lower_case(other.name) == lower_case(name);
-      });
-    };
-    while (is_taken(column.name)) column.name += '_';
+    while (has(column.name)) column.name += '_';
     columns_.push_back(column_view(owned_.emplace_back(std::move(column))));
   }
 
@@ -184,7 +186,7 @@ bool is_las_field(std::string_view name) {
 
 template <class T>
 bool add_las_field(const Column& column, OtherViews& views) {
-  const std::string name = lower_case(column.name);
+  const std::string name = las_field_name(column.name);
   if (!is_las_field<T>(name)) return false;
   auto values = exact_values<T>(column);
   constexpr int kMaxReturns = 15, kMaxChannel = 3;
@@ -223,34 +225,38 @@ void add_others_las(const OtherColumns& others, OtherViews& views) {
   if (!fit) colors.clear();
   for (const Column& column : others.columns) {
     const bool is_color = std::ranges::count(colors, &column) > 0;
-    if (is_color || (column.name == "nir" && !colors.empty())) {
+    const std::string name = las_field_name(column.name);
+    const std::string field = views.has(name) ? std::string() : name;
+    if (is_color || (field == "nir" && !colors.empty())) {
       if (auto values = exact_values<std::uint16_t>(column)) {
         for (std::uint16_t& value : *values)
           if (is_color && are_bytes) value = static_cast<std::uint16_t>(256 * value);
-        views.add({column.name, std::move(*values)});
+        views.add({is_color ? column.name : field, std::move(*values)});
         continue;
       }
     }
-    if (lower_case(column.name) == "gps_time" &&
-        std::holds_alternative<std::vector<double>>(column.values)) {
-      views.add({"gps_time", column.values});
+    if (field == "gps_time") {
+      std::vector<double> times(column.size());
+      for (std::size_t i = 0; i < times.size(); ++i) times[i] = column.as_double(i);
+      views.add({field, std::move(times)});
       continue;
     }
-    if (lower_case(column.name) == "scan_angle") {
+    if (field == "scan_angle") {
       if (auto steps = las_angles(column)) {
         views.add({"scan_angle", std::move(*steps)});
         continue;
       }
     }
-    if (add_las_field<std::uint8_t>(column, views) || add_las_field<std::uint16_t>(column, views))
+    if (!field.empty() &&
+        (add_las_field<std::uint8_t>(column, views) || add_las_field<std::uint16_t>(column, views)))
       continue;
     // Extra bytes: a name that is no field's, of at most 31 bytes.
     constexpr std::size_t kMaxName = 31;
-    const std::string name = lower_case(column.name);
-    const bool is_reserved = is_las_field<std::uint8_t>(name) ||
-                             is_las_field<std::uint16_t>(name) || name == "gps_time" ||
-                             name == "scan_angle" || name == "nir" || name == "classification" ||
-                             std::ranges::count(kRgbColumns, name) > 0;
+    const std::string lower = lower_case(column.name);
+    const bool is_reserved = is_las_field<std::uint8_t>(lower) ||
+                             is_las_field<std::uint16_t>(lower) || lower == "gps_time" ||
+                             lower == "scan_angle" || lower == "nir" || lower == "classification" ||
+                             std::ranges::count(kRgbColumns, lower) > 0;
     views.add({column.name.substr(0, kMaxName - 1) + (is_reserved ? "_" : ""), column.values});
   }
 }

@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMinPointsInFrame = 10;
 constexpr double kMinShareInFrame = 0.9;
 
-constexpr std::array<std::string_view, 3> kRangeNames = {"range", "range_m", "ranges"};
+constexpr std::array<std::string_view, 5> kRangeNames = {"range", "range_m", "ranges", "distance",
+                                                         "distance_m"};
 
 /// A column of ranges, in any case, with or without CloudCompare's prefix.
 const Column* range_column(const Table& table) {

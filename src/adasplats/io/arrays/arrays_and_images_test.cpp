@@ -219,7 +219,7 @@ TEST(KittiBin, OtherFilesAreNotTakenForScans) {
 // Oracle: the layout that was written. All values are possible coordinates and intensities.
 TEST(KittiBin, OtherWidthsAreErrors) {
   const TemporaryFolder folder;
-  for (const int width : {3, 4, 5, 6, 7}) {
+  for (const int width : {3, 4, 5, 6, 7, 8}) {
     std::string content;
     for (int k = 0; k < 420; ++k) {
       const double values[] = {30 + 10 * std::cos(0.01 * k),
@@ -228,7 +228,8 @@ TEST(KittiBin, OtherWidthsAreErrors) {
                                0.3 + 0.1 * (k % 3),
                                0.5 + k % 16,
                                0.0001 * k,
-                               2.5};
+                               2.5,
+                               1};
       for (int i = 0; i < width; ++i)
         content += bytes_of(static_cast<float>(values[static_cast<std::size_t>(i)]));
     }
@@ -239,6 +240,38 @@ TEST(KittiBin, OtherWidthsAreErrors) {
       expect_error(ErrorKind::data, {"w.bin", std::to_string(width) + " floats a point"},
                    [&] { read_points(file); });
   }
+}
+
+// As S3DIS has them: 100 points in no order, with 8-bit colours. All can be intensities.
+TEST(KittiBin, SixFloatsOfPointsInNoOrder) {
+  const TemporaryFolder folder;
+  std::string six, four;
+  for (int k = 0; k < 100; ++k) {
+    const int random = k * 37 % 101;
+    const double values[] = {0.05 * random, 0.03 * (random * 13 % 97), 0.02 * (random * 7 % 103)};
+    for (const double value : values) six += bytes_of(static_cast<float>(value));
+    for (const double value : values) four += bytes_of(static_cast<float>(value));
+    for (const int grey : {0, 3, -5})
+      six += bytes_of(static_cast<float>(100 + grey + random * 11 % 89));
+    four += bytes_of(static_cast<float>(100 + random * 11 % 89));
+  }
+  EXPECT_EQ(read_points(folder.file("four.bin", four)).rows, 100U);
+  expect_error(ErrorKind::data, {"six.bin", "6 floats a point"},
+               [&] { read_points(folder.file("six.bin", six)); });
+}
+
+// The layout of NCLT: 2 bytes each for x, y and z, 1 each for intensity and laser.
+TEST(KittiBin, IntegersAreNotFloats) {
+  const TemporaryFolder folder;
+  std::string content;
+  for (int k = 0; k < 200; ++k) {
+    for (const int value : {20000 + 7 * k, 19000 - 5 * k, 20100 + k})
+      content += bytes_of(static_cast<std::uint16_t>(value));
+    content += bytes_of(static_cast<std::uint8_t>(k));
+    content += bytes_of(static_cast<std::uint8_t>(k % 32));
+  }
+  expect_error(ErrorKind::data, {"n.bin", "not a KITTI scan", "8 bytes a point", "NCLT"},
+               [&] { read_points(folder.file("n.bin", content)); });
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -88,11 +92,35 @@ double mean_step(std::span<const float> values, std::size_t width) {
   return sum / static_cast<double>(values.size() - width);
 }
 
-/// The number of floats a point, from 3 to 8, if it is clearly not `width`: neighbouring points of
-/// a scan resemble each other, so values repeat best at the true width.
+/// The 5th to 95th percentile of every `width`-th float, from `first` on; NaN if none is finite.
+double spread_of(std::span<const float> values, std::size_t width, std::size_t first) {
+  std::vector<float> column;
+  for (std::size_t i = first; i < values.size(); i += width)
+    if (std::isfinite(values[i])) column.push_back(values[i]);
+  if (column.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(column);
+  const std::size_t margin = column.size() / 20;
+  return static_cast<double>(column[column.size() - 1 - margin]) -
+         static_cast<double>(column[margin]);
+}
+
+/// Whether two points of `width` floats read as one have other spreads in their second half: then
+/// it is no second point. Alternating lasers alone do not change the spreads of x and y so much.
+bool differ_in_halves(std::span<const float> values, std::size_t width) {
+  constexpr double kClear = 4;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double first = spread_of(values, 2 * width, axis);
+    const double second = spread_of(values, 2 * width, axis + width);
+    if (first > kClear * second || second > kClear * first) return true;
+  }
+  return false;
+}
+
+/// The number of floats a point, from 3 to 8, if it is clearly not `width`: values of one column
+/// resemble each other, so they repeat best at the true width. That holds for points in any order.
 std::optional<std::size_t> other_width(InputFile& file, std::size_t width) {
-  constexpr std::size_t kMinFloats = 840, kMaxFloats = 1 << 16, kMaxWidth = 8;
-  constexpr double kClear = 0.5;
+  constexpr std::size_t kMinFloats = 240, kMaxFloats = 1 << 16, kMaxWidth = 8;
+  constexpr double kClear = 0.7;
   const std::uint64_t count = file.size_bytes() / sizeof(float);
   if (count < kMinFloats || file.size_bytes() % sizeof(float) != 0) return std::nullopt;
   std::vector<float> values(static_cast<std::size_t>(std::min<std::uint64_t>(count, kMaxFloats)));
@@ -101,7 +129,8 @@ std::optional<std::size_t> other_width(InputFile& file, std::size_t width) {
   std::size_t best = width;
   double least = kClear * mean_step(values, width);
   for (std::size_t other = 3; other <= kMaxWidth; ++other) {
-    if (other % width == 0 || count % other != 0) continue;
+    if (other == width || count % other != 0) continue;
+    if (other == 2 * width && !differ_in_halves(values, width)) continue;
     const double step = mean_step(values, other);
     if (step >= least) continue;
     least = step;
@@ -119,11 +148,46 @@ constexpr const char* kNameIt = "; rename it to *.pcd.bin to read it so";
 constexpr const char* kConvertIt =
     "; a sequence needs 4 (float32 x, y, z, intensity): remove the ring";
 
+/// Whether the bytes can be points of NCLT: three uint16, an intensity and a laser below 32.
+bool looks_like_nclt(const Table& table) {
+  constexpr std::uint32_t kLasers = 32;
+  return std::ranges::all_of(std::array<std::size_t, 2>{1, 3}, [&](std::size_t column) {
+    return std::ranges::all_of(floats(table, column), [](float value) {
+      return std::bit_cast<std::uint32_t>(value) >> 24 < kLasers;
+    });
+  });
+}
+
+/// Rejects a file where more than half of the points have a coordinate that no scan has: beyond
+/// 1000 km, or below an atom's size but not 0.
+void require_coordinates(const std::filesystem::path& path, const Table& table) {
+  constexpr float kMin_m = 1e-10F, kMax_m = 1e6F;
+  std::size_t wrong = 0;
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    const auto is_wrong = [&](std::size_t axis) {
+      const float size = std::fabs(floats(table, axis)[row]);
+      return size > kMax_m || (size > 0 && size < kMin_m);
+    };
+    if (is_wrong(0) || is_wrong(1) || is_wrong(2)) ++wrong;
+  }
+  if (wrong <= table.rows / 2) return;
+  throw data_error(
+      {path, {}, {}},
+      "not a KITTI scan (float32 x, y, z, intensity): coordinates of " + std::to_string(wrong) +
+          " of " + std::to_string(table.rows) + " points would be above 1000 km or below 1e-10 m" +
+          (looks_like_nclt(table)
+               ? "; it seems to have 8 bytes a point (uint16 x, y, z, uint8 intensity, laser), as "
+                 "velodyne_sync of NCLT"
+               : "") +
+          "; convert it to one, or to PLY, PCD or LAS");
+}
+
 /// Checks that the values are possible, since the format has no header.
 void require_kitti_values(const std::filesystem::path& path, const Table& table,
                           const char* advice_for_five) {
   if (looks_like_five(table))
     throw data_error({path, {}, {}}, std::string(kFiveFloats) + advice_for_five);
+  require_coordinates(path, table);
   const std::vector<float>& intensities = floats(table, 3);
   const auto wrong = std::ranges::find_if_not(intensities, can_be_intensity);
   if (wrong == intensities.end()) return;

@@ -45,6 +45,8 @@ constexpr Name kIntensityNames[] = {
     "intensity",      "reflectance", "remission",      "reflectivity",    "luma",
     "intensities",    "i",           "laserintensity", "returnintensity", "echointensity",
     "amplitude",      "signal"};
+// Those that RIEGL and others write in decibels.
+constexpr Name kDecibelNames[] = {"reflectance", "reflectivity", "amplitude"};
 constexpr Name kRingNames[] = {"ring",      "laser",   "ringid",      "ringnumber", "ringindex",
                                "laserring", "laserid", "lasernumber", "channel",    "channelid",
                                "beam",      "beamid",  "line",        "lineid"};
@@ -63,9 +65,6 @@ constexpr Name kNormalsX[] = {"nx", "normalx", "normalsx", "normx"};
 constexpr Name kNormalsY[] = {"ny", "normaly", "normalsy", "normy"};
 constexpr Name kNormalsZ[] = {"nz", "normalz", "normalsz", "normz"};
 
-/// Of PDAL and Entwine, near to names above.
-constexpr Name kUnrelatedNames[] = {"originid", "pointid", "clusterid", "deviation", "reliability"};
-
 constexpr std::pair<PointColumn, std::span<const Name>> kColumnNames[] = {
     {PointColumn::time, kTimeNames},
     {PointColumn::intensity, kIntensityNames},
@@ -80,10 +79,44 @@ constexpr std::pair<PointColumn, std::span<const Name>> kColumnNames[] = {
     {PointColumn::normal_y, kNormalsY},
     {PointColumn::normal_z, kNormalsZ}};
 
-constexpr std::pair<Name, double> kTimeSuffixes[] = {
-    {"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1},
-    {"nsec", 1e-9},        {"usec", 1e-6},         {"msec", 1e-3},         {"sec", 1},
-    {"ns", 1e-9},          {"us", 1e-6},           {"ms", 1e-3},           {"s", 1}};
+constexpr std::pair<Name, double> kTimeSuffixes[] = {{"nanoseconds", 1e-9},
+                                                     {"microseconds", 1e-6},
+                                                     {"milliseconds", 1e-3},
+                                                     {"seconds", 1},
+                                                     {"nanosecs", 1e-9},
+                                                     {"nanosec", 1e-9},
+                                                     {"nanos", 1e-9},
+                                                     {"nsecs", 1e-9},
+                                                     {"nsec", 1e-9},
+                                                     {"usec", 1e-6},
+                                                     {"msec", 1e-3},
+                                                     {"secs", 1},
+                                                     {"sec", 1},
+                                                     {"ns", 1e-9},
+                                                     {"us", 1e-6},
+                                                     {"ms", 1e-3},
+                                                     {"s", 1}};
+
+// Fields of LAS, and what else PDAL, CloudCompare, LAStools and laspy call them.
+constexpr std::pair<Name, Name> kLasFields[] = {{"gpstime", "gps_time"},
+                                                {"userdata", "user_data"},
+                                                {"pointsourceid", "point_source_id"},
+                                                {"scanangle", "scan_angle"},
+                                                {"scananglerank", "scan_angle"},
+                                                {"synthetic", "synthetic"},
+                                                {"keypoint", "key_point"},
+                                                {"overlap", "overlap"},
+                                                {"scannerchannel", "scanner_channel"},
+                                                {"scanchannel", "scanner_channel"},
+                                                {"scandirectionflag", "scan_direction_flag"},
+                                                {"edgeofflightline", "edge_of_flight_line"},
+                                                {"nir", "nir"},
+                                                {"infrared", "nir"},
+                                                {"nearinfrared", "nir"}};
+
+// Names with a meaning of their own that are near to the names above.
+constexpr Name kOtherNames[] = {"distance",  "returns",   "timestart", "timestep",  "originid",
+                                "pointid",   "clusterid", "deviation", "reliability"};
 
 std::span<const Name> names_of_meaning(PointColumn meaning) {
   for (const auto& [each, names] : kColumnNames)
@@ -114,9 +147,98 @@ std::pair<std::string, double> split_time_unit(std::string plain) {
   return {std::move(plain), 1};
 }
 
+/// Whether at most `edits` letters have to be replaced, inserted or removed.
+bool is_within_edits(std::string_view a, std::string_view b, std::size_t edits) {
+  while (!a.empty() && !b.empty() && a.front() == b.front()) {
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  if (a.empty() || b.empty()) return a.size() + b.size() <= edits;
+  if (edits == 0) return false;
+  const std::string_view rest_of_a = a.substr(1), rest_of_b = b.substr(1);
+  return is_within_edits(rest_of_a, rest_of_b, edits - 1) ||
+         is_within_edits(rest_of_a, b, edits - 1) || is_within_edits(a, rest_of_b, edits - 1);
+}
+
+bool has_negative(const Column& column) {
+  return std::visit(
+      [](const auto& values) {
+        return std::ranges::any_of(values, [](auto value) { return value < decltype(value){}; });
+      },
+      column.values);
+}
+
+bool is_all_zero(const Column& column) {
+  return std::visit(
+      [](const auto& values) {
+        return std::ranges::all_of(values, [](auto value) { return value == decltype(value){}; });
+      },
+      column.values);
+}
+
+/// The first by its names that is neither in decibels nor 0 throughout; else the first that is not
+/// in decibels.
+const Column* find_intensity(const Table& table) {
+  const Column* zeros = nullptr;
+  for (const Name name : kIntensityNames)
+    for (const Column& column : table.columns) {
+      if (letters_of_name(column.name) != name || is_in_decibels(column)) continue;
+      if (!is_all_zero(column)) return &column;
+      if (zeros == nullptr) zeros = &column;
+    }
+  return zeros;
+}
+
+/// A name of times and what follows it; {name, ""} if nothing does.
+std::pair<std::string, std::string> split_suffix(const std::string& plain) {
+  for (const auto& [unit, seconds] : kTimeSuffixes)
+    if (plain.ends_with(unit))
+      return {plain.substr(0, plain.size() - unit.size()), std::string(unit)};
+  return {plain, {}};
+}
+
 }  // namespace
 
+bool is_in_decibels(const Column& column) {
+  return is_name_among(letters_of_name(column.name), kDecibelNames) && has_negative(column);
+}
+
+std::string las_field_name(std::string_view name) {
+  const std::string plain = letters_of_name(name);
+  if (is_name_among(plain, kReturnNames)) return "return_number";
+  if (is_name_among(plain, kReturnCounts)) return "number_of_returns";
+  for (const auto& [other, field] : kLasFields)
+    if (plain == other) return std::string(field);
+  return lower_case(name);
+}
+
+bool is_known_column(std::string_view name) {
+  const std::string plain = split_time_unit(letters_of_name(name)).first;
+  return std::ranges::any_of(kColumnNames,
+                             [&](const auto& known) { return is_name_among(plain, known.second); });
+}
+
+const Column* nanoseconds_beside(const Table& table, const Column& seconds) {
+  constexpr double kSecond_ns = 1e9;
+  const auto [name, unit] = split_suffix(letters_of_name(seconds.name));
+  if (unit.empty() || time_unit_of_name("time" + unit) != 1) return nullptr;
+  for (const Column& column : table.columns) {
+    const auto [other, unit_of_other] = split_suffix(letters_of_name(column.name));
+    if (other != name || unit_of_other.empty() || time_unit_of_name("time" + unit_of_other) == 1)
+      continue;
+    if (time_unit_of_name("time" + unit_of_other) != 1e-9) continue;
+    bool is_fraction = true;
+    for (std::size_t i = 0; i < column.size() && is_fraction; ++i) {
+      const double value = column.as_double(i);
+      is_fraction = value >= 0 && value < kSecond_ns;
+    }
+    if (is_fraction) return &column;
+  }
+  return nullptr;
+}
+
 const Column* find_column(const Table& table, PointColumn meaning) {
+  if (meaning == PointColumn::intensity) return find_intensity(table);
   std::vector<std::string> plain;
   for (const Column& column : table.columns) {
     plain.push_back(letters_of_name(column.name));
@@ -126,8 +248,12 @@ const Column* find_column(const Table& table, PointColumn meaning) {
   for (const Name name : names_of_meaning(meaning)) {
     if (meaning == PointColumn::time && name == "t" && has_texture) continue;
     const auto found = std::ranges::find(plain, name);
-    if (found != plain.end())
-      return &table.columns[static_cast<std::size_t>(found - plain.begin())];
+    if (found == plain.end()) continue;
+    const Column& first = table.columns[static_cast<std::size_t>(found - plain.begin())];
+    if (meaning == PointColumn::time)
+      for (const Column& column : table.columns)
+        if (nanoseconds_beside(table, column) == &first) return &column;
+    return &first;
   }
   return nullptr;
 }
@@ -138,8 +264,10 @@ double time_unit_of_name(std::string_view name) {
 
 std::optional<std::string> likely_column_name(std::string_view name) {
   constexpr std::size_t kShortest = 5;  // shorter words are near to too many others
+  constexpr std::size_t kLong = 8;      // two edits of shorter words make other words
   const std::string plain = split_time_unit(letters_of_name(name)).first;
-  if (plain.size() < kShortest || is_name_among(plain, kUnrelatedNames)) return std::nullopt;
+  if (plain.size() < kShortest || is_name_among(plain, kOtherNames)) return std::nullopt;
+  if (las_field_name(name) != lower_case(name)) return std::nullopt;
   std::vector<std::string> known;
   for (const auto& [meaning, names] : kColumnNames) {
     if (is_name_among(plain, names)) return std::nullopt;
@@ -147,10 +275,8 @@ std::optional<std::string> likely_column_name(std::string_view name) {
     for (const Name each : names)
       if (each.size() >= kShortest) known.emplace_back(each);
   }
-  constexpr std::size_t kMaxOtherLength = 2;
-  auto nearest = nearest_word(plain, known);
-  if (!nearest || std::max(nearest->size(), plain.size()) >
-                      std::min(nearest->size(), plain.size()) + kMaxOtherLength)
+  const auto nearest = nearest_word(plain, known);
+  if (!nearest || !is_within_edits(plain, *nearest, plain.size() < kLong ? 1 : 2))
     return std::nullopt;
   return nearest;
 }

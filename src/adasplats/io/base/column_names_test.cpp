@@ -61,10 +61,56 @@ TEST(ColumnNames, MisspeltNames) {
   EXPECT_EQ(likely_column_name("intensty"), "intensity");
   EXPECT_EQ(likely_column_name("time_stmp"), "timestamp");
   EXPECT_EQ(likely_column_name("Clasification"), "classification");
-  for (const char* const name : {"intensity", "GpsTime", "sensor_x", "red", "user_data", "point",
-                                 "scan_angle", "column_4", "origin_kind", "laser", "curvature",
-                                 "OriginId", "PointId", "ClusterID", "Deviation", "Reliability"})
+  for (const char* const name :
+       {"intensity", "GpsTime", "sensor_x", "red", "user_data", "point", "scan_angle", "column_4",
+        "origin_kind", "laser", "curvature", "Deviation", "ClusterID", "OriginId", "LiDAR Index", "PointId", "Reliability",
+        "distance_m", "timestamp_nanosec", "UserData", "Reflection"})
     EXPECT_EQ(likely_column_name(name), std::nullopt) << name;
+}
+
+// RIEGL writes reflectances and amplitudes in decibels; LAS without intensities has zeros.
+TEST(ColumnNames, IntensitiesAreLinearAndNotZero) {
+  const auto chosen = [](double intensity, double reflectance, double amplitude) {
+    Table table;
+    table.rows = 2;
+    table.columns = {{"Intensity", std::vector<double>{0, intensity}},
+                     {"Reflectance", std::vector<double>{1, reflectance}},
+                     {"Amplitude", std::vector<double>{1, amplitude}}};
+    const Column* const column = find_column(table, PointColumn::intensity);
+    return column == nullptr ? "none" : column->name;
+  };
+  EXPECT_EQ(chosen(5, 2, 3), "Intensity");
+  EXPECT_EQ(chosen(-5, 2, 3), "Intensity");  // PTS has -2048 to 2047
+  EXPECT_EQ(chosen(0, 2, 3), "Reflectance");
+  EXPECT_EQ(chosen(0, -20, 3), "Amplitude");
+  EXPECT_EQ(chosen(0, -20, -3), "Intensity");
+}
+
+// Oracle: the dimensions of PDAL, CloudCompare's prefix, and the fields of the specification.
+TEST(ColumnNames, FieldsOfLas) {
+  const std::pair<const char*, const char*> names[] = {{"scalar_ReturnNumber", "return_number"},
+                                                       {"NumberOfReturns", "number_of_returns"},
+                                                       {"scalar_GpsTime", "gps_time"},
+                                                       {"ScanAngleRank", "scan_angle"},
+                                                       {"PointSourceId", "point_source_id"},
+                                                       {"EdgeOfFlightLine", "edge_of_flight_line"},
+                                                       {"Infrared", "nir"},
+                                                       {"Echo Width", "echo width"}};
+  for (const auto& [name, field] : names) EXPECT_EQ(las_field_name(name), field);
+}
+
+TEST(ColumnNames, NanosecondsBesideSeconds) {
+  const auto beside = [](const char* seconds, const char* other, double value) {
+    Table table;
+    table.rows = 1;
+    table.columns = {{seconds, std::vector<double>{17}}, {other, std::vector<double>{value}}};
+    return nanoseconds_beside(table, table.columns.front()) != nullptr;
+  };
+  EXPECT_TRUE(beside("timestamp_sec", "timestamp_nanosec", 5e8));
+  EXPECT_TRUE(beside("stamp.secs", "stamp.nsecs", 5e8));
+  EXPECT_FALSE(beside("timestamp_sec", "timestamp_ns", 1.7e18));  // the whole time
+  EXPECT_FALSE(beside("timestamp_sec", "gps_time_nanosec", 5e8));
+  EXPECT_FALSE(beside("timestamp", "timestamp_nanosec", 5e8));
 }
 
 }  // namespace

@@ -356,7 +356,7 @@ std::string Crs::name() const {
 
 Crs crs_of_wkt(std::string_view wkt) {
   wkt = wkt.substr(0, wkt.find('\0'));
-  return {one_line(wkt), {}};
+  return {one_line(utf8_text(wkt)), {}};
 }
 
 CrsMatch match(const Crs& a, const Crs& b) {

@@ -69,6 +69,26 @@ std::string decimal_text(double value) {
   return {buffer.data(), end};
 }
 
+std::string utf8_text(std::string_view text) {
+  constexpr unsigned kMaxAscii = 0x7f, kContinuation = 0x80;
+  bool is_utf8 = true;
+  std::string converted;
+  for (std::size_t i = 0, more = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool continues = (byte & 0xc0U) == kContinuation;
+    is_utf8 = is_utf8 && continues == (more > 0) && byte < 0xf8;
+    more = more > 0 ? more - 1 : byte >= 0xf0 ? 3 : byte >= 0xe0 ? 2 : byte >= 0xc0 ? 1 : 0;
+    is_utf8 = is_utf8 && (more == 0 || i + 1 < text.size());
+    if (byte <= kMaxAscii) {
+      converted += text[i];
+    } else {
+      converted += static_cast<char>(0xc0U | byte >> 6U);
+      converted += static_cast<char>(kContinuation | (byte & 0x3fU));
+    }
+  }
+  return is_utf8 ? std::string(text) : converted;
+}
+
 std::string box_text(Vec3d low, Vec3d high) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {

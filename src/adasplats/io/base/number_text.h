@@ -62,6 +62,9 @@ std::string decimal_text(double value);
 /// `text` with ASCII letters in lower case, independent of the locale.
 std::string lower_case(std::string_view text);
 
+/// `text` if it is UTF-8; else with its bytes as characters of Latin-1.
+std::string utf8_text(std::string_view text);
+
 /// A box for a message: "x 1 .. 2, y 3 .. 4, z 5 .. 6", without unbounded axes.
 std::string box_text(Vec3d low, Vec3d high);
 

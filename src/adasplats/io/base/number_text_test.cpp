@@ -34,6 +34,13 @@ TEST(BoxText, NamesTheAxesThatHaveBounds) {
   EXPECT_EQ(box_text({-kAny, -kAny, -kAny}, {kAny, kAny, kAny}), "");
 }
 
-}  // namespace
+TEST(NumberText, OtherTextsThanUtf8AreLatin1) {
+  for (const char* const text : {"", "zone 32", "p\xc3\xa5", "\xe2\x82\xac", "\xf0\x9f\x98\x80"})
+    EXPECT_EQ(utf8_text(text), text);
+  EXPECT_EQ(utf8_text("p\xe5 EUREF89"), "p\xc3\xa5 EUREF89");
+  EXPECT_EQ(utf8_text("p\xc3"), "p\xc3\x83");  // cut
+  EXPECT_EQ(utf8_text("\xa5"), "\xc2\xa5");
+}
 
+}  // namespace
 }  // namespace adasplats

@@ -20,8 +20,8 @@ class Executor;
 
 /// PCD 0.5-0.7: ascii, binary, binary_compressed. COUNT > 1 gives columns name_0, name_1, ...;
 /// padding fields `_` are skipped. NaN points are kept (the caller drops and counts them). The
-/// comments are the `#` lines and "VIEWPOINT ...". Memory: 1x the uncompressed size, 2x for
-/// compressed files, where a byte expands to at most 88.
+/// comments are the `#` lines, "VIEWPOINT ..." and, of organised clouds, "HEIGHT ...". Memory: 1x
+/// the uncompressed size, 2x for compressed files, where a byte expands to at most 88.
 Table read_pcd(const std::filesystem::path& path);
 
 /// The points of a file to read.

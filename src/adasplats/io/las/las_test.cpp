@@ -276,6 +276,19 @@ TEST(Las, TheCoordinateSystemIsTheTextOrTheKeys) {
   EXPECT_EQ(crs.keys.ascii, "grid|");
 }
 
+// Norwegian files have Latin-1 texts; the keys keep their parts of the text.
+TEST(Las, KeysWithLatin1BecomeUtf8) {
+  std::string directory;
+  for (const int value : {1, 1, 0, 2, 3073, 34737, 4, 0, 4097, 34737, 6, 4})
+    directory += bytes_of(static_cast<std::uint16_t>(value));
+  const Crs crs = read(las_with(las_vlr("LASF_Projection", 34735, directory) +
+                                    las_vlr("LASF_Projection", 34737, "p\xe5 |h\xf8yde|"),
+                                2, 0))
+                      .crs;
+  EXPECT_EQ(crs.name(), "p\xc3\xa5  + h\xc3\xb8yde");
+  EXPECT_EQ(crs.keys.ascii, "p\xc3\xa5 |h\xc3\xb8yde|");
+}
+
 /// An extended record behind a file of LAS 1.4 that has one point.
 std::string las_with_extended(const std::string& user, std::uint16_t number,
                               const std::string& content) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adasplats/io/base/epsg_units.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/records.h"
 #include "adasplats/io/base/wkt.h"
 #include "adasplats/io/las/las_header.h"
@@ -59,7 +60,7 @@ std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHea
     }
     const ColumnType scalar = kExtraTypes.at((type - 1U) % kExtraTypes.size());
     const std::size_t items = 1 + (type - 1U) / kExtraTypes.size();
-    LasExtraField field{text_at(record, 4, 32), scalar, place, false, 1, 0};
+    LasExtraField field{utf8_text(text_at(record, 4, 32)), scalar, place, false, 1, 0};
     place += items * type_bytes(scalar);
     if (place > header.record_bytes) break;
     if (items > 1 || field.name.empty()) continue;
@@ -136,6 +137,26 @@ std::vector<T> values_of(std::string_view record) {
   return values;
 }
 
+/// Makes the text UTF-8, and moves the parts of it that the keys refer to.
+void convert_text(GeoKeys& keys) {
+  constexpr std::size_t kKeyNumbers = 4;
+  const std::string text = utf8_text(keys.ascii);
+  if (text == keys.ascii) return;
+  const auto place_of = [&keys](std::size_t bytes) {
+    const std::string_view before = std::string_view(keys.ascii).substr(0, bytes);
+    const auto wide = std::ranges::count_if(before, [](char c) { return (c & 0x80) != 0; });
+    return static_cast<std::uint16_t>(bytes + static_cast<std::size_t>(wide));
+  };
+  for (std::size_t k = kKeyNumbers; k + kKeyNumbers <= keys.directory.size(); k += kKeyNumbers) {
+    std::uint16_t* const key = keys.directory.data() + k;
+    if (key[1] != kGeoTextRecord) continue;
+    const std::uint16_t begin = place_of(key[3]);
+    key[2] = static_cast<std::uint16_t>(place_of(std::size_t{key[3]} + key[2]) - begin);
+    key[3] = begin;
+  }
+  keys.ascii = text;
+}
+
 /// Collects the content of records.
 class Descriptor {
  public:
@@ -182,6 +203,7 @@ class Descriptor {
                                 kKeyNumbers + kKeyNumbers * directory[kCountAt]));
     // Some writers end the text with zeros.
     keys_.ascii.erase(keys_.ascii.find_last_not_of('\0') + 1);
+    convert_text(keys_);
     const Crs keys = {{}, std::move(keys_)};
     const bool takes_wkt = header_.has_wkt ? !wkt_.empty() : keys.empty();
     if (takes_wkt)

@@ -135,6 +135,7 @@ class PcdHeaderParser {
                               std::to_string(product));
     }
     header_.points = product;
+    if (height_.value_or(1) > 1) header_.comments.push_back("HEIGHT " + std::to_string(*height_));
   }
 
   void build_fields() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
@@ -72,10 +74,21 @@ std::vector<std::string> split_names(std::string_view line, char separator) {
   std::vector<std::string> names;
   Cells cells(line, separator);
   while (const std::optional<std::string_view> cell = cells.next())
-    names.emplace_back(without_unit(lower_case(*cell)));
+    names.emplace_back(without_unit(lower_case(utf8_text(*cell))));
   // A separator at the end of the line begins no column.
   if (!names.empty() && names.back().empty()) names.pop_back();
   return names;
+}
+
+/// Hexadecimal integers, 0x1F, as well.
+std::optional<double> number_in(std::string_view cell) {
+  constexpr int kHexadecimal = 16;
+  if (!cell.starts_with("0x") && !cell.starts_with("0X")) return parse_number<double>(cell);
+  std::uint64_t value = 0;
+  const char* const end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.data() + 2, end, value, kHexadecimal);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return static_cast<double>(value);
 }
 
 bool has_coordinates(const std::vector<std::string>& names) {
@@ -83,6 +96,29 @@ bool has_coordinates(const std::vector<std::string>& names) {
   return std::all_of(coordinates.begin(), coordinates.end(), [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
+}
+
+/// Names of VeloView and LidarView, or of another table of ParaView, as ours: their three
+/// coordinates are `NAME:0` to `NAME:2`. Their times are microseconds; `timestamp`, which restarts
+/// every hour, is used if there is no `adjustedtime`.
+void rename_as_ours(std::vector<std::string>& names) {
+  const auto find = [&names](std::string_view name) { return std::ranges::find(names, name); };
+  if (has_coordinates(names)) return;
+  for (const std::string_view points : {"points_m_xyz", "points"}) {
+    std::size_t found = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = find(std::string(points) + ":" + std::to_string(axis));
+      if (at == names.end()) continue;
+      *at = std::string(1, "xyz"[axis]);
+      ++found;
+    }
+    if (found == 0) continue;
+    if (find("laser_id") == names.end()) return;
+    const auto adjusted = find("adjustedtime"), stamp = find("timestamp");
+    if (stamp != names.end()) *stamp = adjusted == names.end() ? "timestamp_us" : "hour_us";
+    if (adjusted != names.end()) *adjusted = "adjustedtime_us";
+    return;
+  }
 }
 
 /// Names of columns without names: see read_text_points().
@@ -134,6 +170,7 @@ class TextReader {
       const std::string_view first = Cells(line, separator_).next().value_or("");
       if (names_.empty() && !first.empty() && !parse_number<double>(first)) {
         names_ = split_names(line, separator_);
+        rename_as_ours(names_);
         return;
       }
       begin_columns(line);
@@ -176,6 +213,7 @@ class TextReader {
     }
     begin_columns(names_.empty() ? filled : names_.size());
     // Assumes rows about as long as the first; a row of n values has at least 2 n bytes.
+    mark_texts(first_row);
     const std::uint64_t rows = file_.remaining() / (first_row.size() + 1) + 1;
     for (std::vector<double>& column : values_) column.reserve(static_cast<std::size_t>(rows));
   }
@@ -188,6 +226,19 @@ class TextReader {
     has_names_ = !names_.empty();
     if (!has_names_) names_ = usual_names(count, expected_rows_.has_value());
     values_.resize(count);
+    is_text_.resize(count);
+  }
+
+  /// Finds the columns of text, by the first row. Nobody uses those with a name of another meaning.
+  void mark_texts(std::string_view first_row) {
+    Cells cells(first_row, separator_);
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      const std::optional<std::string_view> cell = cells.next();
+      if (!cell) return;
+      const std::string& name = names_[k];
+      is_text_[k] = has_names_ && !cell->empty() && !number_in(*cell) && name != "x" &&
+                    name != "y" && name != "z" && !is_known_column(name);
+    }
   }
 
   void take_row(std::string_view line) {
@@ -199,8 +250,9 @@ class TextReader {
                                 std::to_string(values_.size()));
       }
       // An empty cell is a missing value.
+      if (is_text_[k]) continue;
       const std::optional<double> value =
-          cell->empty() ? std::numeric_limits<double>::quiet_NaN() : parse_number<double>(*cell);
+          cell->empty() ? std::numeric_limits<double>::quiet_NaN() : number_in(*cell);
       if (!value) {
         throw lines_.error_here("column " + std::to_string(k + 1) + " (" + names_[k] + "): found " +
                                 shown(*cell) + ", expected a number");
@@ -215,7 +267,8 @@ class TextReader {
   }
 
   Table finish() {
-    table_.rows = values_.front().size();
+    for (const std::vector<double>& column : values_)  // those of text are empty
+      table_.rows = std::max(table_.rows, column.size());
     if (expected_rows_ && table_.rows < *expected_rows_) {
       throw lines_.error_here("the file ends after " + std::to_string(table_.rows) +
                               " points, its count is " + std::to_string(*expected_rows_));
@@ -227,8 +280,13 @@ class TextReader {
                                       " points and has " + std::to_string(table_.rows)});
     }
     if (!has_names_) note_missing_names();
+    std::string texts;
     for (std::size_t k = 0; k < values_.size(); ++k)
-      table_.columns.push_back(Column{std::move(names_[k]), std::move(values_[k])});
+      if (is_text_[k])
+        texts += (texts.empty() ? "columns of text: " : ", ") + shown(names_[k]);
+      else
+        table_.columns.push_back(Column{std::move(names_[k]), std::move(values_[k])});
+    if (!texts.empty()) table_.notes.push_back({NoteKind::left_out, std::move(texts)});
     return std::move(table_);
   }
 
@@ -250,6 +308,7 @@ class TextReader {
   char separator_ = ' ';
   std::vector<std::string> names_;
   std::string last_comment_;
+  std::vector<bool> is_text_;  ///< of the columns
   std::vector<std::vector<double>> values_;
   std::optional<std::uint64_t> expected_rows_;
 };

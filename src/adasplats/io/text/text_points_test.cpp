@@ -192,5 +192,31 @@ TEST(Ptx, ColoursAndErrors) {
   expect_data_error("1\n1\n0 0 nan\n", {"f.ptx:3", "'nan'"}, "f.ptx");
 }
 
+// The header and two rows of Livox Viewer.
+TEST(TextPoints, HexadecimalNumbersAndTexts) {
+  const Table table = read(
+      "Version,Error Code,Operator,Timestamp,X,Y,Z,Reflectivity\n"
+      "5,0x0000001F,anna,1619684812000,1.5,2,3,7\n5,0X10,bert,1619684812001,4,5,6,8\n");
+  EXPECT_EQ(values_of(table, "error code"), (Doubles{31, 16}));
+  EXPECT_EQ(values_of(table, "x"), (Doubles{1.5, 4}));
+  EXPECT_EQ(table.find("operator"), nullptr);
+  ASSERT_EQ(table.notes.size(), 1U);
+  EXPECT_EQ(table.notes[0], (ReaderNote{NoteKind::left_out, "columns of text: 'operator'"}));
+  expect_data_error("x,y,z,intensity\n1,2,3,high\n", {"column 4 (intensity)", "'high'"});
+  expect_data_error("x,y,z,other\n1,2,3,4\n1,2,3,high\n", {":3:", "'high'"});
+}
+
+// The header of VeloView.
+TEST(TextPoints, TablesOfVeloView) {
+  const Table table = read(
+      "\"intensity\",\"laser_id\",\"adjustedtime\",\"timestamp\",\"Points_m_XYZ:0\","
+      "\"Points_m_XYZ:1\",\"Points_m_XYZ:2\"\n9,3,3600000005,5,1.5,2.5,3.5\n");
+  EXPECT_EQ(names_of(table),
+            (Names{"intensity", "laser_id", "adjustedtime_us", "hour_us", "x", "y", "z"}));
+  EXPECT_EQ(names_of(read("Points:0,Points:1,Points:2,timestamp\n1,2,3,4\n")),
+            (Names{"x", "y", "z", "timestamp"}));
+  EXPECT_EQ(names_of(read("x,y,z,laser_id,Points:0\n1,2,3,4,5\n")).back(), "points:0");
+}
+
 }  // namespace
 }  // namespace adasplats

@@ -76,8 +76,11 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
   if (const World* const world = simulator.scene().world())
     writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
   writing.packets = packet_options(simulator.settings(), job.drive);
-  if (job.format == ScanFormat::pcap)
-    writing.packets.full_intensity = scale_of_intensities(simulator.scene());
+  const double scale = scale_of_intensities(simulator.scene());
+  if (job.format == ScanFormat::pcap) writing.packets.full_intensity = scale;
+  // As save_cloud_las(): larger ones than 1 keep their numbers.
+  constexpr double kMaxOfLas = 65535;
+  writing.full_intensity = scale > 1 ? kMaxOfLas : 1;
   return writing;
 }
 
