@@ -732,8 +732,8 @@ KittiSequence open_packet_drive(const DriveInput& given, const PacketSurvey& sur
                                       "maker's file (its folder contains none)"
                                     : advice));
   }
-  require_options_of_packets(drive, survey.recording != nullptr);
   const auto& [name, source] = source_of(survey, drive.topic);
+  require_options_of_packets(drive, survey.recording != nullptr);
   warn_of_packets(survey, name, source, progress);
   warn_of_partial_turns(survey, name, source, progress);
   const LidarModel& model = survey.decoder->sensor().model;
