@@ -251,7 +251,7 @@ class ScanExport {
 
  private:
   KittiSequence opened() const {
-    if (is_kitti_sequence(job_.input)) {
+    if (is_kitti_sequence(job_.input) && !lacks_poses(job_.input)) {
       KittiSequence sequence = open_kitti_sequence(job_.input);
       if (format_ == ExportFormat::nuscenes)
         sequence.beams = recognize_beams(sequence, session_.executor);

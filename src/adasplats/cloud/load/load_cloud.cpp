@@ -216,15 +216,12 @@ void check_frames(std::span<const OpenInput> sources, std::vector<CloudPart>& pa
       parts[p].sensor_frame.reset();
     check_frame(sources[p].input.path, parts[p], options, report);
   }
-  if (options.accept_sensor_frame || report.sensor_frames.empty()) return;
+  // Several scans are an error of require_poses_of_scans().
+  if (options.accept_sensor_frame || report.sensor_frames.size() != 1) return;
   const auto& [file, because] = report.sensor_frames.front();
-  const std::size_t scans = report.sensor_frames.size();
   progress.warn(file.string() + ": is one scan in the sensor frame (" + because +
-                ") of unknown pose; the sensor frame is used as the world" +
-                (scans == 1 ? ""
-                            : ", also for " + std::to_string(scans - 1) +
-                                  " more scans, as if the sensor stood still") +
-                "; " + advice_for_scans(scans == 1 ? file : file.parent_path(), "POSES.csv"));
+                ") of unknown pose; the sensor frame is used as the world; " +
+                advice_for_scans(file, "POSES.csv"));
 }
 
 /// Measures the parts of loading.

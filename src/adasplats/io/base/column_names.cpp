@@ -115,8 +115,8 @@ constexpr std::pair<Name, Name> kLasFields[] = {{"gpstime", "gps_time"},
                                                 {"nearinfrared", "nir"}};
 
 // Names with a meaning of their own that are near to the names above.
-constexpr Name kOtherNames[] = {"distance",  "returns",   "timestart", "timestep",  "originid",
-                                "pointid",   "clusterid", "deviation", "reliability"};
+constexpr Name kOtherNames[] = {"distance", "returns",   "timestart", "timestep",   "originid",
+                                "pointid",  "clusterid", "deviation", "reliability"};
 
 std::span<const Name> names_of_meaning(PointColumn meaning) {
   for (const auto& [each, names] : kColumnNames)

@@ -62,9 +62,10 @@ TEST(ColumnNames, MisspeltNames) {
   EXPECT_EQ(likely_column_name("time_stmp"), "timestamp");
   EXPECT_EQ(likely_column_name("Clasification"), "classification");
   for (const char* const name :
-       {"intensity", "GpsTime", "sensor_x", "red", "user_data", "point", "scan_angle", "column_4",
-        "origin_kind", "laser", "curvature", "Deviation", "ClusterID", "OriginId", "LiDAR Index", "PointId", "Reliability",
-        "distance_m", "timestamp_nanosec", "UserData", "Reflection"})
+       {"intensity",         "GpsTime",  "sensor_x",    "red",     "user_data",   "point",
+        "scan_angle",        "column_4", "origin_kind", "laser",   "curvature",   "Deviation",
+        "ClusterID",         "OriginId", "LiDAR Index", "PointId", "Reliability", "distance_m",
+        "timestamp_nanosec", "UserData", "Reflection"})
     EXPECT_EQ(likely_column_name(name), std::nullopt) << name;
 }
 
