@@ -13,6 +13,7 @@
 
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/dropped_points.h"
 #include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/cloud/load/point_origins.h"
@@ -193,7 +194,7 @@ void check_frame(const std::filesystem::path& file, const CloudPart& part,
   report.sensor_frames.emplace_back(file, because);
   if (options.accept_sensor_frame) return;
   const std::string what = file.string() + ": is one scan in the sensor frame (" + because + ")";
-  if (drive && std::filesystem::exists(*drive / "poses.csv"))
+  if (drive && data_tree_of(*drive) == nullptr && std::filesystem::exists(*drive / "poses.csv"))
     throw Error(ErrorKind::data, what + "; " + advice_for_scans(*drive, *drive / "poses.csv"));
   if (drive)
     throw Error(ErrorKind::data,
