@@ -138,6 +138,20 @@ struct ReadParts {
   Crs crs;
 };
 
+bool is_unknown(float intensity) { return std::isnan(intensity); }
+
+/// Remarks on files without a known intensity beside files with some.
+void remark_on_unknown_intensities(std::span<CloudPart> parts) {
+  const auto are_unknown = [](const CloudPart& part) {
+    return std::ranges::all_of(part.cloud.intensities, is_unknown);
+  };
+  if (std::ranges::all_of(parts, are_unknown)) return;
+  for (CloudPart& part : parts)
+    if (!part.cloud.intensities.empty() && are_unknown(part))
+      part.remarks.push_back("the intensities of all " + std::to_string(part.size()) +
+                             " points are 0 or NaN, so unknown; other inputs have some");
+}
+
 /// Warns of each remark on a file, once for all files that have it.
 void warn_of_remarks(std::span<const CloudPart> parts, ProgressSink& progress) {
   std::vector<std::pair<std::string, std::vector<std::string>>> files_with;
@@ -178,6 +192,7 @@ ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& opti
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
   for (const CloudPart& part : parts)
     if (!part.is_sequence) warn_of_steps(part.runs.front().file, part.world_positions, progress);
+  remark_on_unknown_intensities(parts);
   warn_of_remarks(parts, progress);
   warn_of_intensity_scales(parts, progress);
   return {std::move(parts), crs.crs()};
@@ -623,6 +638,8 @@ std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
                                                    ProgressSink& progress) const {
   const PieceContext context = {options_.selection.is_all(), {}};
   auto loaded = load_open(inputs_, options_, name_, context, executor, progress);
+  std::vector<float>& intensities = loaded.first.intensities;
+  if (std::ranges::all_of(intensities, is_unknown)) intensities = {};
   if (loaded.second.points_read == 0 && options_.selection.extent) throw empty_extent_error();
   return loaded;
 }

@@ -806,6 +806,10 @@ TEST(LoadCloud, LasWithoutIntensitiesHasUnknownOnes) {
   EXPECT_NE(listener.warnings[0].find("a.las: the intensities of all 2 points are 0"),
             std::string::npos)
       << listener.warnings[0];
+  Listener alone;
+  EXPECT_TRUE(
+      load_cloud(std::span(both).first(1), {}, Executor(1), alone).first.intensities.empty());
+  EXPECT_TRUE(alone.warnings.empty());
 }
 
 std::string pcd_header(const char* height, const char* viewpoint) {

@@ -322,8 +322,7 @@ void remark_on_columns(const PointFile& file, const LoadOptions& options, CloudP
 }
 
 /// Intensities of LAS are "0 when not included": if all are 0, they are unknown.
-void read_intensities(const PointFile& file, const Column& column, const LoadOptions& options,
-                      CloudPart& part) {
+void read_intensities(const PointFile& file, const Column& column, CloudPart& part) {
   std::vector<float>& intensities = part.cloud.intensities;
   intensities.resize(file.table.rows);
   for_each_value(column, [&intensities](std::size_t i, auto value) {
@@ -333,9 +332,6 @@ void read_intensities(const PointFile& file, const Column& column, const LoadOpt
       std::ranges::any_of(intensities, [](float value) { return value != 0; }))
     return;
   std::ranges::fill(intensities, std::numeric_limits<float>::quiet_NaN());
-  if (options.selection.is_all())
-    part.remarks.push_back("the intensities of all " + std::to_string(intensities.size()) +
-                           " points are 0, so none are stored; they are unknown");
 }
 
 /// Points at exactly 0, 0, 0 in a grid of beams, or at least 100 and a thousandth of all, are
@@ -478,7 +474,7 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   if (const Column* column = use(find_column(table, PointColumn::scan_index)))
     cloud.scan_indices = read_whole_numbers(file, *column);
   if (const Column* column = find_column(table, PointColumn::intensity)) {
-    read_intensities(file, *column, options, part);
+    read_intensities(file, *column, part);
     // An amplitude, which need not be linear, also keeps its name.
     if (lower_case(column->name).find("amplitude") == std::string::npos) use(column);
     // One that is 0 throughout gave way to another.

@@ -111,6 +111,7 @@ bool differ_in_halves(std::span<const float> values, std::size_t width) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double first = spread_of(values, 2 * width, axis);
     const double second = spread_of(values, 2 * width, axis + width);
+    if (std::isnan(first) || std::isnan(second)) return false;
     if (first > kClear * second || second > kClear * first) return true;
   }
   return false;
