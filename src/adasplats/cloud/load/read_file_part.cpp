@@ -356,7 +356,7 @@ void apply_viewpoint(const PointFile& file, const LoadOptions& options, CloudPar
   constexpr std::string_view kKey = "VIEWPOINT ";
   constexpr double kMinShift_m = 10e3;
   const auto comment = std::ranges::find_if(
-      file.table.comments, [](const std::string& text) { return text.starts_with(kKey); });
+      file.table.comments, [kKey](const std::string& text) { return text.starts_with(kKey); });
   if (comment == file.table.comments.end()) return;
   std::array<double, 7> values{};
   BlankTokens tokens(std::string_view(*comment).substr(kKey.size()));

@@ -275,7 +275,7 @@ std::optional<std::string> likely_column_name(std::string_view name) {
     for (const Name each : names)
       if (each.size() >= kShortest) known.emplace_back(each);
   }
-  const auto nearest = nearest_word(plain, known);
+  auto nearest = nearest_word(plain, known);
   if (!nearest || !is_within_edits(plain, *nearest, plain.size() < kLong ? 1 : 2))
     return std::nullopt;
   return nearest;
