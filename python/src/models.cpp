@@ -201,7 +201,7 @@ py::object groups(const py::object& self) {
                     {static_cast<py::ssize_t>(model.groups.size())}, {1}, self);
 }
 
-py::object colors(const py::object& self) {
+py::object colors_of_splats(const py::object& self) {
   const SplatModel& model = model_of(self);
   if (model.colors.empty()) return py::none();
   return array_view(py::dtype::of<std::uint8_t>(), model.colors.data(),
@@ -269,7 +269,8 @@ void add_arrays(ModelClass& type) {
             return optional_view(model_of(self).intensities, model_of(self).size(), self);
           },
           "(N,) float32: reflectances if there is a response, else as measured; or None.")
-      .def_property_readonly("colors", &colors, "(N, 3) uint8, sRGB of the points, or None.");
+      .def_property_readonly("colors", &colors_of_splats,
+                             "(N, 3) uint8, sRGB of the points, or None.");
 }
 
 void add_properties(ModelClass& type) {
