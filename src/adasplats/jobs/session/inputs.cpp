@@ -105,8 +105,10 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
     const std::vector<CloudInput> parts = cloud_inputs(input, SensorScans::taken);
     for (const CloudInput& one : parts) {
       if (!one.is_sequence || !fs::is_directory(one.path / "labels")) continue;
-      if (const auto name = scheme_name_of_folder(one.path)) return stated_scheme(*name);
-      return semantickitti_labels();
+      const auto name = scheme_name_of_folder(one.path);
+      if (name && name->empty()) return std::nullopt;
+      const auto own = name ? stated_scheme(*name) : std::nullopt;
+      return own ? own : semantickitti_labels();
     }
     // The files of a folder are of one kind: the first stands for all.
     if (!parts.empty() && !parts.front().is_sequence)
