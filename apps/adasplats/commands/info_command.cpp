@@ -6,6 +6,7 @@
 #include "adasplats/city/city_levels.h"
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/jobs/city/city_addition.h"
 #include "adasplats/jobs/session/inputs.h"
@@ -64,7 +65,8 @@ std::string table_of(const std::filesystem::path& input, const FileFacts& facts)
   std::size_t width = 0;
   for (const auto& [what, value] : facts.rows) width = std::max(width, what.size());
   for (const auto& [what, value] : facts.rows) {
-    text += "  " + what + std::string(width - what.size() + 2, ' ') + value + "\n";
+    text += "  " + what + std::string(width - what.size() + 2, ' ') +
+            with_settings_as_options(value) + "\n";
   }
   if (facts.classes.empty()) return text;
   TextTable classes({"  class", "count"});

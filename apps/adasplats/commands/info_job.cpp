@@ -17,7 +17,6 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/setting.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/column_names.h"
 #include "adasplats/io/base/number_text.h"
@@ -280,7 +279,7 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
 void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   const auto add = [&facts](const char* name, const char* key, const std::string& text) {
     if (text.empty()) return;
-    facts.rows.emplace_back(name, with_settings_as_options(text));
+    facts.rows.emplace_back(name, text);
     facts.json[key] = text;
   };
   add("points in the", "points_in", drive.points_in);
@@ -302,7 +301,7 @@ void describe_beams(const ScanBeams& beams, const std::string& motion, FileFacts
                             : !beams.raw_motions.empty() ? "points as measured, compensated"
                                                          : "unknown; the sensor is assumed to be "
                                                            "at rest during a scan";
-  facts.rows.emplace_back("motion of a scan", with_settings_as_options(known));
+  facts.rows.emplace_back("motion of a scan", known);
   facts.json["motion"] = known;
   facts.json["sensor"] = beams.sensor;
   facts.json["beams"] = beams.description();
@@ -367,7 +366,7 @@ FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
   } catch (const Error& error) {
     facts = {};
     facts.kind = kind;
-    facts.rows.emplace_back("no drive", with_settings_as_options(error.what()));
+    facts.rows.emplace_back("no drive", error.what());
     facts.json["no_drive"] = error.what();
   }
   if (survey.decoder) {
@@ -416,7 +415,7 @@ FileFacts cloud_topic_facts(const RecordingSurvey& survey, const std::optional<L
     // The list of topics shows what to select.
     FileFacts facts;
     facts.kind = "recording";
-    facts.rows.emplace_back("no drive", with_settings_as_options(error.what()));
+    facts.rows.emplace_back("no drive", error.what());
     facts.json["no_drive"] = error.what();
     return facts;
   }
