@@ -88,3 +88,15 @@ class RealFiles(ProgramTest):
             result = run("info", cloud, "--trajectory", poses, "--mount", "0,0,0")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn("measured", result.stdout, name)
+
+    def test_the_ground_beside_a_hole_under_the_car(self):
+        rows = [(0.25 * i, 0.25 * j, 0.0) for i in range(-60, 61) for j in range(-60, 61)
+                if math.hypot(0.25 * i, 0.25 * j) > 5]
+        model = self.folder / "ring.ply"
+        self.run_warned("sensor positions", "model", self.write_csv("ring.csv", "x,y,z", rows),
+                        "-o", model)
+        scans = self.folder / "scans"
+        self.run_warned("ground", "simulate", model, "--at", "0,0", "--sensor", self.sensor,
+                        "--format", "ply", "-o", scans)
+        pose = (scans / "poses.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+        self.assertAlmostEqual(float(pose[3]), 1.73, delta=0.02)
