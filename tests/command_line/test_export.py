@@ -93,6 +93,14 @@ class Export(ProgramTest):
             self.assertIn(name, said)
         self.assertNotIn("red", said)
 
+    def test_odd_names_of_columns(self):
+        cloud = self.folder / "odd.csv"
+        cloud.write_text('x;y;z;my,own;;"q"\n1;2;3;4;5;6\n2;3;4;5;6;7\n')
+        for name in ("a.ply", "a.pcd", "a.csv", "a.las"):
+            found = self.report("info", self.export(cloud, name))["files"][0]["fields"]
+            self.assertIn("my", found, name)
+            self.assertIn("column_5", found, name)
+
     def test_models_keep_colours(self):
         cloud = self.folder / "colored.csv"
         cloud.write_text("x,y,z,red,green,blue\n" + "".join(

@@ -268,17 +268,11 @@ std::string origin_warning(bool checks, const OriginCounts& counts) {
          ", so splats cannot be checked against rays";
 }
 
-}  // namespace
-
-std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
-                                               const BuildOptions& options,
-                                               const Executor& executor, ProgressSink& progress,
-                                               const ModelEngine* engine) {
+void check_input(const PointCloud& cloud, const LabelScheme* labels, const BuildOptions& options) {
   check(options.recipe);
   const SplatMethod method = method_of(options.recipe);
-  const auto* ours = std::get_if<ConsistentOptions>(&options.recipe);
   if (cloud.empty()) throw Error(ErrorKind::data, "the input has no points to model");
-  if (options.whole != nullptr && ours == nullptr)
+  if (options.whole != nullptr && method != SplatMethod::consistent)
     throw Error(ErrorKind::usage,
                 "only the method consistent can model the tiles of a city, not the method " +
                     std::string(word_of(method, kSplatMethods)));
@@ -286,6 +280,17 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     throw Error(ErrorKind::data,
                 "the method semantic needs labels, and the input has none; "
                 "use the method descriptors instead");
+}
+
+}  // namespace
+
+std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
+                                               const BuildOptions& options,
+                                               const Executor& executor, ProgressSink& progress,
+                                               const ModelEngine* engine) {
+  check_input(cloud, labels, options);
+  const SplatMethod method = method_of(options.recipe);
+  const auto* ours = std::get_if<ConsistentOptions>(&options.recipe);
   std::pair<SplatModel, BuildReport> result;
   SplatModel& model = result.first;
   BuildReport& report = result.second;

@@ -185,7 +185,7 @@ class Av2Reader final : public ScanReader {
       : track_(std::move(track)),
         poses_(std::move(poses)),
         mounts_(mounts),
-        scale_(std::move(scale)),
+        scale_(scale),
         boxes_(std::move(boxes)) {
     for (SensorCones& cones : library_cones())
       if (cones.sensor == kUnitModel) cones_ = std::move(cones);

@@ -157,7 +157,10 @@ void add_others_named(const OtherColumns& others, OtherViews& views) {
   const unsigned factor = colors.empty() ? 0 : factor_of_bytes(colors);
   for (const Column& column : others.columns) {
     Column written = column;
-    std::ranges::replace(written.name, ' ', '_');
+    const auto separates = [](char c) {
+      return std::string_view(" \t\r\n,;\"").find(c) != std::string_view::npos;
+    };
+    std::ranges::replace_if(written.name, separates, '_');
     if (factor != 0 && std::ranges::count(colors, &column) > 0) {
       std::vector<std::uint8_t> bytes;
       for (std::size_t i = 0; i < column.size(); ++i)

@@ -225,6 +225,8 @@ class TextReader {
     }
     has_names_ = !names_.empty();
     if (!has_names_) names_ = usual_names(count, expected_rows_.has_value());
+    for (std::size_t k = 0; k < names_.size(); ++k)
+      if (names_[k].empty()) names_[k] = "column_" + std::to_string(k + 1);
     values_.resize(count);
     is_text_.resize(count);
   }
