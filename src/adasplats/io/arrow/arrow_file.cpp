@@ -23,24 +23,30 @@ constexpr std::string_view kArrowMagic = "ARROW1";
 constexpr std::size_t kBlockBytes = 24, kNodeBytes = 16, kBufferBytes = 16;
 
 // Fields of the tables, in the order of the schemas.
-enum FooterField : std::uint8_t { kFooterSchema = 1, kFooterDictionaries = 2, kFooterBatches = 3 };
-enum SchemaField : std::uint8_t { kSchemaEndianness = 0, kSchemaFields = 1 };
+enum FooterField : std::uint8_t { footer_schema = 1, footer_dictionaries = 2, footer_batches = 3 };
+enum SchemaField : std::uint8_t { schema_endianness = 0, schema_fields = 1 };
 enum FieldField : std::uint8_t {
-  kFieldName = 0,
-  kFieldTypeKind = 2,
-  kFieldType = 3,
-  kFieldDictionary = 4
+  field_name = 0,
+  field_type_kind = 2,
+  field_type = 3,
+  field_dictionary = 4
 };
-enum MessageField : std::uint8_t { kMessageKind = 1, kMessageHeader = 2 };
+enum MessageField : std::uint8_t { message_kind = 1, message_header = 2 };
 enum BatchField : std::uint8_t {
-  kBatchRows = 0,
-  kBatchNodes = 1,
-  kBatchBuffers = 2,
-  kBatchCompression = 3
+  batch_rows = 0,
+  batch_nodes = 1,
+  batch_buffers = 2,
+  batch_compression = 3
 };
 
 /// Numbers of the union Type.
-enum TypeKind : std::uint8_t { kInt = 2, kFloat = 3, kUtf8 = 5, kBool = 6, kLargeUtf8 = 20 };
+enum TypeKind : std::uint8_t {
+  int_type = 2,
+  float_type = 3,
+  utf8_type = 5,
+  bool_type = 6,
+  large_utf8_type = 20
+};
 constexpr std::uint8_t kRecordBatch = 3;  // of the union MessageHeader
 
 float float_of_half(std::uint16_t half) {
@@ -58,7 +64,7 @@ float float_of_half(std::uint16_t half) {
 /// How the values of a column are stored.
 struct ArrowField {
   std::string name;
-  TypeKind kind = kInt;
+  TypeKind kind = int_type;
   std::size_t bits = 0;  ///< of a number, or of an offset to text
   bool is_signed = false;
 };
@@ -80,9 +86,9 @@ class ArrowReader {
   ArrowTable read() {
     const FlatBytes footer(footer_bytes(), path_ + ": the footer");
     const FlatTable root = FlatTable::root(footer);
-    read_schema(root.table(kFooterSchema));
+    read_schema(root.table(footer_schema));
     if (fields_.empty()) throw fault("has no columns");
-    const auto [blocks, count] = root.elements(kFooterBatches, kBlockBytes);
+    const auto [blocks, count] = root.elements(footer_batches, kBlockBytes);
     const FlatBytes places(blocks, path_ + ": the footer");
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t at = k * kBlockBytes;
@@ -116,13 +122,13 @@ class ArrowReader {
   }
 
   void read_schema(const FlatTable& schema) {
-    if (schema.number<std::int16_t>(kSchemaEndianness) != 0)
+    if (schema.number<std::int16_t>(schema_endianness) != 0)
       throw fault("is big-endian, only little-endian Arrow files are read");
-    const std::size_t count = schema.elements(kSchemaFields, sizeof(std::uint32_t)).second;
+    const std::size_t count = schema.elements(schema_fields, sizeof(std::uint32_t)).second;
     for (std::size_t k = 0; k < count; ++k) {
-      ArrowField field = field_of(schema.element(kSchemaFields, k));
+      ArrowField field = field_of(schema.element(schema_fields, k));
       if (field.bits == 0) throw fault("column '" + field.name + "' has no known type");
-      const bool is_text = field.kind == kUtf8 || field.kind == kLargeUtf8;
+      const bool is_text = field.kind == utf8_type || field.kind == large_utf8_type;
       const bool is_new = is_text ? table_.texts.try_emplace(field.name).second
                                   : table_.numbers.find(field.name) == nullptr;
       if (!is_new) throw fault("column '" + field.name + "' exists twice");
@@ -132,29 +138,29 @@ class ArrowReader {
   }
 
   ArrowField field_of(const FlatTable& entry) const {
-    ArrowField field{shown(entry.text(kFieldName)).substr(0, 100)};
-    field.name = std::string(entry.text(kFieldName));
-    const auto kind = entry.number<std::uint8_t>(kFieldTypeKind);
-    if (entry.has(kFieldDictionary))
+    ArrowField field{shown(entry.text(field_name)).substr(0, 100)};
+    field.name = std::string(entry.text(field_name));
+    const auto kind = entry.number<std::uint8_t>(field_type_kind);
+    if (entry.has(field_dictionary))
       throw fault("column '" + field.name +
                   "' is dictionary-encoded (categories), which is not read; write it as text");
     field.kind = static_cast<TypeKind>(kind);
-    const FlatTable type = entry.table(kFieldType);
+    const FlatTable type = entry.table(field_type);
     switch (kind) {
-      case kInt:
+      case int_type:
         field.bits = static_cast<std::size_t>(type.number<std::int32_t>(0));
         field.is_signed = type.number<std::uint8_t>(1) != 0;
         if (field.bits != 8 && field.bits != 16 && field.bits != 32 && field.bits != 64)
           field.bits = 0;
         return field;
-      case kFloat: {
+      case float_type: {
         const auto precision = type.number<std::int16_t>(0);  // half, single, double
         if (precision >= 0 && precision <= 2) field.bits = std::size_t{16} << precision;
         return field;
       }
-      case kBool: field.bits = 1; return field;
-      case kUtf8: field.bits = 32; return field;
-      case kLargeUtf8: field.bits = 64; return field;
+      case bool_type: field.bits = 1; return field;
+      case utf8_type: field.bits = 32; return field;
+      case large_utf8_type: field.bits = 64; return field;
       default:
         throw fault("column '" + field.name + "' has Arrow type number " + std::to_string(kind) +
                     ", only integers (2), floats (3), text (5, 20) and booleans (6) are read");
@@ -162,7 +168,7 @@ class ArrowReader {
   }
 
   static Column::Values values_of(const ArrowField& field) {
-    if (field.kind == kFloat)
+    if (field.kind == float_type)
       return field.bits == 64 ? Column::Values(std::vector<double>())
                               : Column::Values(std::vector<float>());
     switch (field.bits) {
@@ -194,15 +200,15 @@ class ArrowReader {
     head.remove_prefix(begin == kContinues ? 8 : 4);
     const FlatBytes message(head, batch_);
     const FlatTable root = FlatTable::root(message);
-    if (root.number<std::uint8_t>(kMessageKind) != kRecordBatch)
+    if (root.number<std::uint8_t>(message_kind) != kRecordBatch)
       throw message.error("is a message of another kind");
-    const FlatTable batch = root.table(kMessageHeader);
-    const auto rows = batch.number<std::int64_t>(kBatchRows);
+    const FlatTable batch = root.table(message_header);
+    const auto rows = batch.number<std::int64_t>(batch_rows);
     if (rows < 0) throw message.error("has " + std::to_string(rows) + " rows");
     rows_ = static_cast<std::size_t>(rows);
     packing_ = packing_of(batch);
-    const auto [nodes, node_count] = batch.elements(kBatchNodes, kNodeBytes);
-    const auto [buffers, buffer_count] = batch.elements(kBatchBuffers, kBufferBytes);
+    const auto [nodes, node_count] = batch.elements(batch_nodes, kNodeBytes);
+    const auto [buffers, buffer_count] = batch.elements(batch_buffers, kBufferBytes);
     if (node_count != fields_.size())
       throw message.error("has " + std::to_string(node_count) + " columns, expected " +
                           std::to_string(fields_.size()));
@@ -213,7 +219,7 @@ class ArrowReader {
     std::size_t column = 0;
     for (std::size_t k = 0; k < fields_.size(); ++k) {
       require_full(k);
-      const bool is_text = fields_[k].kind == kUtf8 || fields_[k].kind == kLargeUtf8;
+      const bool is_text = fields_[k].kind == utf8_type || fields_[k].kind == large_utf8_type;
       if (is_text)
         read_text(fields_[k]);
       else
@@ -223,8 +229,8 @@ class ArrowReader {
   }
 
   std::string_view packing_of(const FlatTable& batch) const {
-    if (!batch.has(kBatchCompression)) return {};
-    const auto codec = batch.table(kBatchCompression).number<std::int8_t>(0);
+    if (!batch.has(batch_compression)) return {};
+    const auto codec = batch.table(batch_compression).number<std::int8_t>(0);
     if (codec != 0 && codec != 1)
       throw Error(ErrorKind::data, batch_ + " has compression " + std::to_string(codec) +
                                        ", supported are LZ4 (0) and Zstandard (1)");
@@ -284,13 +290,13 @@ class ArrowReader {
     std::string unpacked;
     const std::string_view bytes =
         buffer(field, size, unpacked).substr(0, static_cast<std::size_t>(size));
-    if (field.kind == kBool) {
+    if (field.kind == bool_type) {
       auto& flags = std::get<std::vector<std::uint8_t>>(values);
       for (std::size_t i = 0; i < rows_; ++i)
         flags.push_back((static_cast<std::uint8_t>(bytes[i / 8]) >> (i % 8)) & 1U);
       return;
     }
-    if (field.kind == kFloat && field.bits == 16)
+    if (field.kind == float_type && field.bits == 16)
       return append<std::uint16_t>(bytes, std::get<std::vector<float>>(values), &float_of_half);
     std::visit(
         [&](auto& same) {
