@@ -6,12 +6,14 @@
   bench/packet_truth.py build/release/bin/adasplats CAPTURE SENSOR TRUTH.pcd RESULTS.json
 
 CAPTURE, SENSOR: as for 'export' and its --packet-sensor. TRUTH.pcd: binary, x y z in the sensor frame,
-m; optionally channel and time_stamp (ns since an instant of that program). Every point is compared with
-that of the same range (to 1.5 mm) and elevation (to 0.1 degrees) with the nearest azimuth, of one
-revolution around it. Adds the figures to RESULTS.json (for bench/results): matched points; median and
-99th percentile of absolute differences, after the median difference of the times is removed; the share of
-points whose channel is the one that their laser mostly has.
+m; optionally channel and time_stamp (ns), such as tier4/nebula's decoder_ground_truth or that of
+bench/ouster_truth.py. Every point is compared with the one of the same revolution, range (to 1.5 mm) and
+elevation (to 0.1 degrees) whose azimuth is nearest. Adds the figures to RESULTS.json (for bench/results):
+matched points; median and 99th percentile of absolute differences (of times relative to the others of the
+cloud, or of the packet if they start from 0 there); the share of points whose channel is the one that
+their laser mostly has.
 """
+import bisect
 import collections
 import json
 import math
@@ -25,7 +27,7 @@ import tempfile
 from provenance import provenance_of
 
 RANGE_M, ELEVATION_RAD, AZIMUTH_RAD = 0.0015, math.radians(0.1), math.radians(1)
-HALF_TURN_S = 0.05
+SAME_AZIMUTH_RAD, TURN_S, EDGE_S = math.radians(0.02), 0.1, 0.003
 TYPES = {"F4": "f", "F8": "d", "U1": "B", "U2": "H", "U4": "I", "I4": "i", "float": "f",
          "double": "d", "uchar": "B", "ushort": "H", "uint": "I", "int": "i"}
 
@@ -73,7 +75,7 @@ def cell_of(distance, azimuth, elevation):
             math.floor(elevation / ELEVATION_RAD))
 
 
-def matches(truth, own, accepted):
+def matches(truth, own):
     """Yields (point of the truth, of the program, differences of range, azimuth, elevation)."""
     cells = collections.defaultdict(list)
     for point in own:
@@ -87,7 +89,7 @@ def matches(truth, own, accepted):
             for other, candidate in cells.get(tuple(map(sum, zip(here, step))), ()):
                 difference = [abs(a - b) for a, b in zip(at, other)]
                 if (difference[0] < RANGE_M and difference[2] < ELEVATION_RAD and
-                        (best is None or difference[1] < best[1][1]) and accepted(point, candidate)):
+                        (best is None or difference[1] < best[1][1])):
                     best = candidate, difference
         if best is not None:
             yield point, best[0], best[1]
@@ -98,24 +100,38 @@ def spread(values):
     return {"median": statistics.median(ordered), "p99": ordered[int(0.99 * (len(ordered) - 1))]}
 
 
-def compare(truth, own):
-    def lag_s(point, candidate):
-        return candidate["timestamp"] - 1e-9 * point.get("time_stamp", 0)
+def revolution(found):
+    """Begin and end of the revolution with most of the matches, by the program's times, s."""
+    times = sorted(candidate["timestamp"] for _, candidate, difference in found
+                   if difference[1] < SAME_AZIMUTH_RAD)
+    count, begin = max((bisect.bisect(times, time + TURN_S) - k, time)
+                       for k, time in enumerate(times))
+    return begin, times[times.index(begin) + count - 1]
 
-    # The revolution: of points without times the program's own times are those of one revolution.
-    some = list(matches(truth[::37], own, lambda point, candidate: True))
-    lags = sorted(lag_s(point, candidate) for point, candidate, _ in some)
-    around_s = statistics.median(lags)
-    found = list(matches(truth, own, lambda point, candidate:
-                         abs(lag_s(point, candidate) - around_s) < HALF_TURN_S))
+
+def time_differences(found):
+    """Differences of the times, s, less the median of each run of ascending times: some programs
+    count times from each packet, in the order of the packets."""
+    runs, last = [], math.inf
+    for point, candidate, _ in found:
+        if point["time_stamp"] < last:
+            runs.append([])
+        last = point["time_stamp"]
+        runs[-1].append(candidate["timestamp"] - 1e-9 * point["time_stamp"])
+    middles = [statistics.median(run) for run in runs]
+    return [lag - middle for run, middle in zip(runs, middles) for lag in run]
+
+
+def compare(truth, own):
+    begin, end = revolution(list(matches(truth[::7], own)))
+    found = list(matches(truth, [point for point in own
+                                 if begin - EDGE_S <= point["timestamp"] <= end + EDGE_S]))
     figures = {"truth": len(truth), "matched": len(found),
                "range_m": spread(difference[0] for *_, difference in found),
                "azimuth_deg": spread(math.degrees(difference[1]) for *_, difference in found),
                "elevation_deg": spread(math.degrees(difference[2]) for *_, difference in found)}
     if "time_stamp" in truth[0]:
-        lags = [lag_s(point, candidate) for point, candidate, _ in found]
-        middle_s = statistics.median(lags)
-        figures["time_us"] = spread(1e6 * abs(lag - middle_s) for lag in lags)
+        figures["time_us"] = spread(1e6 * abs(lag) for lag in time_differences(found))
     if "channel" in truth[0]:
         channels = collections.defaultdict(collections.Counter)
         for point, candidate, _ in found:
@@ -130,7 +146,8 @@ def main():
     program, capture, sensor, truth, out = sys.argv[1:]
     out = pathlib.Path(out)
     results = json.loads(out.read_text()) if out.exists() else {}
-    name = pathlib.Path(capture).name
+    path = pathlib.Path(capture)
+    name = "/".join(path.parts[-2:]) if path.is_dir() else path.name
     results[name] = {"provenance": provenance_of(program),
                      **compare(read_pcd(truth), decoded(program, capture, sensor))}
     out.write_text(json.dumps(results, indent=1) + "\n")
