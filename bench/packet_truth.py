@@ -27,7 +27,7 @@ import tempfile
 from provenance import provenance_of
 
 RANGE_M, ELEVATION_RAD, AZIMUTH_RAD = 0.0015, math.radians(0.1), math.radians(1)
-SAME_AZIMUTH_RAD, TURN_S, EDGE_S = math.radians(0.02), 0.1, 0.003
+SAME_AZIMUTH_RAD, TURN_S, EDGE_S = math.radians(0.02), 0.1, 0.01
 TYPES = {"F4": "f", "F8": "d", "U1": "B", "U2": "H", "U4": "I", "I4": "i", "float": "f",
          "double": "d", "uchar": "B", "ushort": "H", "uint": "I", "int": "i"}
 
