@@ -212,7 +212,7 @@ TEST(Packets, TwoReturnsAreReadAndThoseThatAreTheSameOnce) {
   }
 }
 
-// Oracle: VLS-128 User Manual 63-9483, section 9.5, "ExactPointTime = TimeStamp + TimeOffset
+// Oracle: VLS-128 User Manual 63-9483, page 61, "ExactPointTime = TimeStamp + TimeOffset
 // - 8.7".
 TEST(Packets, AVls128StampsThePacketAfterItsFirstLasers) {
   const SentPacket sent("velodyne-vls-128", 100);
