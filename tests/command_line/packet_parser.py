@@ -116,7 +116,7 @@ VLP_16 = Velodyne(16, lambda i: 2.304 * i, 55.296, 0.002, 0x22)
 HDL_32E = Velodyne(32, lambda i: 1.152 * i, 46.08, 0.002, 0x21)
 VLP_32C = Velodyne(32, lambda i: 2.304 * (i // 2), 55.296, 0.004, 0x28)
 HDL_64E_S3 = Velodyne(64, lambda i: 7.2 * (i % 32 // 4) + (0, 1.3, 2.5, 3.7)[i % 4], 57.6, 0.002)
-VLS_128 = Velodyne(128, lambda i: 2.665 * (i // 8 + i // 64), 53.3, 0.004, 0xA1, 3 * 2.665)
+VLS_128 = Velodyne(128, lambda i: 2.665 * (i // 8 + i // 64), 53.3, 0.004, 0xA1, 8.7)
 
 
 def ouster_returns(path, channels):

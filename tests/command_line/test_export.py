@@ -159,6 +159,41 @@ class Export(ProgramTest):
         self.run_bad(64, "export", frames, "-o", self.folder / "none", "--format", "nuscenes",
                      says=["--trajectory"])
 
+    def test_times_of_points_of_a_drive_are_kept(self):
+        """In files of points, and in MCAP, from which they are used again."""
+        self.poses.write_text("time,x,y,z,qw,qx,qy,qz\n" + "".join(
+            f"{100 + 0.1 * k},{4 + 0.5 * k},0,2,1,0,0,0\n" for k in range(4)))
+        frames = self.simulate(self.model(), "frames", "--format", "ply", "--rolling-shutter",
+                               "--no-noise")
+        drive = ["--trajectory", self.poses, "--points-in", "sensor", "--sweep-points", "measured",
+                 "--scan-times", self.folder / "times.txt"]
+        (self.folder / "times.txt").write_text("".join(f"{100 + 0.1 * k}\n" for k in range(4)))
+        keep = ["--own-body", "0", "--driven-path", "0"]
+        done = run("export", frames, "-o", self.folder / "a.csv", *drive, *keep)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("times are exported", done.stderr)
+        points = self.rows(self.folder / "a.csv")
+        for point in points:
+            late = float(point["timestamp"]) - 100 - 0.1 * int(point["scan_index"])
+            self.assertLess(abs(late), 0.0501)
+            # The sensor drives at 5 m/s.
+            at = 4 + 5 * (float(point["timestamp"]) - 100)
+            self.assertAlmostEqual(float(point["x_lidar_position"]), at, delta=1e-3)
+        self.assertGreater(len({point["timestamp"] for point in points}), 100)
+        done = run("export", frames, "-o", self.folder / "a.mcap", *drive)
+        self.assertIn("intensities, times, classes", done.stderr)
+        for source, name, options in [("a.mcap", "b.csv", ["--sweep-points", "compensated", *keep]),
+                                      ("a.csv", "b.las", []), ("b.las", "c.csv", [])]:
+            done = run("export", self.folder / source, "-o", self.folder / name, *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for name, column in [("b.csv", "timestamp"), ("c.csv", "gps_time")]:
+            again = self.rows(self.folder / name)
+            self.assertEqual(len(points), len(again))
+            for a, b in zip(points, again):
+                self.assertAlmostEqual(float(a["timestamp"]), float(b[column]), delta=1e-6)
+                for axis in ("x", "x_lidar_position"):
+                    self.assertAlmostEqual(float(a[axis]), float(b[axis]), delta=2e-3)
+
     def rows(self, path):
         with open(path, encoding="utf-8") as file:
             return list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -54,8 +54,9 @@ constexpr FuzzTarget kTargets[] = {
      "sensors/packet_decoder.cpp sensors/ouster_parser.cpp sensors/velodyne_parser.cpp "
      "sensors/hesai_parser.cpp",
      &read_packet, 26 * kKiB},
-    {"capture", "a.pcap", "cloud/load/packet_drive.cpp cloud/load/packet_file.cpp", &survey_capture,
-     8 * kKiB},
+    {"capture", "a.pcap",
+     "cloud/load/packet_survey.cpp cloud/load/packet_revolutions.cpp cloud/load/packet_file.cpp",
+     &survey_capture, 8 * kKiB},
     // Places
     {"obj", "a.obj", "io/text/obj.cpp splats/model/mesh_model.cpp", &read_mesh},
     {"mesh-ply", "a.ply", "splats/model/mesh_model.cpp io/ply", &read_mesh},

@@ -425,13 +425,16 @@ void add_settings(Seeds& seeds) {
              "<vertOffsetCorrection_>19.7</vertOffsetCorrection_>"
              "<horizOffsetCorrection_>2.6</horizOffsetCorrection_></px></item></points_></DB>"
              "</boost_serialization>"});
-  const std::string angles = "Channel,Elevation,Azimuth\r\n1,5,-1.5\r\n2,-3,0\r\n3,0,2\r\n";
-  seeds.add(
-      "sensor-csv",
-      {angles, joined({angles, "Channel,fire time(us)\n3,-1\n1,-50\n2,-10.5\n"}),
-       joined(
-           {angles, "Operational State,0,0,2\nAzimuth State,0,1,0\n1,-,18,46\n2,6,-,6\n3,2,2,2\n"}),
-       "azimuth_deg,elevation_deg,time_s,ring\n0,1,0,0\n90,-1,0.01,1\n"});
+  std::string angles = "Channel,Elevation,Azimuth\r\n", times = "Channel,fire time(us)\n";
+  std::string states = "Operational State,0,0,2\nAzimuth State,0,1,0\n";
+  for (int k = 1; k <= 16; ++k) {
+    const std::string number = std::to_string(k);
+    angles += number + "," + std::to_string(17 - 2 * k) + ",-1.5\r\n";
+    times += number + ",-" + number + "\n";
+    states += number + (k == 1 ? ",-,18,46\n" : ",2,2,2\n");
+  }
+  seeds.add("sensor-csv", {angles, joined({angles, times}), joined({angles, states}),
+                           "azimuth_deg,elevation_deg,time_s,ring\n0,1,0,0\n90,-1,0.01,1\n"});
   RayDropModel drop;
   drop.fitted_to = "s";
   drop.edge_runs = {0.5, 0.25};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -212,11 +213,15 @@ ExportResult export_cloud(const ExportJob& job, ExportFormat format, Session& se
       label_scheme_for(job.labels, inputs, job.load.label_field);
   auto [cloud, report] = load_cloud(inputs, load, session.executor, session.progress);
   if (labels) cloud.label_scheme = scheme_reference(job.labels, *labels);
-  if (!report.drives.empty() && !report.timed && !is_kitti_sequence(job.input))
+  if (!report.drives.empty() && !report.timed && !is_kitti_sequence(job.input)) {
+    const bool has_times = !cloud.others.columns.empty();
     session.progress.warn(
         job.input.string() +
         ": of the points of a drive, positions, sensor positions, intensities, classes, instances, "
-        "lasers and scan numbers are exported; times and other fields are dropped");
+        "lasers, scan numbers" +
+        (has_times ? " and times are exported; other" : " and no times are exported; other") +
+        " fields are dropped");
+  }
   if (format == ExportFormat::glb) {
     warn_of_dropped(job.output, cloud, session.progress);
     const std::vector<Rgb> colors = colors_of(cloud, labels ? &*labels : nullptr, job.color);
@@ -296,11 +301,34 @@ class ScanExport {
     scan.classes = std::move(kitti.classes);
     scan.instances = std::move(kitti.instances);
     scan.rays = scan.size();
+    if (format_ == ExportFormat::mcap) set_times(kitti.times_s, scan);
     std::vector<std::uint8_t> keep(scan.size(), 1);
     for (std::size_t i = 0; i < scan.size(); ++i) keep[i] = is_finite(scan.positions[i]) ? 1 : 0;
     const auto bad = static_cast<std::size_t>(std::ranges::count(keep, 0));
     result_.dropped += bad;
     return bad == 0 ? scan : kept_points(scan, keep);
+  }
+
+  /// Sets the times of points, and the motion of the sensor while it measured them. The points are
+  /// in the frame of the scan's pose.
+  void set_times(const std::vector<double>& times_s, Scan& scan) {
+    double half_s = 0;
+    bool are_known = times_s.size() == scan.size() && !sequence_.track.empty();
+    for (std::size_t i = 0; are_known && i < scan.size(); ++i) {
+      if (!is_finite(scan.positions[i])) continue;
+      are_known = std::isfinite(times_s[i]);
+      half_s = std::max(half_s, std::fabs(times_s[i] - scan.time_s));
+    }
+    has_times_ = has_times_ && are_known;
+    if (!are_known || half_s == 0) return;
+    scan.frame = PointFrame::deskewed;
+    scan.duration_s = 2 * half_s;
+    constexpr int kKnots = 9;
+    for (int k = 0; k < kKnots; ++k)
+      scan.knots.push_back(
+          interpolate(sequence_.track, scan.time_s + half_s * (2.0 * k / (kKnots - 1) - 1)));
+    for (const double time_s : times_s)
+      scan.times_s.push_back(static_cast<float>(time_s - scan.time_s + half_s));
   }
 
   /// The laser of each point, topmost 0; empty if one is unknown.
@@ -359,8 +387,12 @@ class ScanExport {
     const auto add = [&lost](const char* what) {
       lost += (lost.empty() ? "" : ", ") + std::string(what);
     };
+    const bool keeps_times = format_ == ExportFormat::mcap && has_times_;
     if (!is_kitti_sequence(job_.input))
-      add("fields of the points other than positions, intensities, classes and instances");
+      add(keeps_times ? "fields of the points other than positions, intensities, times, classes "
+                        "and instances"
+                      : "fields of the points other than positions, intensities, classes and "
+                        "instances");
     if (has_classes && format_ == ExportFormat::kitti_raw) add("classes");
     if (has_classes && format_ == ExportFormat::nuscenes)
       add(labels_ ? "classes of the scans between samples, their own numbers and instances"
@@ -380,6 +412,7 @@ class ScanExport {
   std::optional<LabelScheme> labels_;
   std::optional<bool> has_classes_;
   bool has_rings_ = true;
+  bool has_times_ = true;  ///< of the points of all scans
   ExportResult result_{0, "scans"};
 };
 

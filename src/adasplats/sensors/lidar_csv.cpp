@@ -9,10 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
 
@@ -81,7 +83,8 @@ struct Columns {
   std::array<int, kFields.size()> of = {0, 1, 2, 3};
   std::array<double, kFields.size()> factors = {1, 1, 1, 1};
   bool is_zenith = false;
-  bool has_units = false;  ///< of the angles
+  bool has_units = false;      ///< of the angles
+  bool has_time_unit = false;  ///< or the table has no names, which means seconds
 };
 
 /// "Zenith/deg", "zenith [deg]", "zenith_deg": a name, and the unit behind it.
@@ -117,7 +120,7 @@ void take_name(std::string_view field, int index, const FilePosition& place, Col
   if (name->is_zenith) columns.is_zenith = true;
   if (!has_unit) return;
   columns.factors[column] = unit->factor;
-  if (unit->is_angle) columns.has_units = true;
+  (unit->is_angle ? columns.has_units : columns.has_time_unit) = true;
 }
 
 /// Reads the names of the columns, in any order; nothing if the line is a ray.
@@ -157,6 +160,7 @@ struct TimedRay {
   Firing firing;
   double azimuth_deg = 0, elevation_deg = 0, time_s = 0;
   double time = 0;  ///< as written
+  std::size_t fields = 0;
 };
 
 TimedRay parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
@@ -176,6 +180,7 @@ TimedRay parse_ray(std::string_view line, const Columns& columns, std::uint32_t 
     return finite_number(text(field), kFields[field], place);
   };
   TimedRay ray;
+  ray.fields = fields.size();
   ray.time = has(2) ? number(2) : 0.0;
   ray.time_s = columns.factors[2] * ray.time;
   if (!(ray.time_s >= 0))
@@ -247,6 +252,51 @@ class ColumnOrder {
   TimedRay last_;
 };
 
+/// Recognises tables without names that may be the channels of a sensor, one elevation and azimuth
+/// each (Robosense's angle.csv), instead of rays.
+class ChannelTable {
+ public:
+  void add(const TimedRay& ray) {
+    ++count_;
+    constexpr std::size_t kAngles = 2;
+    may_be_ = may_be_ && ray.fields == kAngles && std::fabs(ray.azimuth_deg) <= 90 &&
+              count_ <= kChannels.back() && first_angles_.insert(ray.azimuth_deg).second;
+  }
+  bool is_possible() const {
+    return may_be_ && std::ranges::find(kChannels, count_) != kChannels.end();
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  static constexpr std::array<std::size_t, 7> kChannels = {16, 32, 40, 48, 64, 80, 128};
+  bool may_be_ = true;
+  std::size_t count_ = 0;
+  std::set<double> first_angles_;
+};
+
+/// Rejects times without a stated unit that are too far apart to be seconds.
+void require_seconds(std::vector<Firing> firings, const std::filesystem::path& path) {
+  constexpr std::size_t kMinRays = 16;
+  constexpr double kMaxStep_s = 1e-3, kShortest_s = 2e-7, kLongest_s = 2e-4;
+  if (firings.size() < kMinRays) return;
+  std::ranges::sort(firings, {}, &Firing::time_s);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < firings.size(); ++i)
+    if (firings[i].time_s > firings[i - 1].time_s)
+      steps.push_back(static_cast<double>(firings[i].time_s) -
+                      static_cast<double>(firings[i - 1].time_s));
+  if (steps.empty()) return;
+  const double step = upper_median_of(steps);
+  if (step <= kMaxStep_s) return;
+  std::string_view unit = "ms";
+  for (const auto& [word, factor, is_angle] : kRayUnits)
+    if (!is_angle && factor * step >= kShortest_s && factor * step < kLongest_s) unit = word;
+  throw data_error({path, {}, {}}, "the column of times has no unit, and its rows are " +
+                                       exact_text(step) + " apart, expected at most " +
+                                       exact_text(kMaxStep_s) + " s; name the unit, such as time_" +
+                                       std::string(unit));
+}
+
 /// Scans per second: a scan ends one mean interval after its last firing time. 10 if all rays have
 /// the same time.
 double rotation_hz_of(const std::vector<Firing>& firings) {
@@ -287,6 +337,7 @@ void set_scan_length(const Columns& columns, bool are_row_numbers,
                      const std::filesystem::path& path, LidarModel& model) {
   std::vector<Firing>& firings = model.free_pattern;
   const bool is_livox = columns.is_zenith && columns.of[2] >= 0;
+  if (!columns.has_time_unit && !are_row_numbers) require_seconds(firings, path);
   if (is_livox) set_livox_times(are_row_numbers, path, model);
   model.rotation_hz = rotation_hz_of(firings);
   if (model.rotation_hz > kMaxScans_hz)
@@ -305,8 +356,10 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   file.model.source = path.filename().string();
   std::vector<Firing>& firings = file.model.free_pattern;
   Columns columns;
+  columns.has_time_unit = true;  // documented, unless names say otherwise
   RayAngles angles;
   ColumnOrder order;
+  ChannelTable channels;
   bool has_names = false;
   double first_time = 0;
   bool are_row_numbers = true;
@@ -331,6 +384,7 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
         parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place());
     angles.add(ray, columns.is_zenith);
     order.add(ray);
+    channels.add(ray);
     if (firings.empty()) first_time = ray.time;
     are_row_numbers =
         are_row_numbers && ray.time == first_time + static_cast<double>(firings.size());
@@ -343,6 +397,14 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
         "column 1 ascends from ray to ray like a time, and column 3 does not; name the "
         "columns in a first line, such as Time/s,Azimuth/deg,Zenith/deg");
   if (const auto fault = angles.fault(columns)) throw data_error({path, {}, {}}, *fault);
+  if (!has_names && channels.is_possible())
+    throw data_error(
+        {path, {}, {}},
+        std::to_string(channels.count()) +
+            " lines of two angles without names are rays (azimuth, elevation) or channels "
+            "(elevation, azimuth, as in Robosense's angle.csv); name the columns in a first line: "
+            "azimuth_deg,elevation_deg for rays, or Channel,Elevation,Azimuth with numbers of "
+            "channels");
   set_scan_length(columns, are_row_numbers, path, file.model);
   return file;
 }

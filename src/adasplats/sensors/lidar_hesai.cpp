@@ -5,10 +5,12 @@
 // same folder, a CSV of firing times with "firetime" instead of "angle" in its name: (Channel, fire
 // time(us)), or one column per azimuth state, "-" if a channel does not fire. A table of angles may
 // begin with a line "EEFF,..." and end with a SHA-256, which is not checked: editors change line
-// ends.
+// ends. Tables that end early are rejected by the number of channels and the last elevation.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -103,6 +105,33 @@ std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
                                          " channels, but their numbers go up to " +
                                          std::to_string(last) + "; expected 1, 2, 3, ...");
   return channels;
+}
+
+/// Rejects tables cut off at the end. Channels are numbered from the top to -12.5 degrees and
+/// below, or from the bottom to +40 and above (QT, JT), in tables of these many.
+void require_all_channels(const std::vector<Channel>& sorted, const fs::path& path) {
+  constexpr std::array<std::size_t, 10> kCounts = {16, 20, 32, 40, 48, 64, 80, 90, 96, 128};
+  constexpr double kLowest_deg = -12, kHighest_deg = 40;
+  const std::string found = "the table ends with channel " + std::to_string(sorted.size()) +
+                            " at elevation " + exact_text(sorted.back().elevation_deg);
+  const std::string cause = "; is the file cut off at the end?";
+  if (std::ranges::find(kCounts, sorted.size()) == kCounts.end()) {
+    std::string counts;
+    for (const std::size_t count : kCounts)
+      counts += (counts.empty()            ? ""
+                 : count == kCounts.back() ? " or "
+                                           : ", ") +
+                std::to_string(count);
+    throw data_error({path, {}, {}}, found + ", expected " + counts + " channels" + cause);
+  }
+  const double last_deg = sorted.back().elevation_deg;
+  const auto elevation = &Channel::elevation_deg;
+  if (std::ranges::is_sorted(sorted, std::greater<>(), elevation) && last_deg > kLowest_deg)
+    throw data_error({path, {}, {}}, found + " degrees, expected the last one below " +
+                                         exact_text(kLowest_deg) + cause);
+  if (std::ranges::is_sorted(sorted, {}, elevation) && last_deg < kHighest_deg)
+    throw data_error({path, {}, {}}, found + " degrees, expected the last one above " +
+                                         exact_text(kHighest_deg) + cause);
 }
 
 /// When a channel fires after the start of its column, and in which columns.
@@ -277,6 +306,7 @@ LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
   }
   for (const auto& fault : {angle_fault(model), degrees_fault(model)})
     if (fault) throw data_error({path, {}, {}}, *fault);
+  require_all_channels(channels, path);
   if (format) {
     model.packets.emplace().format = *format;
     for (const Channel& channel : channels)

@@ -25,12 +25,23 @@ class HesaiCsv : public testing::Test {
   TemporaryFolder folder_;
 };
 
-const char* const kThree = "Channel,Elevation,Azimuth\r\n1,5,-1.5\r\n2,-3,0\r\n3,0,2\r\n";
+constexpr int kChannels = 20;  // of no supported model
+
+/// `begin`, and lines of the channels 4 to 20, each with `middle` and its negative number, and
+/// `end`.
+std::string completed(std::string begin, const std::string& middle, const std::string& end) {
+  for (int k = 4; k <= kChannels; ++k)
+    begin += std::to_string(k) + middle + std::to_string(-k) + end;
+  return begin;
+}
+std::string angles() {
+  return completed("Channel,Elevation,Azimuth\r\n1,5,-1.5\r\n2,-3,0\r\n3,0,2\r\n", ",", ",0\r\n");
+}
 
 // Oracle: a channel looks at the block's azimuth plus its own, clockwise.
 TEST_F(HesaiCsv, AzimuthsRunClockwise) {
-  const LidarModel model = load(kThree);
-  EXPECT_EQ(model.rings(), 3U);
+  const LidarModel model = load(angles());
+  EXPECT_EQ(model.rings(), 20U);
   EXPECT_TRUE(model.clockwise);
   EXPECT_DOUBLE_EQ(model.elevations_rad[1], 0);  // sorted
   EXPECT_DOUBLE_EQ(model.azimuth_offsets_rad[1], -2 * kDegree);
@@ -40,9 +51,10 @@ TEST_F(HesaiCsv, AzimuthsRunClockwise) {
 
 // Oracle: times by hand; the earliest becomes 0 and the head is where it was then.
 TEST_F(HesaiCsv, FiringTimesLieBesideTheAngles) {
-  folder_.write("my_firetime.csv", "Channel,fire time(us)\n3,-1\n1,-50\n2,-10.5\n");
-  const LidarModel model = load(kThree);
-  ASSERT_EQ(model.firing_times_s.size(), 3U);
+  folder_.write("my_firetime.csv",
+                completed("Channel,fire time(us)\n3,-1\n1,-50\n2,-10.5\n", ",", "\n"));
+  const LidarModel model = load(angles());
+  ASSERT_EQ(model.firing_times_s.size(), 20U);
   EXPECT_NEAR(model.firing_times_s[0], 0, 1e-12);        // channel 1
   EXPECT_NEAR(model.firing_times_s[1], 49e-6, 1e-12);    // channel 3
   EXPECT_NEAR(model.firing_times_s[2], 39.5e-6, 1e-12);  // channel 2
@@ -53,10 +65,11 @@ TEST_F(HesaiCsv, FiringTimesLieBesideTheAngles) {
 // Oracle: what each channel's states say; channel 3 fires in every one.
 TEST_F(HesaiCsv, StatesOfTheAzimuthAreColumns) {
   folder_.write("my_firetime.csv",
-                "Operational State,0,0,0,0,2,2\nAzimuth State,0,1,2,3,0,1\n"
-                "1,-,18,-,18,46,46\n2,6,-,6,-,6,6\n3,20,20,22,20,20,22\n");
-  const LidarModel model = load(kThree);
-  std::vector<std::size_t> rays(3, 0);
+                completed("Operational State,0,0,0,0,2,2\nAzimuth State,0,1,2,3,0,1\n"
+                          "1,-,18,-,18,46,46\n2,6,-,6,-,6,6\n3,20,20,22,20,20,22\n",
+                          ",1,1,1,1,1,", "\n"));
+  const LidarModel model = load(angles());
+  std::vector<std::size_t> rays(20, 0);
   for (const Firing& firing : firings_of(model)) {
     ++rays[firing.ring];
     if (firing.ring == 0) {
@@ -66,8 +79,9 @@ TEST_F(HesaiCsv, StatesOfTheAzimuthAreColumns) {
       ASSERT_EQ(firing.column % 2, 0U);
     }
   }
-  EXPECT_EQ(rays, (std::vector<std::size_t>{900, 1800, 900}));
-  EXPECT_EQ(model.rays_per_scan(), 3600U);
+  EXPECT_EQ((std::vector<std::size_t>{rays[0], rays[1], rays[2]}),
+            (std::vector<std::size_t>{900, 1800, 900}));
+  EXPECT_EQ(model.rays_per_scan(), 3600U + 17 * 1800);
   EXPECT_EQ(model.columns, 1800U);
 }
 
@@ -86,8 +100,8 @@ TEST_F(HesaiCsv, WrongFilesAreRefusedWithTheLine) {
 }
 
 TEST_F(HesaiCsv, ADigestMayFollowTheAngles) {
-  EXPECT_EQ(load(std::string(kThree) + std::string(64, 'a') + "\r\n").rings(), 3U);
-  expect_data_error(std::string(kThree) + std::string(63, 'a') + "\n", "my_Angle.csv:5: 1 values");
+  EXPECT_EQ(load(angles() + std::string(64, 'a') + "\r\n").rings(), 20U);
+  expect_data_error(angles() + std::string(63, 'a') + "\n", "my_Angle.csv:22: 1 values");
 }
 
 TEST_F(HesaiCsv, AnglesThatAreNotThoseOfBeamsAreErrors) {
@@ -107,7 +121,7 @@ TEST_F(HesaiCsv, AnglesThatAreNotThoseOfBeamsAreErrors) {
 TEST_F(HesaiCsv, WrongFiringTimesAreRefusedWithTheLine) {
   const auto reject = [&](const std::string& times, const std::string& says) {
     folder_.write("my_firetime.csv", times);
-    expect_error(ErrorKind::data, {"my_firetime.csv", says}, [&] { load(kThree); });
+    expect_error(ErrorKind::data, {"my_firetime.csv", says}, [&] { load(angles()); });
   };
   reject("", "expected the columns");
   reject("Channel,fire time(us)\n1,0\n2,0\n", "no channel 3");
@@ -117,7 +131,42 @@ TEST_F(HesaiCsv, WrongFiringTimesAreRefusedWithTheLine) {
   reject("Operational State,0,0,0\nAzimuth State,0,1,2\n1,-,1,1\n", "uneven");
   reject("Operational State,0,0,0,0\nAzimuth State,0,1,2,3\n1,1,1,-,-\n", "uneven");
   reject("Operational State\n", "no operational states");
-  reject("Channel,fire time(us)\n1,0\n2,0\n3,60\n", "us a column");
+  reject(completed("Channel,fire time(us)\n1,0\n2,0\n3,60\n", ",", "\n"), "us a column");
+}
+
+/// The first `count` channels of a sensor with `all`, from `first_deg` to `last_deg`.
+std::string begin_of_table(int count, int all, double first_deg, double last_deg) {
+  std::string text = "Channel,Elevation,Azimuth\n";
+  for (int k = 0; k < count; ++k)
+    text += std::to_string(k + 1) + "," +
+            std::to_string(first_deg + (last_deg - first_deg) * k / (all - 1)) + ",0\n";
+  return text;
+}
+
+// First and last elevations are those of Hesai's SDK (XT16, XT32, 40P, 64, 128, QT64, QT128, JT16).
+TEST_F(HesaiCsv, TablesCutOffAtTheEndAreErrors) {
+  struct Table {
+    int channels;
+    double first_deg, last_deg;
+  };
+  for (const Table& table : {Table{16, 15, -15},
+                             {32, 15, -16},
+                             {40, 15.2, -24.6},
+                             {64, 14.7, -25},
+                             {128, 15, -24.8},
+                             {64, -52.1, 52.1},
+                             {128, -52.6, 52.6},
+                             {16, 0.6, 40.7}}) {
+    const auto begin = [&](int count) {
+      return begin_of_table(count, table.channels, table.first_deg, table.last_deg);
+    };
+    EXPECT_EQ(load(begin(table.channels)).rings(), static_cast<std::size_t>(table.channels));
+    for (const int count : {3, 15, 16, 40, 64, table.channels / 2, table.channels - 1})
+      if (count < table.channels)
+        expect_data_error(begin(count), "is the file cut off at the end?");
+  }
+  expect_data_error(begin_of_table(63, 64, 15, -25), "channel 63 at elevation");
+  expect_data_error(begin_of_table(40, 64, 15, -25), "expected the last one below -12");
 }
 
 }  // namespace

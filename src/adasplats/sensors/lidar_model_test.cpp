@@ -157,6 +157,14 @@ TEST(Hdl32Paper, HasThePapersFan) {
   EXPECT_NEAR(model.elevations_rad[0] - model.elevations_rad[1], 41.34 / 31 * kDegree, 1e-12);
 }
 
+/// The angles of an XT16.
+std::string hesai_table() {
+  std::string text = "Channel,Elevation,Azimuth\n";
+  for (int k = 1; k <= 16; ++k)
+    text += std::to_string(k) + "," + std::to_string(17 - 2 * k) + ",3\n";
+  return text;
+}
+
 class LidarFiles : public testing::Test {
  protected:
   LidarFiles()
@@ -538,6 +546,35 @@ TEST_F(LidarFiles, ATableWithoutNamesThatBeginsWithTheTimeIsAnError) {
   expect_contains(csv_failure(text), "column 1 ascends from ray to ray like a time");
 }
 
+// rs_driver writes elevation and azimuth of each channel without names.
+TEST_F(LidarFiles, TablesOfChannelsWithoutNamesAreNotReadAsRays) {
+  std::string channels, grid;
+  for (int k = 0; k < 32; ++k) {
+    channels += std::to_string(2.3 + 2.8 * k) + "," + std::to_string(k % 3) + "\n";
+    grid += std::to_string(k % 8) + "," + std::to_string(k / 8) + "\n";
+  }
+  expect_contains(csv_failure(channels), "32 lines of two angles without names");
+  EXPECT_EQ(load_lidar_model(write("g.csv", grid)).rays_per_scan(), 32U);
+  EXPECT_EQ(
+      load_lidar_model(write("r.csv", "azimuth_deg,elevation_deg\n" + channels)).rays_per_scan(),
+      32U);
+}
+
+TEST_F(LidarFiles, TimesWithoutUnitMustBeSeconds) {
+  const auto table = [](const std::string& name, double step) {
+    std::string text = name + ",Azimuth/deg,Zenith/deg\n";
+    for (int k = 0; k < 100; ++k)
+      text += std::to_string(step * k) + "," + std::to_string(k) + ",80\n";
+    return text;
+  };
+  expect_contains(csv_failure(table("Timestamp", 5000)), "5000 apart, expected at most 0.001 s");
+  expect_contains(csv_failure(table("offset_time", 5000)), "such as time_ns");
+  expect_contains(csv_failure(table("time", 5.5)), "such as time_us");
+  const double step_s = 1e-4;
+  EXPECT_NEAR(load_lidar_model(write("t.csv", table("Timestamp", step_s))).pattern_s, 0.01, 1e-6);
+  EXPECT_NEAR(load_lidar_model(write("u.csv", table("timestamp_us", 100))).pattern_s, 0.01, 1e-6);
+}
+
 // Oracle: the table; zenith counts from +z. livox_laser_simulation has this header.
 TEST_F(LidarFiles, ALivoxTableContinuesFromScanToScan) {
   std::string text = "Time/s,Azimuth/deg,Zenith/deg\r\n";
@@ -639,7 +676,7 @@ TEST_F(LidarFiles, ChangedFilesAreErrorsNotCrashes) {
        "lasers:\n- {laser_id: 0, vert_correction: 0.1}\n- laser_id: 1\n"
        "  vert_correction: 0.2\nnum_lasers: 2\n"},
       {"a.csv", "azimuth_deg,elevation_deg,time_s,ring\n1,2,0.5,1\n2,2,0.6,1\n"},
-      {"a_angle.csv", "Channel,Elevation,Azimuth\n1,2,3\n2,1,3\n"}};
+      {"a_angle.csv", hesai_table()}};
   std::size_t loaded = 0;
   for (std::size_t seed = 0; seed < seeds.size(); ++seed)
     for (std::uint64_t run = 0; run < 50; ++run) {

@@ -23,9 +23,10 @@ inline constexpr std::uint16_t kAzimuthSteps = 36000;
 inline constexpr std::uint64_t kMicrosecondsPerHour = 3'600'000'000;
 
 /// Time stamp of a packet relative to its first firing: a VLS-128 aligns the full hour with the
-/// fourth of its groups of lasers (2.665 us each).
+/// fourth of its groups of lasers, 8.7 us later (VLS-128 User Manual 63-9483, page 61,
+/// "ExactPointTime = TimeStamp + TimeOffset - 8.7").
 constexpr std::int64_t stamp_after_first_ns(PacketFormat format) {
-  return format == PacketFormat::vls_128 ? 3 * 2665 : 0;
+  return format == PacketFormat::vls_128 ? 8700 : 0;
 }
 
 constexpr std::size_t channel_byte(std::size_t block, std::size_t channel) {

@@ -212,6 +212,21 @@ TEST(Packets, TwoReturnsAreReadAndThoseThatAreTheSameOnce) {
   }
 }
 
+// Oracle: VLS-128 User Manual 63-9483, page 61, "ExactPointTime = TimeStamp + TimeOffset
+// - 8.7".
+TEST(Packets, AVls128StampsThePacketAfterItsFirstLasers) {
+  const SentPacket sent("velodyne-vls-128", 100);
+  const PacketDecoder decoder(sent.sensor);
+  std::uint32_t stamp_us = 0;
+  std::memcpy(&stamp_us, &sent.payload[1200], sizeof stamp_us);
+  const auto columns = decoder.columns(sent.payload);
+  PacketPoints points;
+  decoder.add_points(sent.payload, 0, columns[0], points);
+  const double first_us =
+      1e-3 * static_cast<double>(columns[0].time_ns) + 1e6 * std::ranges::min(points.late_s);
+  EXPECT_NEAR(first_us, stamp_us - 8.7, 1e-6);
+}
+
 TEST(Packets, PairsOfBlocksHaveOneAzimuth) {
   const SentPacket sent("velodyne-vlp-16", 0);
   const PacketDecoder decoder(sent.sensor);

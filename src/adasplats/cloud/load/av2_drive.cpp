@@ -202,6 +202,7 @@ class Av2Reader final : public ScanReader {
       scan.positions.push_back(vec_cast<float>(point));
       scan.origins.push_back(vec_cast<float>(at.vehicle_from_unit * at.origin));
       scan.lasers.push_back(at.ring);
+      scan.times_s.push_back(time_s);
       if (!boxes_.empty())
         scan.in_boxes.push_back(boxes_.contains(time_s, pose.world_from_sensor * point) ? 1 : 0);
     }
@@ -340,6 +341,7 @@ KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
   const Av2Poses poses = read_av2_poses(drive.folder);
   KittiSequence sequence;
   sequence.folder = drive.folder;
+  sequence.track = poses.track;
   std::map<fs::path, TimedPose> pose_of_file;
   for (auto& [file, pose] : sweeps_of_log(drive.folder, poses)) {
     sequence.scans.push_back(file);

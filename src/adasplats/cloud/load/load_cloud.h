@@ -69,7 +69,8 @@ struct LoadOptions : DriveSettings {
   /// add them to the cloud.
   bool empty_beams = false;
   /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
-  /// orient points without a sensor position (OriginKind::guessed).
+  /// orient points without a sensor position (OriginKind::guessed). Drives have only `timestamp`, s
+  /// in the clock of the poses, if their points have times.
   KeptColumns other_columns = KeptColumns::none;
   /// Accept files that are one scan in the sensor frame of a known pose: to describe or segment
   /// them.

@@ -134,10 +134,13 @@ void identify_lasers(const PartRun& run, CloudPart& part) {
 
 /// Reads scans of a reader, whose point counts are unknown until they are read.
 void read_with_reader(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
-                      CloudPart& part, const Executor& executor, ProgressSink& progress) {
+                      bool with_times, CloudPart& part, const Executor& executor,
+                      ProgressSink& progress) {
   std::vector<KittiScan> scans(chosen.size());
-  for_each_scan(chosen.size(), executor, progress,
-                [&](std::size_t k) { scans[k] = read_all_returns(sequence, chosen[k]); });
+  for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
+    scans[k] = read_all_returns(sequence, chosen[k]);
+    if (!with_times) scans[k].times_s = {};
+  });
   std::size_t points = 0;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const std::size_t end = points + scans[k].positions.size();
@@ -146,6 +149,7 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
     points = end;
   }
   PointCloud& cloud = part.cloud;
+  std::vector<double> times_s;
   std::vector<std::function<void()>> tasks;
   const auto add = [&](auto attribute, auto& all) {
     tasks.emplace_back([&scans, &all, attribute, points] { join(scans, attribute, points, all); });
@@ -157,7 +161,9 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
   add(&KittiScan::instances, cloud.instances);
   add(&KittiScan::lasers, cloud.lasers);
   add(&KittiScan::in_boxes, part.in_boxes);
+  add(&KittiScan::times_s, times_s);
   executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
+  if (!times_s.empty()) cloud.others.columns.push_back({"timestamp", std::move(times_s)});
   if (part.beams.from_hdl64) {
     cloud.lasers.resize(points);
     part.scan_origins.resize(part.beams.raw_motions.empty() ? 0 : points);
@@ -225,7 +231,8 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
   if (part.beams.unknown_sweep_m > kStill_m) progress.warn(undetermined_motion_text(sequence));
   part.cloud.crs = sequence.facts.crs;
   if (sequence.reader)
-    read_with_reader(sequence, chosen, part, executor, progress);
+    read_with_reader(sequence, chosen, options.other_columns == KeptColumns::all, part, executor,
+                     progress);
   else
     read_files(sequence, chosen, part, executor, progress);
   number_scans(part, first_scan_index, executor);

@@ -216,6 +216,23 @@ std::optional<std::vector<std::int16_t>> las_angles(const Column& column) {
   return steps;
 }
 
+/// Whether a column has seconds of a clock, which LAS has a field for.
+bool is_timestamp(const Column& column) {
+  constexpr double kMax_s = 1e11;  // in the year 5138; other units since 1970 are larger
+  const auto* const times = std::get_if<std::vector<double>>(&column.values);
+  return times != nullptr && lower_case(column.name) == "timestamp" &&
+         std::ranges::none_of(*times, [](double time) { return std::fabs(time) > kMax_s; });
+}
+
+/// The field of LAS for a column, or its own name.
+std::string field_for(const Column& column, const OtherColumns& others) {
+  const auto is_gps_time = [](const Column& other) {
+    return las_field_name(other.name) == "gps_time";
+  };
+  if (is_timestamp(column) && std::ranges::none_of(others.columns, is_gps_time)) return "gps_time";
+  return las_field_name(column.name);
+}
+
 /// Red, green, blue and near infrared, if LAS can hold them; bytes become 16 bits as the
 /// specification says. Columns that LAS has no field for become extra bytes.
 void add_others_las(const OtherColumns& others, OtherViews& views) {
@@ -228,7 +245,7 @@ void add_others_las(const OtherColumns& others, OtherViews& views) {
   if (!fit) colors.clear();
   for (const Column& column : others.columns) {
     const bool is_color = std::ranges::count(colors, &column) > 0;
-    const std::string name = las_field_name(column.name);
+    const std::string name = field_for(column, others);
     const std::string field = views.has(name) ? std::string() : name;
     if (is_color || (field == "nir" && !colors.empty())) {
       if (auto values = exact_values<std::uint16_t>(column)) {

@@ -70,6 +70,7 @@ class SweepReader final : public ScanReader {
         with_classes_(with_classes),
         track_(frames.poses.track),
         times_(frames.times),
+        has_times_(frames.times.kind != PointTimes::Kind::none && frames.poses.has_times),
         finding_(std::move(finding)),
         boxes_(std::move(boxes)) {
     for (std::size_t k = 0; k < frames.files.size(); ++k)
@@ -93,6 +94,8 @@ class SweepReader final : public ScanReader {
     if (finding_.sensor) scan.lasers = std::move(lasers);
     if (moves || finding_.sensor) add_beams(file, given, times, pose, scan);
     if (!boxes_.empty()) mark_boxes(times, pose, scan);
+    if (has_times_ && times.size() == given.size())
+      for (const double time : times) scan.times_s.push_back(times_.time_s(time, pose.time_s));
     return scan;
   }
 
@@ -162,6 +165,7 @@ class SweepReader final : public ScanReader {
   std::map<std::string, TimedPose> poses_;
   Trajectory track_;
   PointTimes times_;
+  bool has_times_;  ///< in the clock of the poses
   SweepFinding finding_;
   MovingBoxes boxes_;
 };
@@ -429,6 +433,7 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   sequence.folder = drive.folder;
   sequence.scans = frames.files;
   sequence.trajectory = frames.poses.of_scans;
+  if (frames.poses.has_times) sequence.track = frames.poses.track;
   sequence.reader = raw_reader(frames.source);
   sequence.facts.points_in = "sensor's frame (" + because + ")";
   sequence.facts.poses =

@@ -82,6 +82,7 @@ class FrameReader final : public ScanReader {
       scan.origins.push_back(vec_cast<float>(scan_from_world * (pose * origin)));
       scan.lasers.push_back(laser);
     }
+    scan.times_s = std::move(frame.times);
     scan.intensities = std::move(frame.intensities);
     if (with_classes_) scan.classes = std::move(frame.classes);
     return scan;
@@ -337,6 +338,8 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
   if (overview.left_out > 0)
     sequence.facts.left_out = std::to_string(overview.left_out) + " " + frames.others + " of " +
                               std::to_string(overview.taken + overview.left_out);
+  for (const TimedPose& pose : frames.vehicle)
+    sequence.track.push_back({pose.time_s, reader->pose_at(pose.time_s)});
   sequence.reader = reader;
   return sequence;
 }

@@ -117,6 +117,7 @@ void remove_points_in_boxes(KittiScan& scan) {
   keep_outside(scan.in_boxes, scan.instances);
   keep_outside(scan.in_boxes, scan.origins);
   keep_outside(scan.in_boxes, scan.lasers);
+  keep_outside(scan.in_boxes, scan.times_s);
   scan.in_boxes = {};
 }
 

@@ -56,7 +56,8 @@ struct KittiSequence {
   std::vector<std::filesystem::path> scans;   ///< by name
   std::vector<std::filesystem::path> labels;  ///< empty, or one a scan
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
-  ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
+  Trajectory track;  ///< the same between scans too, in their clock; empty: not known
+  ScanBeams beams;   ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
   DriveFacts facts;
 };
@@ -81,6 +82,8 @@ struct KittiScan {
   /// Where each beam began, sensor frame, m, and its laser; empty: the sequence's beams say.
   std::vector<Vec3f> origins;
   std::vector<std::uint16_t> lasers;
+  /// When each point was measured, s in the clock of the poses; empty: unknown.
+  std::vector<double> times_s;
   /// 1 for points on objects that move, as somebody annotated them; empty: none is.
   std::vector<std::uint8_t> in_boxes;
 };
