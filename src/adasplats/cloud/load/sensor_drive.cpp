@@ -429,6 +429,7 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   sequence.folder = drive.folder;
   sequence.scans = frames.files;
   sequence.trajectory = frames.poses.of_scans;
+  sequence.has_times = frames.poses.has_times;
   sequence.reader = raw_reader(frames.source);
   sequence.facts.points_in = "sensor's frame (" + because + ")";
   sequence.facts.poses =

@@ -13,6 +13,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/origins/sweep_evidence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/cloud/sequence/recognize_sensor.h"
 #include "adasplats/core/error.h"
 
@@ -337,6 +338,7 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
   if (overview.left_out > 0)
     sequence.facts.left_out = std::to_string(overview.left_out) + " " + frames.others + " of " +
                               std::to_string(overview.taken + overview.left_out);
+  require_no_jump(sequence);
   sequence.reader = reader;
   return sequence;
 }
