@@ -434,6 +434,7 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   sequence.scans = frames.files;
   sequence.trajectory = frames.poses.of_scans;
   if (frames.poses.has_times) sequence.track = frames.poses.track;
+  sequence.has_times = frames.poses.has_times;
   sequence.reader = raw_reader(frames.source);
   sequence.facts.points_in = "sensor's frame (" + because + ")";
   sequence.facts.poses =

@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/origins/clock_finder.h"
 #include "adasplats/cloud/poses/mount.h"
+#include "adasplats/cloud/poses/pose_jump.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
@@ -123,6 +124,18 @@ TimedRecording recording_of(std::span<const CloudPart> parts) {
   return recording;
 }
 
+/// Throws data if the sensor jumps between the scans.
+void require_steady_track(const std::filesystem::path& trajectory, const Trajectory& scan_poses) {
+  const auto jump = find_pose_jump(scan_poses, true);
+  if (!jump) return;
+  std::array<char, 100> times{};
+  std::snprintf(times.data(), times.size(), ": between %.3f and %.3f s",
+                scan_poses[jump->later - 1].time_s, scan_poses[jump->later].time_s);
+  throw Error(ErrorKind::data,
+              trajectory.string() + times.data() + " the poses jump by " + jump->text() +
+                  "; check that all poses are of this drive and the times seconds");
+}
+
 std::uint32_t count_scans(std::span<const CloudPart> parts) {
   std::size_t scans = 0;
   for (const CloudPart& part : parts) scans += part.cloud.scan_poses.size();
@@ -192,6 +205,7 @@ std::optional<PlacedByTimes> place_by_times(std::span<CloudPart> parts, const Lo
   for (std::size_t p = 0; p < parts.size(); ++p)
     if (placed.parts[p] != 0) place(parts[p], clock, track.poses, scans, first_scan, executor);
   placed.scan_poses = scans.poses(track.poses);
+  require_steady_track(options.trajectory, placed.scan_poses);
   placed.origins.scans = placed.scan_poses.size();
   placed.origins.scan_s = scans.scan_s();
   progress.warn(points.name() + ": " + placed.origins.description());

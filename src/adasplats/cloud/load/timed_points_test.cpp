@@ -219,6 +219,18 @@ TEST_F(TimedPoints, PointsInAGapAreAnError) {
   });
 }
 
+TEST_F(TimedPoints, PosesThatJumpAreAnError) {
+  const auto file = poses(kUtc_s, -1, 5);
+  Trajectory jumping = read_trajectory(file);
+  for (TimedPose& pose : jumping)
+    if (pose.time_s > kUtc_s + 0.1) pose.world_from_sensor.translation.x += 60;
+  write_trajectory_csv(file, jumping);
+  LoadOptions options = with(file);
+  options.trust_origins = true;  // the hidden points are reported first
+  expect_error(ErrorKind::data, {"poses.csv: between ", "the poses jump by ", "m/s"},
+               [&] { load(ply(kUtc_s), options); });
+}
+
 TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
   const auto points = ply(0, 1, "time");
   // One second late: the drive covers it, the points do not fit.

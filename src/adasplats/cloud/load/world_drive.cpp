@@ -13,6 +13,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/origins/sweep_evidence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/cloud/sequence/recognize_sensor.h"
 #include "adasplats/core/error.h"
 
@@ -340,6 +341,7 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
                               std::to_string(overview.taken + overview.left_out);
   for (const TimedPose& pose : frames.vehicle)
     sequence.track.push_back({pose.time_s, reader->pose_at(pose.time_s)});
+  require_no_jump(sequence);
   sequence.reader = reader;
   return sequence;
 }

@@ -161,6 +161,7 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
                     ": is missing; every scan of a sequence needs a pose (poses of another file: "
                     "give it as `trajectory`)");
   sequence.trajectory = poses_of_scans(poses_file, read_trajectory(poses_file), sequence.scans);
+  sequence.has_times = has_times(poses_file);
   return sequence;
 }
 

@@ -56,6 +56,7 @@ struct KittiSequence {
   std::vector<std::filesystem::path> scans;   ///< by name
   std::vector<std::filesystem::path> labels;  ///< empty, or one a scan
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
+  bool has_times = true;                      ///< of the trajectory; else placeholders, 0.1 s apart
   Trajectory track;  ///< the same between scans too, in their clock; empty: not known
   ScanBeams beams;   ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's

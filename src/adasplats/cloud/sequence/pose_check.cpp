@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/poses/pose_jump.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
@@ -277,6 +278,26 @@ std::string factor_text(double factor) {
                   std::string(kWayNames.front()) + ", " + share(other) + " " + way);
 }
 
+/// By how much the number in a scan's name exceeds that of the scan before; 1 without numbers.
+std::vector<double> number_steps(const KittiSequence& sequence) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < sequence.scans.size(); ++k) {
+    const auto before = number_in_name(sequence.scans[k - 1]);
+    const auto number = number_in_name(sequence.scans[k]);
+    const bool counts = before && number && *number > *before && *number - *before < 1'000'000;
+    steps.push_back(counts ? static_cast<double>(*number - *before) : 1.0);
+  }
+  return steps;
+}
+
+/// The median time per number in the names of the scans.
+double median_step_s(const Trajectory& poses, const std::vector<double>& number_steps) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    steps_s.push_back((poses[k].time_s - poses[k - 1].time_s) / number_steps[k - 1]);
+  return upper_median_of(steps_s);
+}
+
 /// Throws data where times and ways between the scans are those of no vehicle, unless they are in
 /// other units than seconds and metres. A scan counts once for each number that its name is ahead.
 void require_times_of_scans(const KittiSequence& sequence) {
@@ -284,18 +305,11 @@ void require_times_of_scans(const KittiSequence& sequence) {
   constexpr double kSlow_mps = 0.5, kFast_mps = 150, kMinDriven_m = 3;
   const Trajectory& poses = sequence.trajectory;
   if (poses.size() < 2) return;
-  std::vector<double> steps_s;
   double driven_m = 0;
-  for (std::size_t k = 1; k < poses.size(); ++k) {
-    const auto before = number_in_name(sequence.scans[k - 1]);
-    const auto number = number_in_name(sequence.scans[k]);
-    const bool counts = before && number && *number > *before && *number - *before < 1'000'000;
-    steps_s.push_back((poses[k].time_s - poses[k - 1].time_s) /
-                      (counts ? static_cast<double>(*number - *before) : 1.0));
+  for (std::size_t k = 1; k < poses.size(); ++k)
     driven_m +=
         length(poses[k].world_from_sensor.translation - poses[k - 1].world_from_sensor.translation);
-  }
-  const double step_s = upper_median_of(steps_s);
+  const double step_s = median_step_s(poses, number_steps(sequence));
   const double speed_mps = driven_m / (poses.back().time_s - poses.front().time_s);
   const bool is_long = step_s > kLongStep_s && speed_mps < kSlow_mps && driven_m > kMinDriven_m;
   const bool is_short = step_s < kShortStep_s && speed_mps > kFast_mps;
@@ -482,8 +496,28 @@ std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Exe
   return scales;
 }
 
+void require_no_jump(const KittiSequence& sequence) {
+  const Trajectory& poses = sequence.trajectory;
+  if (poses.size() < 2) return;
+  // Placeholder times do not show dropped scans, but the numbers of the names do.
+  std::vector<double> steps_s = number_steps(sequence);
+  const double step_s = median_step_s(poses, steps_s);
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    steps_s[k - 1] = std::max(poses[k].time_s - poses[k - 1].time_s, step_s * steps_s[k - 1]);
+  const auto jump = find_pose_jump(poses, sequence.has_times, steps_s);
+  if (!jump) return;
+  throw Error(ErrorKind::data,
+              sequence.folder.string() + ": between the scans " +
+                  sequence.scans[jump->later - 1].filename().string() + " and " +
+                  sequence.scans[jump->later].filename().string() + " the poses jump by " +
+                  jump->text() +
+                  "; check that each scan has its own pose (same order, none missing or of another "
+                  "drive) and that the times are seconds");
+}
+
 std::string verify_poses(const KittiSequence& sequence, const Executor& executor) {
   require_times_of_scans(sequence);
+  require_no_jump(sequence);
   const PoseEvidence evidence = weigh_poses(sequence, executor);
   if (evidence.points != 0 && !evidence.confirms()) require_axes(sequence, evidence, executor);
   if (evidence.contradicts()) {

@@ -62,11 +62,15 @@ PoseEvidence weigh_poses(const KittiSequence& sequence, const Executor& executor
 /// by it. Without a pair there is no entry.
 std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Executor& executor);
 
-/// Throws data with the figures where weigh_poses(sequence) contradicts, or, unless it confirms,
-/// mirrored or exchanged axes or a factor of weigh_scales(sequence) do; also where the times of the
-/// poses are no seconds: neighbouring scans more than 20 s apart and a vehicle slower than 0.5 m/s,
-/// or less than 2 ms and faster than 150 m/s. Returns in one line what could not be checked; empty:
-/// all was.
+/// Throws data if the poses of consecutive scans are farther apart than a vehicle drives
+/// (find_pose_jump()). Scans that the numbers in their names show as dropped are accepted.
+void require_no_jump(const KittiSequence& sequence);
+
+/// require_no_jump(). Throws data with the figures where weigh_poses(sequence) contradicts, or,
+/// unless it confirms, mirrored or exchanged axes or a factor of weigh_scales(sequence) do; also
+/// where the times of the poses are no seconds: neighbouring scans more than 20 s apart and a
+/// vehicle slower than 0.5 m/s, or less than 2 ms and faster than 150 m/s. Returns in one line what
+/// could not be checked; empty: all was.
 std::string verify_poses(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats

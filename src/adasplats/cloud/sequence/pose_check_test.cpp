@@ -120,6 +120,48 @@ TEST(PoseCheck, MirroredTranslationsAreNamed) {
       "x and y of their translations exchanged");
 }
 
+// Poses shifted by three scans, the last three wrapped around.
+TEST(PoseCheck, JumpsBetweenScansAreNamed) {
+  const TemporaryFolder folder;
+  KittiSequence wrapped = drive(folder, street(), 20, kHonest);
+  for (std::size_t k = 0; k < wrapped.scans.size(); ++k)
+    wrapped.trajectory[k].world_from_sensor.translation.x =
+        static_cast<double>((k + 3) % wrapped.scans.size());
+  expect_error(ErrorKind::data,
+               {folder.path().string(), "16.bin and 17.bin", "19.0 m within 0.1 s (190 m/s"},
+               [&] { require_no_jump(wrapped); });
+  expect_error(ErrorKind::data, {"16.bin and 17.bin"}, [&] { verify_poses(wrapped, Executor(2)); });
+}
+
+TEST(PoseCheck, DroppedScansAreNoJump) {
+  const TemporaryFolder folder;
+  KittiSequence sequence = drive(folder, {}, 20, kHonest);
+  const auto later = [&](double by_s) {
+    KittiSequence gap = sequence;
+    for (std::size_t k = 10; k < gap.scans.size(); ++k) {
+      gap.trajectory[k].time_s += by_s;
+      gap.trajectory[k].world_from_sensor.translation.x += 60;
+    }
+    return gap;
+  };
+  EXPECT_NO_THROW(require_no_jump(later(6)));
+  EXPECT_ANY_THROW(require_no_jump(later(0)));
+  // Numbers show dropped scans of poses without times.
+  KittiSequence numbered = later(0);
+  numbered.has_times = false;
+  EXPECT_ANY_THROW(require_no_jump(numbered));
+  for (std::size_t k = 10; k < numbered.scans.size(); ++k)
+    numbered.scans[k].replace_filename(std::to_string(k + 60) + ".bin");
+  EXPECT_NO_THROW(require_no_jump(numbered));
+  // Stations of a survey, and an aircraft.
+  KittiSequence stations = sequence;
+  stations.has_times = false;
+  for (TimedPose& pose : stations.trajectory) pose.world_from_sensor.translation.x *= 15;
+  EXPECT_NO_THROW(require_no_jump(stations));
+  stations.trajectory.back().world_from_sensor.translation.x += 100;
+  EXPECT_NO_THROW(require_no_jump(stations));
+}
+
 TEST(PoseCheck, PosesThatStandWhileTheScansMoveAreReported) {
   const TemporaryFolder folder;
   const auto stands = [](const RigidTransform&) { return RigidTransform{}; };

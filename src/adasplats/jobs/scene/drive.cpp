@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/cloud/load/recording_poses.h"
+#include "adasplats/cloud/poses/pose_jump.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
@@ -65,6 +66,21 @@ void warn_of_poses(const DriveOptions& drive, const Trajectory& poses, ProgressS
         tilt_deg);
     progress.warn(drive.trajectory.string() + text.data());
   }
+}
+
+/// Warns of a motion that no vehicle makes, between poses that are interpolated.
+void warn_of_jump(const std::filesystem::path& file, const Trajectory& motion,
+                  ProgressSink& progress) {
+  std::error_code ignored;
+  const bool has_no_times =
+      std::filesystem::is_regular_file(file, ignored) && !is_recording(file) && !has_times(file);
+  const auto jump = find_pose_jump(motion, !has_no_times);
+  if (!jump) return;
+  std::array<char, 100> times{};
+  std::snprintf(times.data(), times.size(), ": between %.3f and %.3f s",
+                motion[jump->later - 1].time_s, motion[jump->later].time_s);
+  progress.warn(file.string() + times.data() + " the poses jump by " + jump->text() +
+                "; scans there are simulated on the way; check that all poses are of one drive");
 }
 
 /// The scans at these poses.
@@ -136,6 +152,8 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path needs a model");
   DrivenPoses driven = driven_poses(drive, progress);
   Trajectory all = std::move(driven.poses);
+  if (drive.rate_hz || drive.spacing_m || drive.rolling_shutter)
+    warn_of_jump(drive.motion.empty() ? drive.trajectory : drive.motion, driven.motion, progress);
   if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
   if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
   return scans_at(drive, sensor, all, driven.motion, progress);

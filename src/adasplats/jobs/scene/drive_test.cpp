@@ -35,5 +35,27 @@ TEST(DriveAlong, PosesThatStandOrLieOnTheirSideAreReported) {
             std::string::npos);
 }
 
+TEST(DriveAlong, JumpsBetweenInterpolatedPosesAreReported) {
+  class Listener : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { warnings += message; }
+    std::string warnings;
+  };
+  const TemporaryFolder folder;
+  DriveOptions drive;
+  drive.trajectory = folder.write("poses.csv",
+                                  "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.1,1,0,0,1,0,0,0\n"
+                                  "0.2,2,0,0,1,0,0,0\n0.3,56,0,0,1,0,0,0\n");
+  Listener listener;
+  scans_along(drive, load_lidar_model("velodyne-vlp-16"), listener);
+  EXPECT_EQ(listener.warnings, "");  // nothing is between the poses
+  drive.rate_hz = 20;
+  scans_along(drive, load_lidar_model("velodyne-vlp-16"), listener);
+  EXPECT_NE(listener.warnings.find("between 0.200 and 0.300 s the poses jump by 54.0 m within "
+                                   "0.1 s (540 m/s"),
+            std::string::npos)
+      << listener.warnings;
+}
+
 }  // namespace
 }  // namespace adasplats
