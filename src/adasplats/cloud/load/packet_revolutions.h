@@ -39,7 +39,7 @@ struct PacketSource {
   /// Sensors of the library whose packets the first ones may be ("velodyne-vlp-16"), if the sensor
   /// is unknown or another.
   std::vector<std::string> candidates;
-  std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
+  std::int64_t ahead_ns = 0;  ///< of the capture's clock before the sensor's, at the start
   std::vector<Revolution> revolutions;
 };
 
