@@ -67,6 +67,19 @@ TomlTable TomlTable::table(std::string_view key, const TomlKeys& known) const {
   return {std::shared_ptr<const toml::table>(table_, inner), path_, known};
 }
 
+std::vector<TomlTable> TomlTable::tables(std::string_view key, const TomlKeys& known) const {
+  std::vector<TomlTable> list;
+  const toml::node* node = find(key);
+  if (node == nullptr) return list;
+  if (!node->is_array()) throw error(key, "is not a list of tables");
+  for (const toml::node& element : *node->as_array()) {
+    const toml::table* inner = element.as_table();
+    if (inner == nullptr) throw error(key, "is not a list of tables");
+    list.emplace_back(std::shared_ptr<const toml::table>(table_, inner), path_, known);
+  }
+  return list;
+}
+
 double TomlTable::number(std::string_view key, double otherwise, double low, double high) const {
   const toml::node* node = find(key);
   return node == nullptr ? otherwise : number_of(*node, key, low, high);

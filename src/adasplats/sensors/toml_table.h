@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Private to sensors/.
+// Private to the library: links toml++.
 
 // toml++ 3 asserts conditions that malformed files violate ("a = [}") before it reports their
 // error.
@@ -40,6 +40,8 @@ class TomlTable {
 
   /// The table under an existing key.
   TomlTable table(std::string_view key, const TomlKeys& known) const;
+  /// The tables of a list, [[key]]; none if the key is missing.
+  std::vector<TomlTable> tables(std::string_view key, const TomlKeys& known) const;
 
   double number(std::string_view key, double otherwise, double low, double high) const;
   std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const;

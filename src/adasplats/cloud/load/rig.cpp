@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/rig.h"
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/sensors/toml_table.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxOffset_m = 100, kMaxTime_s = 1e12;
+
+/// The keys of DriveSettings in a rig file.
+template <class Visit>
+void visit_rig_settings(DriveSettings& drive, const Visit& visit) {
+  visit("trajectory", drive.trajectory);
+  visit("boxes", drive.boxes);
+  visit("mount", drive.mount);
+  visit("mount_rotation_deg", drive.mount_rotation_deg);
+  visit("time_offset_s", drive.time_offset_s);
+  visit("points_in", drive.points_in);
+  visit("sweep_points", drive.sweep_points);
+  visit("scan_times", drive.scan_times);
+  visit("topic", drive.topic);
+  visit("poses_topic", drive.poses_topic);
+  visit("scene", drive.scene);
+  visit("sensor", drive.packets_of);
+}
+
+TomlKeys sensor_keys() {
+  TomlKeys keys = {"name", "input", "in_model"};
+  DriveSettings drive;
+  visit_rig_settings(drive, [&](const char* key, const auto&) { keys.emplace_back(key); });
+  return keys;
+}
+
+/// Reads one value; the default stays if the key is missing.
+class RigValue {
+ public:
+  RigValue(const TomlTable& table, const fs::path& folder) : table_(table), folder_(folder) {}
+
+  void operator()(const char* key, std::string& value) const { value = table_.text(key, value); }
+  void operator()(const char* key, fs::path& value) const {
+    if (table_.has(key)) value = path_of(key);
+  }
+  void operator()(const char* key, Vec3d& value) const {
+    if (!table_.has(key)) return;
+    const std::vector<double> numbers = table_.numbers(key, -360, 360);
+    if (numbers.size() != 3) throw table_.error(key, "is not a list of three numbers");
+    value = {numbers[0], numbers[1], numbers[2]};
+  }
+  void operator()(const char* key, std::optional<Vec3d>& value) const {
+    if (!table_.has(key)) return;
+    const std::vector<double> numbers = table_.numbers(key, -kMaxOffset_m, kMaxOffset_m);
+    if (numbers.size() != 3) throw table_.error(key, "is not a list of three numbers");
+    value = Vec3d{numbers[0], numbers[1], numbers[2]};
+  }
+  void operator()(const char* key, std::optional<double>& value) const {
+    if (table_.has(key)) value = table_.number(key, 0, -kMaxTime_s, kMaxTime_s);
+  }
+  template <class Word>
+  requires std::is_enum_v<Word>
+  void operator()(const char* key, Word& value) const {
+    if (!table_.has(key)) return;
+    const std::string text = table_.text(key, "");
+    for (const auto& [word, each] : words_of(Word{}))
+      if (word == text) {
+        value = each;
+        return;
+      }
+    std::string expected;
+    for (const std::string& word : list_of(words_of(Word{})))
+      expected += (expected.empty() ? "" : ", ") + word;
+    throw table_.error(key, "is '" + text + "', expected one of " + expected);
+  }
+  fs::path path_of(const char* key) const {
+    const std::string text = table_.text(key, "");
+    if (text.empty()) throw table_.error(key, "is empty");
+    const fs::path path = folder_ / text;
+    return path.has_filename() ? path : path.parent_path();
+  }
+
+ private:
+  const TomlTable& table_;
+  const fs::path& folder_;
+};
+
+}  // namespace
+
+std::size_t Rig::index_of(std::string_view name) const {
+  const auto found = std::ranges::find(sensors, name, &RigSensor::name);
+  if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
+  std::string names;
+  for (const RigSensor& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.name;
+  throw Error(ErrorKind::usage,
+              file.string() + ": has no sensor '" + std::string(name) + "'; it has " + names);
+}
+
+bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
+
+Rig parse_rig(std::string_view text, const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors"}, "rig");
+  DriveSettings shared;
+  const RigValue read_shared(whole, folder);
+  read_shared("trajectory", shared.trajectory);
+  read_shared("boxes", shared.boxes);
+  whole.require("sensors");
+  Rig rig{file, {}};
+  for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
+    RigSensor sensor;
+    static_cast<DriveSettings&>(sensor) = shared;
+    const RigValue read(table, folder);
+    table.require("name");
+    sensor.name = table.text("name", "");
+    if (sensor.name.empty() || sensor.name.find_first_of(" \t\n/\\") != std::string::npos)
+      throw table.error("name", "is '" + sensor.name + "', expected a word without / and spaces");
+    if (std::ranges::find(rig.sensors, sensor.name, &RigSensor::name) != rig.sensors.end())
+      throw table.error("name", "'" + sensor.name + "' is used twice");
+    if (table.has("input")) sensor.folder = read.path_of("input");
+    sensor.is_in_model = table.flag("in_model", true);
+    visit_rig_settings(sensor, read);
+    // A file of a sensor is beside the rig file; other words are names of the library.
+    std::error_code ignored;
+    if (!sensor.packets_of.empty() && fs::is_regular_file(folder / sensor.packets_of, ignored))
+      sensor.packets_of = (folder / sensor.packets_of).string();
+    rig.sensors.push_back(std::move(sensor));
+  }
+  if (rig.sensors.empty()) throw whole.error("sensors", "has no sensor");
+  if (std::ranges::none_of(rig.sensors, &RigSensor::is_in_model))
+    throw whole.error("sensors", "has no sensor with `in_model`");
+  return rig;
+}
+
+Rig read_rig(const fs::path& file) {
+  Rig rig = parse_rig(read_file(file), file);
+  for (const RigSensor& sensor : rig.sensors) {
+    const std::string of = file.string() + ": sensor '" + sensor.name + "': ";
+    if (sensor.folder.empty()) throw Error(ErrorKind::config, of + "`input` is missing");
+    std::error_code ignored;  // an input that cannot be looked up is missing
+    if (!fs::exists(sensor.folder, ignored))
+      throw Error(ErrorKind::no_input, of + "its input " + sensor.folder.string() + " is missing");
+  }
+  return rig;
+}
+
+void require_no_settings(const Rig& rig, const DriveSettings& settings) {
+  DriveSettings defaults;
+  defaults.topic = settings.topic;
+  if (settings == defaults) return;
+  throw Error(ErrorKind::usage,
+              rig.file.string() +
+                  ": trajectory, mounts, clocks and other settings of drives belong in the rig "
+                  "file, by sensor; only `topic` applies here and chooses a sensor");
+}
+
+}  // namespace adasplats
