@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/sensors/toml_table.h"
@@ -150,6 +151,27 @@ Rig read_rig(const fs::path& file) {
       throw Error(ErrorKind::no_input, of + "its input " + sensor.folder.string() + " is missing");
   }
   return rig;
+}
+
+KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
+                              ProgressSink& progress) {
+  try {
+    std::optional<KittiSequence> drive;
+    if (!sensor.trajectory.empty() || is_self_contained_drive(sensor.folder)) {
+      drive = open_drive(sensor, executor, progress);
+    } else if (is_kitti_sequence(sensor.folder)) {
+      LoadOptions options;
+      static_cast<DriveSettings&>(options) = sensor;
+      drive = open_sequence(sensor.folder, options, executor);
+    }
+    if (!drive)
+      throw Error(ErrorKind::data,
+                  sensor.folder.string() + ": is not a drive: scans need poses (`trajectory`)");
+    drive->rig_sensor = sensor.name;
+    return std::move(*drive);
+  } catch (const Error& error) {
+    throw Error(error.kind(), "sensor '" + sensor.name + "': " + error.what());
+  }
 }
 
 void require_no_settings(const Rig& rig, const DriveSettings& settings) {

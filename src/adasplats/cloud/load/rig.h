@@ -54,6 +54,11 @@ Rig read_rig(const std::filesystem::path& file);
 /// The same from its text; inputs are not opened.
 Rig parse_rig(std::string_view text, const std::filesystem::path& file);
 
+/// Opens the drive of a sensor. Errors: those of open_drive() and open_kitti_sequence(); data for
+/// an input that is no drive. They name the sensor.
+KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
+                              ProgressSink& progress);
+
 /// Throws usage for settings that belong in the file of the rig. `topic` chooses a sensor.
 void require_no_settings(const Rig& rig, const DriveSettings& settings);
 
