@@ -300,17 +300,16 @@ class Calibrator {
       }
     }
     const LaserOffsets& offsets = corrections_.offsets;
-    const double mean_m = mean_of(offsets.range_m);
     for (std::size_t laser = 0; has_lasers && laser < lasers_; ++laser) {
       system.add_laser_prior(laser, 0, weight(options_.range_sigma_m), options_.range_share,
                              -offsets.range_m[laser]);
-      system.add_laser_prior(laser, 0, 0, options_.range_mean_share,
-                             mean_m - offsets.range_m[laser]);
       system.add_laser_prior(laser, 1, weight(options_.elevation_sigma_rad),
                              options_.elevation_share, -offsets.elevation_rad[laser]);
       system.add_laser_prior(laser, 2, weight(options_.elevation_sigma_rad),
                              options_.elevation_share, -offsets.azimuth_rad[laser]);
     }
+    if (has_lasers && options_.range_mean_share > 0)
+      system.pull_ranges_to_mean(options_.range_mean_share, offsets.range_m);
   }
 
   void make_step(const RowOptions& rows) {

@@ -24,8 +24,8 @@ namespace {
 /// Map scans this long before and after a window can still see its surfaces.
 constexpr double kMapMargin_s = 10;
 /// Shares of a cell's own evidence that pull it to no offset (angles) and to the mean of all cells
-/// (range). Development values: chosen on the recording of docs/results.md.
-constexpr double kCellAngleShare = 0.01, kCellRangeShare = 1;
+/// (range). Development values: chosen on PandaSet 002.
+constexpr double kCellAngleShare = 0.01, kCellRangeShare = 0.1;
 
 /// Points of scans [begin, end), thinned to about `points_a_scan` per scan.
 PointCloud points_of_scans(const PointCloud& cloud, ScanSpan scans, std::size_t points_a_scan) {
@@ -69,6 +69,13 @@ BeamCells assign_cells(PointCloud& cloud) {
   return cells;
 }
 
+std::size_t number_of_lasers(const PointCloud& cloud) {
+  std::size_t count = 0;
+  for (const std::uint16_t laser : cloud.lasers)
+    if (laser != kNoLaser) count = std::max(count, std::size_t{laser} + 1);
+  return count;
+}
+
 /// Applies pose corrections, one per scan, to the points and poses of a cloud.
 void move_scans(PointCloud& cloud, const std::vector<RigidTransform>& world_corrections) {
   std::vector<RigidTransform> local;
@@ -86,6 +93,15 @@ void move_scans(PointCloud& cloud, const std::vector<RigidTransform>& world_corr
     cloud.positions[i] = vec_cast<float>(correction * vec_cast<double>(cloud.positions[i]));
     cloud.sensor_positions[i] =
         vec_cast<float>(correction * vec_cast<double>(cloud.sensor_positions[i]));
+  }
+}
+
+/// Adds an offset to all ranges.
+void lengthen_rays(PointCloud& cloud, double range_m) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3d ray = vec_cast<double>(cloud.positions[i] - cloud.sensor_positions[i]);
+    if (length(ray) > 0)
+      cloud.positions[i] = cloud.positions[i] + vec_cast<float>(range_m * normalized(ray));
   }
 }
 
@@ -198,6 +214,10 @@ class RigCalibrator {
     MapAlignment aligned = mount_of_poses(by_first, part.scan_poses);
     aligned.given_share = start.given_share;
     aligned.share = start.share;
+    aligned.range_m = start.range_m;
+    fine.lasers.range_m.resize(number_of_lasers(part));
+    fine.lasers.elevation_rad.resize(fine.lasers.range_m.size());
+    for (double& range_m : fine.lasers.range_m) range_m += start.range_m;
     fine.mount = aligned.mount;
     fine.poses = corrections_between(given, part.scan_poses, aligned.mount);
     fine.smooth_s = best_smoothing(fine);
@@ -208,40 +228,33 @@ class RigCalibrator {
     add_to_map(std::move(part));
   }
 
-  /// Moves the scans of a sensor to the map, if that brings clearly more of its points near
-  /// surfaces.
+  /// Moves the scans of a sensor to the map.
   MapAlignment align(const CloudSensor& sensor, PointCloud& part) {
-    constexpr double kMinGain = 0.02, kMinShare = 0.5;
     progress_.begin_step("align " + sensor.name, 0);
-    MapAlignment found = align_with_map(part, map_, {}, executor_);
+    MapAlignmentOptions expected;
+    if (!options_.ranges) expected.range_m = 0;
+    const MapAlignment found = align_with_map(part, map_, expected, executor_);
     progress_.end_step();
-    if (std::getenv("RIGDEBUG"))
-      std::fprintf(
-          stderr,
-          "align %s given %.3f found %.3f rot %.4f %.4f %.4f shift %.3f %.3f %.3f clock %.4f\n",
-          sensor.name.c_str(), found.given_share, found.share, found.mount.rotation_rad.x,
-          found.mount.rotation_rad.y, found.mount.rotation_rad.z, found.mount.shift_m.x,
-          found.mount.shift_m.y, found.mount.shift_m.z, found.clock_s);
-    if (found.share < found.given_share + kMinGain)
-      found = {{}, 0, found.given_share, found.given_share};
-    if (found.share < kMinShare) throw misfit(sensor, found);
+    if (!found.fits(expected)) throw misfit(sensor, found);
     const Trajectory given = part.scan_poses;
     const Trajectory moved = moved_poses(given, found.mount, found.clock_s);
     std::vector<RigidTransform> corrections;
     for (std::size_t k = 0; k < given.size(); ++k)
       corrections.push_back(moved[k].world_from_sensor * given[k].world_from_sensor.inverse());
     move_scans(part, corrections);
+    lengthen_rays(part, found.range_m);
     return found;
   }
 
   Error misfit(const CloudSensor& sensor, const MapAlignment& found) const {
     std::array<char, 400> text{};
-    std::snprintf(text.data(), text.size(),
-                  "sensor '%s': its points do not fit those of '%s': only %.0f %% are near their "
-                  "surfaces, with every mount within 5 degrees and 0.5 m and every clock within 50 "
-                  "ms of the given ones; check its input, its mount (degrees, not radians) and its "
-                  "time offset",
-                  sensor.name.c_str(), cloud_.sensors.front().name.c_str(), 100 * found.share);
+    std::snprintf(
+        text.data(), text.size(),
+        "sensor '%s': its points do not fit those of '%s' with any mount within about 5 "
+        "degrees and 0.5 m and any clock within 50 ms of the given ones (%.0f %% are near "
+        "their surfaces as given); check its input, its mount (degrees, not radians) and "
+        "its time offset",
+        sensor.name.c_str(), cloud_.sensors.front().name.c_str(), 100 * found.given_share);
     return {ErrorKind::data, text.data()};
   }
 

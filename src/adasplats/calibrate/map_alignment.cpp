@@ -19,7 +19,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kUnknowns = 7;  // rotation, shift, clock
+constexpr std::size_t kUnknowns = 8;  // rotation, shift, clock, range
 using Matrix = std::array<double, kUnknowns * kUnknowns>;
 using Unknowns = std::array<double, kUnknowns>;
 
@@ -159,7 +159,7 @@ class Aligner {
 
   struct Estimate {
     MountCorrection mount;
-    double clock_s = 0;
+    double clock_s = 0, range_m = 0;
     double share = 0;
   };
 
@@ -177,6 +177,7 @@ class Aligner {
       estimate.mount.rotation_rad = rotation_vector(rotation);
       estimate.mount.shift_m = estimate.mount.shift_m + Vec3d{x[3], x[4], x[5]};
       estimate.clock_s += x[6];
+      estimate.range_m += x[7];
     }
     estimate.share = sums_of(planes, width_m, stride, estimate).share();
   }
@@ -192,16 +193,18 @@ class Aligner {
                                 [&](std::size_t begin, std::size_t end) {
                                   AlignmentSums sums;
                                   for (std::size_t k = begin; k < end; ++k)
-                                    add(planes, width_m, k * stride, moved, sums);
+                                    add(planes, width_m, k * stride, moved, estimate.range_m, sums);
                                   return sums;
                                 });
   }
 
  private:
   void add(const MapPlanes& planes, double width_m, std::size_t i,
-           const std::vector<RigidTransform>& moved, AlignmentSums& sums) const {
+           const std::vector<RigidTransform>& moved, double range_m, AlignmentSums& sums) const {
     const RigidTransform& world_from_sensor = moved[scans_[i]];
-    const Vec3d p = world_from_sensor * in_sensor_[i];
+    const Vec3d direction = normalized(in_sensor_[i]);
+    const Vec3d in_sensor = in_sensor_[i] + range_m * direction;
+    const Vec3d p = world_from_sensor * in_sensor;
     const MapPlane* plane = planes.nearest(p);
     if (plane == nullptr) return;
     const double residual_m = dot(plane->normal, p - plane->center);
@@ -209,7 +212,7 @@ class Aligner {
     sums.near += std::fabs(residual_m) < options_.near_m ? 1 : 0;
     const double weight = robust_weight(residual_m, width_m);
     const Vec3d normal_in_sensor = world_from_sensor.rotation.transposed() * plane->normal;
-    const Vec3d turning = cross(in_sensor_[i], normal_in_sensor);
+    const Vec3d turning = cross(in_sensor, normal_in_sensor);
     const RigidTransform& given = poses_[scans_[i]].world_from_sensor;
     const Vec3d shifting = given.rotation.transposed() * plane->normal;
     const Twist& twist = twists_[scans_[i]];
@@ -220,7 +223,8 @@ class Aligner {
                           shifting.x,
                           shifting.y,
                           shifting.z,
-                          dot(plane->normal, moving)};
+                          dot(plane->normal, moving),
+                          dot(direction, normal_in_sensor)};
     for (std::size_t a = 0; a < kUnknowns; ++a) {
       for (std::size_t b = 0; b < kUnknowns; ++b)
         sums.matrix[a * kUnknowns + b] += weight * row[a] * row[b];
@@ -242,6 +246,7 @@ class Aligner {
       add_one(unknown + 3, options_.shift_m, estimate.mount.shift_m[axis]);
     }
     add_one(6, options_.clock_s, estimate.clock_s);
+    add_one(7, std::max(1e-6, options_.range_m), estimate.range_m);
   }
 
   const MapAlignmentOptions& options_;
@@ -253,6 +258,14 @@ class Aligner {
 };
 
 }  // namespace
+
+bool MapAlignment::fits(const MapAlignmentOptions& expected) const {
+  constexpr double kMinShare = 0.5, kFactor = 2;
+  return share >= kMinShare && length(mount.rotation_rad) <= kFactor * expected.rotation_rad &&
+         length(mount.shift_m) <= kFactor * expected.shift_m &&
+         std::fabs(clock_s) <= kFactor * expected.clock_s &&
+         std::fabs(range_m) <= kFactor * expected.range_m + 1e-3;
+}
 
 Trajectory moved_poses(const Trajectory& given, const MountCorrection& mount, double clock_s) {
   const std::vector<Twist> twists = twists_of(given);
@@ -284,7 +297,7 @@ MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
   aligner.refine(fine, 0.15, 6, 1, best);
   aligner.refine(fine, 0.06, 8, 1, best);
   const double given_share = aligner.sums_of(fine, 0.1, 1, {}).share();
-  return {best.mount, best.clock_s, given_share, best.share};
+  return {best.mount, best.clock_s, best.range_m, given_share, best.share};
 }
 
 RigidTransform mount_between(const Trajectory& first, const Trajectory& second) {
@@ -335,6 +348,7 @@ MapAlignment mount_of_poses(const Trajectory& given, const Trajectory& corrected
     }
     // A clock that the motion does not show stays: 1 s has the weight of a millimetre in one scan.
     matrix[6 * (kUnknowns + 1)] += 1e-6;
+    matrix[7 * (kUnknowns + 1)] = 1;  // ranges are not part of poses
     factor<kUnknowns>(matrix);
     const Unknowns x = solved<kUnknowns>(matrix, right);
     result.mount.rotation_rad =

@@ -52,12 +52,19 @@ class PlaneSystem {
   void add_laser_prior(std::size_t laser, std::size_t unknown, double weight, double share,
                        double value);
 
+  /// Pulls the ranges of all lasers to their common mean, which stays free, with `share` of each
+  /// one's diagonal. `ranges_m`: their present values.
+  void pull_ranges_to_mean(double share, const std::vector<double>& ranges_m);
+
   /// Iterates until the residual is below `tolerance` times the right-hand side, at most
   /// `max_iterations` times.
   PlaneStep solve(double tolerance, int max_iterations, PlaneProduct coupled) const;
 
  private:
+  double pulled_mean(const std::vector<double>& values, std::size_t stride) const;
+
   PlaneBlocks blocks_;
+  std::vector<double> pulls_;  ///< weights of the ranges' distances from their mean; empty: none
 };
 
 }  // namespace adasplats

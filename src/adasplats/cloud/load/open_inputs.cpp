@@ -71,7 +71,8 @@ std::vector<OpenInput> opened_rig(const Rig& rig, const LoadOptions& options,
   std::vector<OpenInput> inputs;
   for (const RigSensor& sensor : rig.sensors) {
     if (!options.topic.empty() && &sensor != &rig.sensors[rig.index_of(options.topic)]) continue;
-    inputs.push_back({{sensor.folder, true}, open_rig_sensor(sensor, executor, progress), true});
+    KittiSequence drive = open_rig_sensor(sensor, executor, progress);
+    inputs.push_back({{sensor.folder, true}, std::move(drive), true});
     require_common_time(*inputs.front().sequence, *inputs.back().sequence);
     sensors.push_back({sensor.name, 0, sensor.is_in_model || !options.topic.empty()});
   }

@@ -118,6 +118,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
   Rig rig{file, {}};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
+    sensor.uses_stated_mount = true;
     static_cast<DriveSettings&>(sensor) = shared;
     const RigValue read(table, folder);
     table.require("name");
