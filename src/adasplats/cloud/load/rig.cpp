@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/toml_table.h"
 
 namespace adasplats {
@@ -36,7 +40,7 @@ void visit_rig_settings(DriveSettings& drive, const Visit& visit) {
 }
 
 TomlKeys sensor_keys() {
-  TomlKeys keys = {"name", "input", "in_model"};
+  TomlKeys keys = {"name", "input", "in_model", "body"};
   DriveSettings drive;
   visit_rig_settings(drive, [&](const char* key, const auto&) { keys.emplace_back(key); });
   return keys;
@@ -93,6 +97,76 @@ class RigValue {
   const fs::path& folder_;
 };
 
+std::vector<RigBox> read_boxes(const TomlTable& table) {
+  std::vector<RigBox> boxes;
+  const toml::node* const node = table.find("body");
+  if (node == nullptr) return boxes;
+  if (!node->is_array()) throw table.error("body", "is not a list of boxes");
+  for (const toml::node& row : *node->as_array()) {
+    const toml::array* const list = row.as_array();
+    if (list == nullptr || list->size() != 6)
+      throw table.error_at(row, "body has a box that is not [x, y, z, length, width, height]");
+    const auto point = [&](std::size_t first, double low) {
+      Vec3d made;
+      for (int axis = 0; axis < 3; ++axis)
+        made[axis] = table.number_of((*list)[first + static_cast<std::size_t>(axis)], "body", low,
+                                      kMaxOffset_m);
+      return made;
+    };
+    constexpr double kMinSize_m = 1e-3;
+    boxes.push_back({point(0, -kMaxOffset_m), point(3, kMinSize_m)});
+  }
+  return boxes;
+}
+
+/// Writes "key = value" for values that differ from the default.
+class RigText {
+ public:
+  RigText(std::string& text, const fs::path& folder) : text_(text), folder_(folder) {}
+
+  void operator()(const char* key, const std::string& value) const {
+    if (value.empty()) return;
+    std::ostringstream quoted;
+    quoted << toml::value<std::string>(value);
+    put(key, quoted.str());
+  }
+  void operator()(const char* key, const fs::path& value) const {
+    if (!value.empty()) (*this)(key, value.lexically_proximate(folder_).generic_string());
+  }
+  void operator()(const char* key, const Vec3d& value) const {
+    if (value != Vec3d{}) put(key, "[" + numbers(value) + "]");
+  }
+  void operator()(const char* key, const std::optional<Vec3d>& value) const {
+    if (value) put(key, "[" + numbers(*value) + "]");
+  }
+  void operator()(const char* key, const std::optional<double>& value) const {
+    if (value) put(key, exact_text(*value));
+  }
+  template <class Word>
+  requires std::is_enum_v<Word>
+  void operator()(const char* key, const Word& value) const {
+    if (value != Word{}) (*this)(key, std::string(word_of(value, words_of(value))));
+  }
+  void operator()(const char* key, const std::vector<RigBox>& boxes) const {
+    std::string list;
+    for (const RigBox& box : boxes)
+      list +=
+          (list.empty() ? "[" : ", [") + numbers(box.center_m) + ", " + numbers(box.size_m) + "]";
+    if (!boxes.empty()) put(key, "[" + list + "]");
+  }
+
+ private:
+  static std::string numbers(Vec3d v) {
+    return exact_text(v.x) + ", " + exact_text(v.y) + ", " + exact_text(v.z);
+  }
+  void put(const char* key, const std::string& value) const {
+    text_ += std::string(key) + " = " + value + "\n";
+  }
+
+  std::string& text_;
+  const fs::path& folder_;
+};
+
 }  // namespace
 
 std::size_t Rig::index_of(std::string_view name) const {
@@ -108,13 +182,13 @@ bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
 
 Rig parse_rig(std::string_view text, const fs::path& file) {
   const fs::path folder = file.parent_path();
-  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors"}, "rig");
+  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors", "body"}, "rig");
   DriveSettings shared;
   const RigValue read_shared(whole, folder);
   read_shared("trajectory", shared.trajectory);
   read_shared("boxes", shared.boxes);
   whole.require("sensors");
-  Rig rig{file, {}};
+  Rig rig{file, {}, read_boxes(whole)};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
     static_cast<DriveSettings&>(sensor) = shared;
@@ -127,6 +201,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
       throw table.error("name", "'" + sensor.name + "' is used twice");
     if (table.has("input")) sensor.folder = read.path_of("input");
     sensor.is_in_model = table.flag("in_model", true);
+    sensor.body = read_boxes(table);
     visit_rig_settings(sensor, read);
     // A file of a sensor is beside the rig file; other words are names of the library.
     std::error_code ignored;
@@ -150,6 +225,25 @@ Rig read_rig(const fs::path& file) {
       throw Error(ErrorKind::no_input, of + "its input " + sensor.folder.string() + " is missing");
   }
   return rig;
+}
+
+std::string rig_toml(const Rig& rig) {
+  std::string text;
+  const fs::path folder = rig.file.parent_path();
+  const RigText put(text, folder);
+  put("body", rig.body);
+  for (RigSensor sensor : rig.sensors) {
+    text += "\n[[sensors]]\n";
+    put("name", sensor.name);
+    put("input", sensor.folder);
+    if (!sensor.is_in_model) text += "in_model = false\n";
+    put("body", sensor.body);
+    std::error_code ignored;
+    if (fs::is_regular_file(sensor.packets_of, ignored))
+      sensor.packets_of = fs::path(sensor.packets_of).lexically_proximate(folder).generic_string();
+    visit_rig_settings(sensor, put);
+  }
+  return text;
 }
 
 void require_no_settings(const Rig& rig, const DriveSettings& settings) {

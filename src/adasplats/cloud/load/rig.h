@@ -9,19 +9,28 @@
 #include <vector>
 
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
+
+/// A box in the frame of the vehicle that no sensor sees through: x along its length.
+struct RigBox {
+  Vec3d center_m;
+  Vec3d size_m;  ///< length, width, height
+};
 
 /// A LiDAR of a rig. Its `topic` is the topic or port of its data, `packets_of` its model.
 struct RigSensor : DriveInput {
   std::string name;
   /// Its points become part of models. Otherwise it is only calibrated and evaluated.
   bool is_in_model = true;
+  std::vector<RigBox> body;  ///< its housing, which hides from the other sensors
 };
 
 /// The LiDARs of one car, from a TOML file:
 ///
 ///     trajectory = "poses.csv"           # of all sensors that have no own `trajectory`
+///     body = [[1.4, 0, 0.9, 4.5, 1.8, 1.3]]  # simulation: x, y, z, length, width, height, m
 ///     [[sensors]]
 ///     name = "top"
 ///     input = "drive.mcap"               # relative to the folder of this file
@@ -36,10 +45,11 @@ struct RigSensor : DriveInput {
 ///     in_model = false
 ///
 /// The other keys are those of DriveSettings: boxes, points_in, sweep_points, scan_times,
-/// poses_topic, scene.
+/// poses_topic, scene. A sensor has a `body`, too.
 struct Rig {
   std::filesystem::path file;
   std::vector<RigSensor> sensors;  ///< at least one; names differ
+  std::vector<RigBox> body;        ///< of the vehicle
 
   /// Its index. Errors: usage (no such name; lists those of the rig).
   std::size_t index_of(std::string_view name) const;
@@ -53,6 +63,10 @@ bool is_rig(const std::filesystem::path& path);
 Rig read_rig(const std::filesystem::path& file);
 /// The same from its text; inputs are not opened.
 Rig parse_rig(std::string_view text, const std::filesystem::path& file);
+
+/// The text of a rig file that parse_rig() reads as `rig` from `rig.file`. Paths are relative to
+/// its folder.
+std::string rig_toml(const Rig& rig);
 
 /// Throws usage for settings that belong in the file of the rig. `topic` chooses a sensor.
 void require_no_settings(const Rig& rig, const DriveSettings& settings);
