@@ -110,7 +110,7 @@ std::vector<RigBox> read_boxes(const TomlTable& table) {
       Vec3d made;
       for (int axis = 0; axis < 3; ++axis)
         made[axis] = table.number_of((*list)[first + static_cast<std::size_t>(axis)], "body", low,
-                                      kMaxOffset_m);
+                                     kMaxOffset_m);
       return made;
     };
     constexpr double kMinSize_m = 1e-3;
@@ -215,8 +215,10 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
   return rig;
 }
 
+Rig read_rig_to_simulate(const fs::path& file) { return parse_rig(read_file(file), file); }
+
 Rig read_rig(const fs::path& file) {
-  Rig rig = parse_rig(read_file(file), file);
+  Rig rig = read_rig_to_simulate(file);
   for (const RigSensor& sensor : rig.sensors) {
     const std::string of = file.string() + ": sensor '" + sensor.name + "': ";
     if (sensor.folder.empty()) throw Error(ErrorKind::config, of + "`input` is missing");

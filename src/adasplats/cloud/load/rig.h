@@ -61,7 +61,9 @@ bool is_rig(const std::filesystem::path& path);
 /// Errors: config, with the line (syntax, unknown keys, values out of range, a name twice, no
 /// sensors); no_input (the file or a sensor's input is missing).
 Rig read_rig(const std::filesystem::path& file);
-/// The same from its text; inputs are not opened.
+/// The same for simulation: inputs need not be given.
+Rig read_rig_to_simulate(const std::filesystem::path& file);
+/// The same from its text.
 Rig parse_rig(std::string_view text, const std::filesystem::path& file);
 
 /// The text of a rig file that parse_rig() reads as `rig` from `rig.file`. Paths are relative to

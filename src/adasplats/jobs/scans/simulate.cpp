@@ -20,7 +20,6 @@
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/rig_writer.h"
-#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/folder_task.h"
 #include "adasplats/jobs/output/output_folder.h"
@@ -245,7 +244,7 @@ Plan plan_of(const SimulateJob& job, Session& session) {
     plan.sensors.push_back({"", job.scan.settings(session.seed), drive.mount, 0, {}});
   } else {
     require_input(job.rig);
-    plan.rig = parse_rig(read_file(job.rig), job.rig);
+    plan.rig = read_rig_to_simulate(job.rig);
     plan.sensors = sensors_of_rig(*plan.rig, job.scan, session.seed);
     if (drive.trajectory.empty() && drive.at.empty() && drive.path.empty())
       drive.trajectory = plan.rig->sensors.front().trajectory;
