@@ -278,13 +278,17 @@ double rig_ros_delay_s(const std::vector<RigWriterSensor>& sensors, const Trajec
   return sensors.front().writing.drive.begin_s >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
 }
 
+void require_rig_format(ScanFormat format) {
+  if (format == ScanFormat::nuscenes)
+    throw Error(ErrorKind::usage,
+                "nuscenes is written and read with one LiDAR, LIDAR_TOP; use another `format` for "
+                "a rig, such as mcap");
+}
+
 std::unique_ptr<ScanWriter> make_rig_writer(const fs::path& folder, ScanFormat format,
                                             std::vector<RigWriterSensor> sensors,
                                             Trajectory vehicle) {
-  if (format == ScanFormat::nuscenes)
-    throw Error(ErrorKind::usage,
-                "nuscenes is written with one LiDAR, LIDAR_TOP; use another `format` for a rig, "
-                "such as mcap");
+  require_rig_format(format);
   if (format == ScanFormat::mcap)
     return std::make_unique<RigMessages>(folder, std::move(sensors), std::move(vehicle));
   if (format == ScanFormat::pcap)

@@ -39,6 +39,9 @@ double rig_ros_delay_s(const std::vector<RigWriterSensor>& sensors, const Trajec
 /// (two send from one address and port).
 std::vector<UdpEndpoint> rig_senders(const std::vector<RigWriterSensor>& sensors);
 
+/// Throws usage for nuscenes, whose writer and reader have one LiDAR.
+void require_rig_format(ScanFormat format);
+
 /// A writer of scans with rig_scan_number(). All formats write poses.csv, those of the vehicle.
 /// mcap: FOLDER/scans.mcap with a topic /NAME/points per sensor, /tf (base_link in map) and
 /// /tf_static (NAME in base_link), all rig_ros_delay_s() later. pcap: FOLDER/drive.pcap, and in

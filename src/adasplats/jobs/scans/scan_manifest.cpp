@@ -162,9 +162,11 @@ Json rig_content(const Rig& rig, std::span<const MountedSensor> sensors) {
   Json json = {{"body", boxes_content(rig.body)}, {"sensors", Json::array()}};
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const MountedSensor& sensor = sensors[k];
+    Json content = sensor_content(sensor.settings.sensor);
+    if (sensor.settings.sensor_offsets)
+      content["range_offsets_m"] = sensor.settings.sensor.range_offsets_m;
     json["sensors"].push_back({{"name", sensor.name},
-                               {"sensor", sensor_content(sensor.settings.sensor)},
-                               {"range_offsets_m", sensor.settings.sensor.range_offsets_m},
+                               {"sensor", content},
                                {"mount", matrix_content(sensor.mount)},
                                {"time_offset_s", sensor.time_offset_s},
                                {"topic", rig.sensors[k].topic},

@@ -71,9 +71,12 @@ PacketOptions packet_options(const ScanSettings& settings, const DriveOptions& d
   return packets;
 }
 
-/// Scans of a sensor that are cast before it is the turn of the next one: launches of a GPU are
-/// large enough, and waiting messages and packets of other sensors fit in memory.
-constexpr std::size_t kScansATurn = 16;
+/// Scans of a sensor that are cast before it is the turn of the next one: many for large launches
+/// of a GPU; fewer where the messages or packets of the other sensors wait in memory.
+std::size_t scans_a_turn(ScanFormat format) {
+  constexpr std::size_t kMany = 64, kFew = 16;
+  return format == ScanFormat::mcap || format == ScanFormat::pcap ? kFew : kMany;
+}
 
 /// The part of a simulation that does not depend on its scene.
 struct Plan {
@@ -168,7 +171,7 @@ ReportTimes record_scans(Simulators& simulators, const Plan& plan,
                          const std::vector<std::size_t>& done, ScanRecorder& recorder,
                          SimulateResult& result) {
   ReportTimes times;
-  const std::size_t turn = plan.rig ? kScansATurn : plan.scans();
+  const std::size_t turn = plan.rig ? scans_a_turn(plan.job.format) : plan.scans();
   std::vector<SimulateResult> results(plan.sensors.size());
   for (std::size_t first = 0; first < plan.scans(); first += turn)
     for (std::size_t k = 0; k < simulators.size(); ++k) {
@@ -244,6 +247,7 @@ Plan plan_of(const SimulateJob& job, Session& session) {
     plan.sensors.push_back({"", job.scan.settings(session.seed), drive.mount, 0, {}});
   } else {
     require_input(job.rig);
+    require_rig_format(job.format);
     plan.rig = read_rig_to_simulate(job.rig);
     plan.sensors = sensors_of_rig(*plan.rig, job.scan, session.seed);
     if (drive.trajectory.empty() && drive.at.empty() && drive.path.empty())
