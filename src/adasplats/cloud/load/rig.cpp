@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <utility>
@@ -98,25 +98,30 @@ class RigValue {
 };
 
 std::vector<RigBox> read_boxes(const TomlTable& table) {
+  std::size_t columns = 6;
+  const std::vector<double> values =
+      table.number_rows("body", -kMaxOffset_m, kMaxOffset_m, columns);
   std::vector<RigBox> boxes;
-  const toml::node* const node = table.find("body");
-  if (node == nullptr) return boxes;
-  if (!node->is_array()) throw table.error("body", "is not a list of boxes");
-  for (const toml::node& row : *node->as_array()) {
-    const toml::array* const list = row.as_array();
-    if (list == nullptr || list->size() != 6)
-      throw table.error_at(row, "body has a box that is not [x, y, z, length, width, height]");
-    const auto point = [&](std::size_t first, double low) {
-      Vec3d made;
-      for (int axis = 0; axis < 3; ++axis)
-        made[axis] = table.number_of((*list)[first + static_cast<std::size_t>(axis)], "body", low,
-                                     kMaxOffset_m);
-      return made;
-    };
-    constexpr double kMinSize_m = 1e-3;
-    boxes.push_back({point(0, -kMaxOffset_m), point(3, kMinSize_m)});
+  for (auto v = values.begin(); v != values.end(); v += 6) {
+    boxes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+    if (!(v[3] > 0 && v[4] > 0 && v[5] > 0))
+      throw table.error("body", "has a box whose length, width or height is not positive");
   }
   return boxes;
+}
+
+/// A basic string of TOML.
+std::string quoted(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f)
+      text += std::string("\\u00") + kDigits[byte / 16] + kDigits[byte % 16];
+    else
+      (c == '"' || c == '\\' ? text += '\\' : text) += c;
+  }
+  return text + '"';
 }
 
 /// Writes "key = value" for values that differ from the default.
@@ -126,9 +131,7 @@ class RigText {
 
   void operator()(const char* key, const std::string& value) const {
     if (value.empty()) return;
-    std::ostringstream quoted;
-    quoted << toml::value<std::string>(value);
-    put(key, quoted.str());
+    put(key, quoted(value));
   }
   void operator()(const char* key, const fs::path& value) const {
     if (!value.empty()) (*this)(key, value.lexically_proximate(folder_).generic_string());

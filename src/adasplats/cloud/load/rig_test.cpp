@@ -14,7 +14,7 @@ body = [[1.5, 0, 0.75, 4.5, 1.8, 1.5]]
 [[sensors]]
 name = "top"
 input = "drive.mcap"
-topic = "/top/points"
+topic = "/top/po\"in\\ts \u0007"
 mount = [1.2, -0.5, 1.9]
 mount_rotation_deg = [90, 5, 180]
 time_offset_s = -0.02
@@ -46,7 +46,7 @@ TEST(Rig, EveryKey) {
   EXPECT_EQ(top.name + front.name, "topfront");
   EXPECT_EQ(top.folder, "car/drive.mcap");
   EXPECT_EQ(front.folder, "car/front");
-  EXPECT_EQ(top.topic, "/top/points");
+  EXPECT_EQ(top.topic, "/top/po\"in\\ts \a");
   EXPECT_EQ(top.mount, (Vec3d{1.2, -0.5, 1.9}));
   EXPECT_EQ(top.mount_rotation_deg, (Vec3d{90, 5, 180}));
   EXPECT_EQ(top.time_offset_s, -0.02);
@@ -95,7 +95,7 @@ TEST(Rig, FilesOfSensorsAreNextToIt) {
   const auto file = folder.path() / "rig.toml";
   const Rig rig = parse_rig(with("sensor = \"mine.toml\""), file);
   EXPECT_EQ(rig.sensors[0].packets_of, (folder.path() / "mine.toml").string());
-  EXPECT_NE(rig_toml(rig).find("sensor = 'mine.toml'"), std::string::npos) << rig_toml(rig);
+  EXPECT_NE(rig_toml(rig).find("sensor = \"mine.toml\""), std::string::npos) << rig_toml(rig);
 }
 
 TEST(Rig, WrongFilesGiveOneClearError) {
@@ -121,10 +121,10 @@ TEST(Rig, WrongFilesGiveOneClearError) {
   expect_bad(with("points_in = \"word\""), {":3:", "'word'", "auto, sensor, world"});
   expect_bad(with("in_model = false"), {"has no sensor with"});
   expect_bad(with("input = \"\""), {":3:", "input is empty"});
-  expect_bad(with("body = 3"), {":3:", "body is not a list of boxes"});
-  expect_bad(with("body = [[1, 2, 3]]"), {":3:", "[x, y, z, length, width, height]"});
-  expect_bad(with("body = [[1, 2, 3, 4, 5, 0]]"), {":3:", "body"});
-  expect_bad(with("body = [[1, 2, 3, 4, 5, -1]]"), {":3:", "body"});
+  expect_bad(with("body = 3"), {":3:", "body is not a list"});
+  expect_bad(with("body = [[1, 2, 3]]"), {":3:", "list of 3 numbers, expected 6"});
+  expect_bad(with("body = [[1, 2, 3, 4, 5, 0]]"), {":3:", "height is not positive"});
+  expect_bad(with("body = [[1, 2, 300, 4, 5, 1]]"), {":3:", "body", "100"});
   expect_bad(with("mount = ["), {":"});
 }
 
