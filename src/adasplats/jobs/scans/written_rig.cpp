@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/scans/written_rig.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <sstream>
 #include <string>
@@ -39,9 +41,19 @@ DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
   reading.mount = given.mount.value_or(Vec3d{});
   reading.mount_rotation_deg = given.mount_rotation_deg;
   reading.time_offset_s = sensor.time_offset_s;
-  if (job.format == ScanFormat::mcap) reading.topic = "/" + sensor.name + "/points";
-  if (job.format != ScanFormat::mcap && job.format != ScanFormat::pcap)
+  if (job.format == ScanFormat::pcap) return reading;
+  constexpr std::array kTimed = {ScanFormat::ply, ScanFormat::npz, ScanFormat::pcd,
+                                 ScanFormat::las, ScanFormat::laz, ScanFormat::mcap};
+  const bool has_times =
+      sensor.writing.drive.turn_s > 0 && std::ranges::find(kTimed, job.format) != kTimed.end();
+  if (has_times)
+    reading.sweep_points =
+        job.scan.frame == PointFrame::raw ? SweepPoints::measured : SweepPoints::compensated;
+  if (job.format == ScanFormat::mcap)
+    reading.topic = "/" + sensor.name + "/points";
+  else
     reading.scan_times = folder / (sensor.name + ".times");
+  reading.points_in = PointsIn::sensor;
   return reading;
 }
 
@@ -77,17 +89,16 @@ void write_written_rig(const fs::path& folder, const Rig& rig, const SimulateJob
   written.file = output / "rig.toml";
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     RigSensor& sensor = written.sensors[k];
-    const std::string& name = sensors[k].name;
     static_cast<DriveSettings&>(sensor) = reading_of(job, sensors[k], rig.sensors[k], output);
-    sensor.folder = output / name;
     if (job.format == ScanFormat::mcap) {
       sensor.folder = output / "scans.mcap";
     } else if (job.format == ScanFormat::pcap) {
       sensor.folder = output / "drive.pcap";
       sensor.topic = sender_text(senders[k]);
-    } else if (job.format != ScanFormat::pandaset) {
-      sensor.folder =
-          (output / writer.main_file(rig_scan_number(0, k, sensors.size()))).parent_path();
+    } else {
+      const std::string scan = writer.main_file(rig_scan_number(0, k, sensors.size()));
+      sensor.folder = (output / scan).parent_path();
+      if (job.format == ScanFormat::pandaset) sensor.folder = sensor.folder.parent_path();
     }
   }
   write_file_in_place(folder / "rig.toml", rig_toml(written));
