@@ -90,12 +90,12 @@ void PlaneSystem::add_pose_prior(std::size_t scan, std::size_t unknown, double w
 void PlaneSystem::add_laser_prior(std::size_t laser, std::size_t unknown, double weight,
                                   double share, double value) {
   LaserBlock& block = blocks_.lasers[laser];
-  add_prior(block, unknown, weight + share * block.full[unknown * 3], value);
+  add_prior(block, unknown, weight + share * block.full[unknown * (kLaserUnknowns + 1)], value);
 }
 
 PlaneStep PlaneSystem::solve(double tolerance, int max_iterations, PlaneProduct coupled) const {
   const Preconditioner<6> of_poses(blocks_.poses);
-  const Preconditioner<2> of_lasers(blocks_.lasers);
+  const Preconditioner<kLaserUnknowns> of_lasers(blocks_.lasers);
   const auto preconditioned = [&](const PlaneStep& r) {
     return PlaneStep{of_poses(r.poses), of_lasers(r.lasers)};
   };

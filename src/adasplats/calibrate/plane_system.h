@@ -10,8 +10,11 @@
 
 namespace adasplats {
 
-/// Normal equations of the unknowns of one scan (N = 6: rotation and translation) or laser (N = 2:
-/// range and elevation). Row-major matrices.
+/// Unknowns of a laser: range, elevation, azimuth.
+inline constexpr std::size_t kLaserUnknowns = 3;
+
+/// Normal equations of the unknowns of one scan (N = 6: rotation and translation) or laser (N =
+/// kLaserUnknowns). Row-major matrices.
 template <std::size_t N>
 struct UnknownsBlock {
   double full[N * N]{};     ///< with fixed planes
@@ -19,7 +22,7 @@ struct UnknownsBlock {
   double right[N]{};        ///< with the planes eliminated
 };
 using PoseBlock = UnknownsBlock<6>;
-using LaserBlock = UnknownsBlock<2>;
+using LaserBlock = UnknownsBlock<kLaserUnknowns>;
 
 struct PlaneBlocks {
   std::vector<PoseBlock> poses;
@@ -29,7 +32,7 @@ struct PlaneBlocks {
 /// A value for every unknown.
 struct PlaneStep {
   std::vector<double> poses;   ///< six a scan
-  std::vector<double> lasers;  ///< two a laser
+  std::vector<double> lasers;  ///< kLaserUnknowns a laser
 };
 
 /// A Gauss-Newton step over poses and lasers. The unknowns of each plane are eliminated (Schur

@@ -330,7 +330,7 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
   if (is_recording(drive.folder)) {
     const RecordingSurvey survey = survey_recording(drive.folder, progress);
-    if (!is_read_by_packets(survey, drive))
+    if (!is_read_by_packets(survey, drive, drive.may_lack_packets))
       return open_recording_drive(drive, survey, executor, progress);
     return open_packet_drive(drive, survey_packets(survey, drive, progress), executor, progress);
   }

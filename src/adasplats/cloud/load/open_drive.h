@@ -20,7 +20,8 @@ struct DriveInput : DriveSettings {
   /// A folder of files, one per scan (scan_files()), a recording (is_recording()), a capture
   /// (is_capture()), or the root of a data set (data_tree_of()).
   std::filesystem::path folder;
-  bool with_classes = true;  ///< read the classes that the files have
+  bool with_classes = true;       ///< read the classes that the files have
+  bool may_lack_packets = false;  ///< `packets_of` of a recording without packets is no error
 };
 
 inline DriveInput drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {

@@ -14,6 +14,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/rig_of_recording.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
@@ -33,6 +34,47 @@ std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths
   }
   std::ranges::copy_if(inputs, std::back_inserter(sequences), &CloudInput::is_sequence);
   if (sequences.size() > 1) require_distinct_starts(sequences);
+  return inputs;
+}
+
+/// The rig of a file, or of a recording of several sensors; nothing for other inputs.
+std::optional<Rig> rig_of(const std::filesystem::path& input, const LoadOptions& options,
+                          ProgressSink& progress) {
+  if (is_rig(input)) {
+    Rig rig = read_rig(input);
+    require_no_settings(rig, options);
+    return rig;
+  }
+  if (!options.topic.empty() || !is_recording(input)) return std::nullopt;
+  return rig_of_recording(input, options, progress);
+}
+
+/// Throws data for sensors without a common time.
+void require_common_time(const KittiSequence& first, const KittiSequence& other) {
+  if (!first.has_times || !other.has_times) return;
+  const auto begin_s = [](const KittiSequence& drive) { return drive.trajectory.front().time_s; };
+  const auto end_s = [](const KittiSequence& drive) { return drive.trajectory.back().time_s; };
+  if (begin_s(other) <= end_s(first) && begin_s(first) <= end_s(other)) return;
+  const auto span = [&](const KittiSequence& drive) {
+    return exact_text(begin_s(drive)) + " to " + exact_text(end_s(drive)) + " s";
+  };
+  throw Error(ErrorKind::data,
+              "sensor '" + other.rig_sensor + "': its scans are of " + span(other) +
+                  ", those of '" + first.rig_sensor + "' of " + span(first) +
+                  ": their clocks differ (set `time_offset_s`), or they are of two drives");
+}
+
+/// Opens the sensors of a rig: all, or the one that `topic` names.
+std::vector<OpenInput> opened_rig(const Rig& rig, const LoadOptions& options,
+                                  std::vector<CloudSensor>& sensors, const Executor& executor,
+                                  ProgressSink& progress) {
+  std::vector<OpenInput> inputs;
+  for (const RigSensor& sensor : rig.sensors) {
+    if (!options.topic.empty() && &sensor != &rig.sensors[rig.index_of(options.topic)]) continue;
+    inputs.push_back({{sensor.folder, true}, open_rig_sensor(sensor, executor, progress), true});
+    require_common_time(*inputs.front().sequence, *inputs.back().sequence);
+    sensors.push_back({sensor.name, 0, sensor.is_in_model || !options.topic.empty()});
+  }
   return inputs;
 }
 
@@ -153,8 +195,17 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
                        const Executor& executor, ProgressSink& progress)
     : options_(options) {
   require_sound(options);
-  inputs_ = opened(inputs, options, executor, progress);
   name_ = name_of(inputs);
+  const auto file = std::ranges::find_if(inputs, is_rig);
+  if (file != inputs.end() && inputs.size() > 1)
+    throw usage(file->string() + ": is a rig; other inputs cannot be joined with it");
+  const auto rig = inputs.size() == 1 ? rig_of(inputs[0], options, progress) : std::nullopt;
+  if (rig) {
+    inputs_ = opened_rig(*rig, options, sensors_, executor, progress);
+    options_.topic.clear();
+    return;
+  }
+  inputs_ = opened(inputs, options, executor, progress);
   require_applicable_options(options, inputs_);
   require_registered(inputs_);
   for (OpenInput& input : inputs_)

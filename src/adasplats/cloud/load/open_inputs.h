@@ -52,6 +52,8 @@ class OpenInputs {
   const LoadOptions& options() const { return options_; }
   /// Whether all of them are drives.
   bool are_drives() const;
+  /// The sensors of a rig, one per input; empty for other inputs.
+  const std::vector<CloudSensor>& sensors() const { return sensors_; }
   /// Number of scans of a drive that the options choose; 0 if the first is after its end.
   std::size_t chosen_scans(std::size_t input) const;
 
@@ -67,11 +69,14 @@ class OpenInputs {
   Error empty_extent_error() const;
 
  private:
+  std::pair<PointCloud, LoadReport> load_sensors(const Executor& executor,
+                                                 ProgressSink& progress) const;
   PathBeyond path_beyond(const InputPiece& piece) const;
 
   std::string name_;  ///< of all, for messages
   LoadOptions options_;
   std::vector<OpenInput> inputs_;
+  std::vector<CloudSensor> sensors_;  ///< of a rig
 };
 
 /// Cuts files with random access (random_access_records()) into pieces of at most `records`; other

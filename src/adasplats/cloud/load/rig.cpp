@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -205,6 +206,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
     if (table.has("input")) sensor.folder = read.path_of("input");
     sensor.is_in_model = table.flag("in_model", true);
     sensor.body = read_boxes(table);
+    sensor.may_lack_packets = true;  // `sensor` is also for simulation
     visit_rig_settings(sensor, read);
     // A file of a sensor is beside the rig file; other words are names of the library.
     std::error_code ignored;
@@ -249,6 +251,27 @@ std::string rig_toml(const Rig& rig) {
     visit_rig_settings(sensor, put);
   }
   return text;
+}
+
+KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
+                              ProgressSink& progress) {
+  try {
+    std::optional<KittiSequence> drive;
+    if (!sensor.trajectory.empty() || is_self_contained_drive(sensor.folder)) {
+      drive = open_drive(sensor, executor, progress);
+    } else if (is_kitti_sequence(sensor.folder)) {
+      LoadOptions options;
+      static_cast<DriveSettings&>(options) = sensor;
+      drive = open_sequence(sensor.folder, options, executor);
+    }
+    if (!drive)
+      throw Error(ErrorKind::data,
+                  sensor.folder.string() + ": is not a drive: scans need poses (`trajectory`)");
+    drive->rig_sensor = sensor.name;
+    return std::move(*drive);
+  } catch (const Error& error) {
+    throw Error(error.kind(), "sensor '" + sensor.name + "': " + error.what());
+  }
 }
 
 void require_no_settings(const Rig& rig, const DriveSettings& settings) {

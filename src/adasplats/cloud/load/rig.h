@@ -49,7 +49,7 @@ struct RigSensor : DriveInput {
 struct Rig {
   std::filesystem::path file;
   std::vector<RigSensor> sensors;  ///< at least one; names differ
-  std::vector<RigBox> body;        ///< of the vehicle
+  std::vector<RigBox> body = {};   ///< of the vehicle
 
   /// Its index. Errors: usage (no such name; lists those of the rig).
   std::size_t index_of(std::string_view name) const;
@@ -69,6 +69,11 @@ Rig parse_rig(std::string_view text, const std::filesystem::path& file);
 /// The text of a rig file that parse_rig() reads as `rig` from `rig.file`. Paths are relative to
 /// its folder.
 std::string rig_toml(const Rig& rig);
+
+/// Opens the drive of a sensor. Errors: those of open_drive() and open_kitti_sequence(); data for
+/// an input that is no drive. They name the sensor.
+KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
+                              ProgressSink& progress);
 
 /// Throws usage for settings that belong in the file of the rig. `topic` chooses a sensor.
 void require_no_settings(const Rig& rig, const DriveSettings& settings);

@@ -96,6 +96,7 @@ class CalibrationFiles {
   void write() {
     if (!result_.calibration.empty()) {
       write_drives();
+      if (!result_.mounts.empty()) write_rig();
       if (!result_.calibration.lasers.empty()) write_lasers();
     }
     result_.files.insert(result_.files.end(), {"report.json", "report.html"});
@@ -115,7 +116,8 @@ class CalibrationFiles {
     const std::vector<LoadedDrive>& drives = result_.loaded.drives;
     auto begin = result_.corrected.begin();
     for (std::size_t k = 0; k < drives.size(); ++k) {
-      const fs::path place = drives.size() == 1 ? "" : "drive_" + std::to_string(k);
+      fs::path place = drives.size() == 1 ? "" : "drive_" + std::to_string(k);
+      if (!result_.sensors.empty()) place = result_.sensors[k].name;
       if (!place.empty()) fs::create_directory(folder_ / place);
       const auto end = std::next(begin, static_cast<std::ptrdiff_t>(drives[k].scans));
       write_trajectory_csv(named(place / "trajectory.csv"), Trajectory(begin, end));
@@ -133,6 +135,13 @@ class CalibrationFiles {
     progress_.warn(sequence.string() +
                    ": no poses.txt is written, since some of its scans are too far from those that "
                    "were calibrated; trajectory.csv has these");
+  }
+
+  void write_rig() {
+    std::vector<fs::path> inputs;
+    for (const LoadedDrive& drive : result_.loaded.drives)
+      inputs.push_back(fs::absolute(drive.folder).lexically_normal());
+    write_file(named("rig.toml"), rig_toml(result_.mounts, inputs));
   }
 
   void write_lasers() {
@@ -153,7 +162,9 @@ void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session&
                      CalibrateResult& result) {
   auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   result.loaded = std::move(loaded);
-  if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
+  result.sensors = cloud.sensors;
+  if (cloud.sensors.empty() && (job.calibrate.ranges || job.calibrate.elevations))
+    require_one_sensor(result.loaded.drives);
   auto [calibration, report] = calibrate_drives(
       cloud, job.calibrate, job.windows, calibrate_on(session), session.executor, session.progress);
   result.calibration = std::move(calibration);
@@ -185,8 +196,13 @@ CalibrateResult estimated(const CalibrateJob& job, Session& session) {
     estimate_loaded(job, inputs, session, result);
   result.sensor = sensor_of_all(result.loaded.drives);
   result.corrected = result.given;
-  if (!result.calibration.empty() && !adasplats::apply(result.calibration, result.corrected))
-    throw std::logic_error("run_calibrate: a calibration of other scans");
+  if (result.calibration.empty()) return result;
+  const auto corrected = corrected_poses(
+      result.given, calibrations_of_scans(result.calibration, result.sensors, result.given.size()));
+  if (!corrected) throw std::logic_error("run_calibrate: a calibration of other scans");
+  result.corrected = *corrected;
+  if (result.sensors.size() > 1)
+    result.mounts = rig_mounts(result.sensors, result.corrected, result.report);
   return result;
 }
 
@@ -262,6 +278,8 @@ Json to_json(const CalibrateResult& result) {
                               {"beams", result.loaded.beams[k]},
                               {"scans", drive.scans}});
   }
+  if (!result.mounts.empty())
+    json["sensors"] = to_json(result.mounts, result.report, result.calibration);
   json["scans"] = scans_json(result);
   json["lasers"] = {{"range_offset_m", result.calibration.lasers.range_m},
                     {"elevation_offset_rad", result.calibration.lasers.elevation_rad}};
