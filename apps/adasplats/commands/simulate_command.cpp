@@ -26,7 +26,6 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
-    "  adasplats simulate street.ply --rig car.toml --trajectory poses.csv -o scans --format mcap\n"
     "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
     "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
     "Rates in the output: traced (the tracer alone, or the kernels of all GPUs), assembled (until\n"
@@ -48,8 +47,7 @@ class SimulateCommand final : public Command {
         ->type_name("NAME|FILE")
         ->basic();
     add_path(app, "--rig", job_.rig,
-             "Instead of --sensor: the sensors of a car with their mounts and clocks (TOML, "
-             "docs/sensors.md); the trajectory is the car's")
+             "Instead of --sensor: rig file with the sensors of a car (TOML)")
         ->basic();
     add_labels_option(app, job_.labels, "that of the model");
     add_drive_options(app);

@@ -168,7 +168,7 @@ TEST(SimulateScan, NoBeamPassesABoxOfTheVehicle) {
   Drive drive;
   drive.view = {disks, nullptr};
   drive.pose.world_from_sensor.translation = {0, 0, 2};
-  drive.sensor.min_range_m = 0.6;
+  drive.sensor.min_range_m = 1.2;
   const Scan without = drive.scan();
   const double yaw = 0.4;
   const Vec3d half = {2, 1, 0.25};
@@ -185,7 +185,7 @@ TEST(SimulateScan, NoBeamPassesABoxOfTheVehicle) {
     const Vec3f direction = without.positions[i] / length(without.positions[i]);
     const bool meets = on_roof(direction);
     const auto to_roof_m = static_cast<float>(-0.5 / static_cast<double>(direction.z));
-    if (meets && to_roof_m <= 0.6F) {
+    if (meets && to_roof_m <= 1.2F) {
       ++hidden;
       continue;
     }
