@@ -25,6 +25,7 @@ constexpr const char* kSimulateExamples =
     "      --offset 1,1,-0.5 -o scans --format npy\n"
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
+    "  adasplats simulate street.ply --rig car.toml --trajectory poses.csv -o scans --format mcap\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
     "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
     "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
@@ -151,7 +152,7 @@ class SimulateCommand final : public Command {
   void add_drive_options(OptionSet& app) {
     constexpr const char* kGroup = "Trajectory";
     add_path(app, "--trajectory", job_.drive.trajectory,
-             "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording")
+             "Poses of sensor or car: KITTI, CSV, TUM, sequence folder or recording")
         ->group(kGroup)
         ->basic();
     add_places(app, "--at", job_.drive.at,
