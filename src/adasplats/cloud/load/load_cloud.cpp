@@ -535,7 +535,7 @@ void require_poses_of_scans(const std::string& name, const LoadReport& report) {
 
 std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
                                                    ProgressSink& progress) const {
-  if (!sensors_.empty()) return load_sensors(executor, progress);
+  if (rig_) return load_sensors(executor, progress);
   const PieceContext context = {options_.selection.is_all(), {}};
   auto loaded = load_open(inputs_, options_, name_, context, executor, progress);
   std::vector<float>& intensities = loaded.first.intensities;
@@ -547,13 +547,15 @@ std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
 std::pair<PointCloud, LoadReport> OpenInputs::load_sensors(const Executor& executor,
                                                            ProgressSink& progress) const {
   std::vector<PointCloud> clouds;
+  std::vector<CloudSensor> sensors;
   LoadReport report;
   for (std::size_t k = 0; k < inputs_.size(); ++k) {
+    sensors.push_back({rig_->sensors[k].name, 0, rig_->sensors[k].is_in_model});
     auto [cloud, loaded] = load({k}, executor, progress);
     clouds.push_back(std::move(cloud));
     report.add(std::move(loaded));
   }
-  return {join_sensors(std::move(clouds), sensors_, progress), std::move(report)};
+  return {join_sensors(std::move(clouds), std::move(sensors), progress), std::move(report)};
 }
 
 void LoadReport::add(LoadReport&& other) {

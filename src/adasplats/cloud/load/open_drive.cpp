@@ -199,7 +199,7 @@ std::optional<KittiSequence> open_as_world(const DriveInput& drive,
                                            const Executor& executor, ProgressSink& progress) {
   // With a stated mount the sensor need not be recognised.
   const std::optional<MountSettings> mount = drive.given_mount();
-  if ((mount && !drive.uses_stated_mount) || !has_timed_frames(drive.folder)) return std::nullopt;
+  if ((mount && !drive.is_rig_sensor) || !has_timed_frames(drive.folder)) return std::nullopt;
   if (!has_times(drive.trajectory))
     throw Error(ErrorKind::data,
                 drive.trajectory.string() + ": its poses have no times, but the points of " +
@@ -333,7 +333,7 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
   if (is_recording(drive.folder)) {
     const RecordingSurvey survey = survey_recording(drive.folder, progress);
-    if (!is_read_by_packets(survey, drive))
+    if (!is_read_by_packets(survey, drive, drive.is_rig_sensor))
       return open_recording_drive(drive, survey, executor, progress);
     return open_packet_drive(drive, survey_packets(survey, drive, progress), executor, progress);
   }

@@ -37,16 +37,21 @@ std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths
   return inputs;
 }
 
-/// The rig of a file, or of a recording of several sensors; nothing for other inputs.
+/// The rig of a file with the sensor that `topic` names or all, or of a recording of several
+/// sensors; nothing for other inputs.
 std::optional<Rig> rig_of(const std::filesystem::path& input, const LoadOptions& options,
                           ProgressSink& progress) {
-  if (is_rig(input)) {
-    Rig rig = read_rig(input);
-    require_no_settings(rig, options);
-    return rig;
+  if (!is_rig(input)) {
+    if (!options.topic.empty() || !is_recording(input)) return std::nullopt;
+    return rig_of_recording(input, options, progress);
   }
-  if (!options.topic.empty() || !is_recording(input)) return std::nullopt;
-  return rig_of_recording(input, options, progress);
+  Rig rig = read_rig(input);
+  require_no_settings(rig, options);
+  if (!options.topic.empty()) {
+    rig.sensors = {rig.sensors[rig.index_of(options.topic)]};
+    rig.sensors.front().is_in_model = true;
+  }
+  return rig;
 }
 
 /// Throws data for sensors without a common time.
@@ -61,20 +66,18 @@ void require_common_time(const KittiSequence& first, const KittiSequence& other)
   throw Error(ErrorKind::data,
               "sensor '" + other.rig_sensor + "': its scans are of " + span(other) +
                   ", those of '" + first.rig_sensor + "' of " + span(first) +
-                  ": their clocks differ (set `time_offset_s`), or they are of two drives");
+                  ": their clocks differ (set time_offset_s in the rig file), or they are of two "
+                  "drives");
 }
 
-/// Opens the sensors of a rig: all, or the one that `topic` names.
-std::vector<OpenInput> opened_rig(const Rig& rig, const LoadOptions& options,
-                                  std::vector<CloudSensor>& sensors, const Executor& executor,
-                                  ProgressSink& progress) {
+/// Opens the sensors of a rig.
+std::vector<OpenInput> opened_sensors(const Rig& rig, const Executor& executor,
+                                      ProgressSink& progress) {
   std::vector<OpenInput> inputs;
   for (const RigSensor& sensor : rig.sensors) {
-    if (!options.topic.empty() && &sensor != &rig.sensors[rig.index_of(options.topic)]) continue;
     KittiSequence drive = open_rig_sensor(sensor, executor, progress);
     inputs.push_back({{sensor.folder, true}, std::move(drive), true});
     require_common_time(*inputs.front().sequence, *inputs.back().sequence);
-    sensors.push_back({sensor.name, 0, sensor.is_in_model || !options.topic.empty()});
   }
   return inputs;
 }
@@ -200,9 +203,9 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   const auto file = std::ranges::find_if(inputs, is_rig);
   if (file != inputs.end() && inputs.size() > 1)
     throw usage(file->string() + ": is a rig; other inputs cannot be joined with it");
-  const auto rig = inputs.size() == 1 ? rig_of(inputs[0], options, progress) : std::nullopt;
-  if (rig) {
-    inputs_ = opened_rig(*rig, options, sensors_, executor, progress);
+  if (inputs.size() == 1) rig_ = rig_of(inputs[0], options, progress);
+  if (rig_) {
+    inputs_ = opened_sensors(*rig_, executor, progress);
     options_.topic.clear();
     return;
   }

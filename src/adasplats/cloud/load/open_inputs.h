@@ -14,6 +14,7 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/core/error.h"
@@ -52,8 +53,8 @@ class OpenInputs {
   const LoadOptions& options() const { return options_; }
   /// Whether all of them are drives.
   bool are_drives() const;
-  /// The sensors of a rig, one per input; empty for other inputs.
-  const std::vector<CloudSensor>& sensors() const { return sensors_; }
+  /// The rig that the inputs are, one sensor per input; nothing for other inputs.
+  const std::optional<Rig>& rig() const { return rig_; }
   /// Number of scans of a drive that the options choose; 0 if the first is after its end.
   std::size_t chosen_scans(std::size_t input) const;
 
@@ -76,7 +77,7 @@ class OpenInputs {
   std::string name_;  ///< of all, for messages
   LoadOptions options_;
   std::vector<OpenInput> inputs_;
-  std::vector<CloudSensor> sensors_;  ///< of a rig
+  std::optional<Rig> rig_;  ///< with the sensors that `topic` chose
 };
 
 /// Cuts files with random access (random_access_records()) into pieces of at most `records`; other

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/toml_table.h"
 
 namespace adasplats {
@@ -37,7 +41,7 @@ void visit_rig_settings(DriveSettings& drive, const Visit& visit) {
 }
 
 TomlKeys sensor_keys() {
-  TomlKeys keys = {"name", "input", "in_model"};
+  TomlKeys keys = {"name", "input", "in_model", "body"};
   DriveSettings drive;
   visit_rig_settings(drive, [&](const char* key, const auto&) { keys.emplace_back(key); });
   return keys;
@@ -94,6 +98,79 @@ class RigValue {
   const fs::path& folder_;
 };
 
+std::vector<RigBox> read_boxes(const TomlTable& table) {
+  std::size_t columns = 6;
+  const std::vector<double> values =
+      table.number_rows("body", -kMaxOffset_m, kMaxOffset_m, columns);
+  std::vector<RigBox> boxes;
+  for (auto v = values.begin(); v != values.end(); v += 6) {
+    boxes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+    if (!(v[3] > 0 && v[4] > 0 && v[5] > 0))
+      throw table.error("body", "has a box whose length, width or height is not positive");
+  }
+  return boxes;
+}
+
+/// A basic string of TOML.
+std::string quoted(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f)
+      text += std::string("\\u00") + kDigits[byte / 16] + kDigits[byte % 16];
+    else
+      (c == '"' || c == '\\' ? text += '\\' : text) += c;
+  }
+  return text + '"';
+}
+
+/// Writes "key = value" for values that differ from the default.
+class RigText {
+ public:
+  RigText(std::string& text, const fs::path& folder) : text_(text), folder_(folder) {}
+
+  void operator()(const char* key, const std::string& value) const {
+    if (value.empty()) return;
+    put(key, quoted(value));
+  }
+  void operator()(const char* key, const fs::path& value) const {
+    if (!value.empty()) (*this)(key, value.lexically_proximate(folder_).generic_string());
+  }
+  void operator()(const char* key, const Vec3d& value) const {
+    if (value != Vec3d{}) put(key, "[" + numbers(value) + "]");
+  }
+  void operator()(const char* key, const std::optional<Vec3d>& value) const {
+    if (value) put(key, "[" + numbers(*value) + "]");
+  }
+  void operator()(const char* key, const std::optional<double>& value) const {
+    if (value) put(key, exact_text(*value));
+  }
+  template <class Word>
+  requires std::is_enum_v<Word>
+  void operator()(const char* key, const Word& value) const {
+    if (value != Word{}) (*this)(key, std::string(word_of(value, words_of(value))));
+  }
+  void operator()(const char* key, const std::vector<RigBox>& boxes) const {
+    std::string list;
+    for (const RigBox& box : boxes)
+      list +=
+          (list.empty() ? "[" : ", [") + numbers(box.center_m) + ", " + numbers(box.size_m) + "]";
+    if (!boxes.empty()) put(key, "[" + list + "]");
+  }
+
+ private:
+  static std::string numbers(Vec3d v) {
+    return exact_text(v.x) + ", " + exact_text(v.y) + ", " + exact_text(v.z);
+  }
+  void put(const char* key, const std::string& value) const {
+    text_ += std::string(key) + " = " + value + "\n";
+  }
+
+  std::string& text_;
+  const fs::path& folder_;
+};
+
 }  // namespace
 
 std::size_t Rig::index_of(std::string_view name) const {
@@ -109,16 +186,16 @@ bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
 
 Rig parse_rig(std::string_view text, const fs::path& file) {
   const fs::path folder = file.parent_path();
-  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors"}, "rig");
+  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors", "body"}, "rig");
   DriveSettings shared;
   const RigValue read_shared(whole, folder);
   read_shared("trajectory", shared.trajectory);
   read_shared("boxes", shared.boxes);
   whole.require("sensors");
-  Rig rig{file, {}};
+  Rig rig{file, {}, read_boxes(whole)};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
-    sensor.uses_stated_mount = true;
+    sensor.is_rig_sensor = true;
     static_cast<DriveSettings&>(sensor) = shared;
     const RigValue read(table, folder);
     table.require("name");
@@ -129,6 +206,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
       throw table.error("name", "'" + sensor.name + "' is used twice");
     if (table.has("input")) sensor.folder = read.path_of("input");
     sensor.is_in_model = table.flag("in_model", true);
+    sensor.body = read_boxes(table);
     visit_rig_settings(sensor, read);
     // A file of a sensor is beside the rig file; other words are names of the library.
     std::error_code ignored;
@@ -138,20 +216,41 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
   }
   if (rig.sensors.empty()) throw whole.error("sensors", "has no sensor");
   if (std::ranges::none_of(rig.sensors, &RigSensor::is_in_model))
-    throw whole.error("sensors", "has no sensor with `in_model`");
+    throw whole.error("sensors", "has no sensor that is part of models (in_model)");
   return rig;
 }
 
+Rig read_rig_to_simulate(const fs::path& file) { return parse_rig(read_file(file), file); }
+
 Rig read_rig(const fs::path& file) {
-  Rig rig = parse_rig(read_file(file), file);
+  Rig rig = read_rig_to_simulate(file);
   for (const RigSensor& sensor : rig.sensors) {
     const std::string of = file.string() + ": sensor '" + sensor.name + "': ";
-    if (sensor.folder.empty()) throw Error(ErrorKind::config, of + "`input` is missing");
+    if (sensor.folder.empty()) throw Error(ErrorKind::config, of + "its input is missing");
     std::error_code ignored;  // an input that cannot be looked up is missing
     if (!fs::exists(sensor.folder, ignored))
       throw Error(ErrorKind::no_input, of + "its input " + sensor.folder.string() + " is missing");
   }
   return rig;
+}
+
+std::string rig_toml(const Rig& rig) {
+  std::string text;
+  const fs::path folder = rig.file.parent_path();
+  const RigText put(text, folder);
+  put("body", rig.body);
+  for (RigSensor sensor : rig.sensors) {
+    text += "\n[[sensors]]\n";
+    put("name", sensor.name);
+    put("input", sensor.folder);
+    if (!sensor.is_in_model) text += "in_model = false\n";
+    put("body", sensor.body);
+    std::error_code ignored;
+    if (fs::is_regular_file(sensor.packets_of, ignored))
+      sensor.packets_of = fs::path(sensor.packets_of).lexically_proximate(folder).generic_string();
+    visit_rig_settings(sensor, put);
+  }
+  return text;
 }
 
 KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
@@ -166,8 +265,8 @@ KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
       drive = open_sequence(sensor.folder, options, executor);
     }
     if (!drive)
-      throw Error(ErrorKind::data,
-                  sensor.folder.string() + ": is not a drive: scans need poses (`trajectory`)");
+      throw Error(ErrorKind::data, sensor.folder.string() +
+                                       ": is not a drive: scans need poses, by the key trajectory");
     drive->rig_sensor = sensor.name;
     return std::move(*drive);
   } catch (const Error& error) {
@@ -182,7 +281,7 @@ void require_no_settings(const Rig& rig, const DriveSettings& settings) {
   throw Error(ErrorKind::usage,
               rig.file.string() +
                   ": trajectory, mounts, clocks and other settings of drives belong in the rig "
-                  "file, by sensor; only `topic` applies here and chooses a sensor");
+                  "file, by sensor; only the topic applies here and chooses a sensor");
 }
 
 }  // namespace adasplats

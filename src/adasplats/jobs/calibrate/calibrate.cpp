@@ -90,8 +90,13 @@ std::string lasers_text(const LaserOffsets& lasers) {
 /// Writes the files of a result below a folder and notes their names.
 class CalibrationFiles {
  public:
-  CalibrationFiles(fs::path folder, CalibrateResult& result, ProgressSink& progress)
-      : folder_(std::move(folder)), result_(result), progress_(progress) {}
+  /// `output`: the name of the folder when it is complete.
+  CalibrationFiles(fs::path folder, fs::path output, CalibrateResult& result,
+                   ProgressSink& progress)
+      : folder_(std::move(folder)),
+        output_(std::move(output)),
+        result_(result),
+        progress_(progress) {}
 
   void write() {
     if (!result_.calibration.empty()) {
@@ -138,10 +143,8 @@ class CalibrationFiles {
   }
 
   void write_rig() {
-    std::vector<fs::path> inputs;
-    for (const LoadedDrive& drive : result_.loaded.drives)
-      inputs.push_back(fs::absolute(drive.folder).lexically_normal());
-    write_file(named("rig.toml"), rig_toml(result_.mounts, inputs));
+    write_file(named("rig.toml"),
+               rig_toml(calibrated_rig(*result_.rig, result_.mounts, fs::absolute(output_))));
   }
 
   void write_lasers() {
@@ -152,7 +155,7 @@ class CalibrationFiles {
                calibrated_sensor_toml(result_.sensor, {lasers.range_m, lasers.elevation_rad}));
   }
 
-  fs::path folder_;
+  fs::path folder_, output_;
   CalibrateResult& result_;
   ProgressSink& progress_;
 };
@@ -163,6 +166,7 @@ void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session&
   auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   result.loaded = std::move(loaded);
   result.sensors = cloud.sensors;
+  result.rig = inputs.rig();
   if (cloud.sensors.empty() && (job.calibrate.ranges || job.calibrate.elevations))
     require_one_sensor(result.loaded.drives);
   auto [calibration, report] = calibrate_drives(
@@ -253,7 +257,7 @@ CalibrateResult run_calibrate(const CalibrateJob& job, Session& session) {
   CalibrateResult result = estimated(job, session);
   const std::string warning = warning_of(result.report);
   if (!result.calibration.empty() && !warning.empty()) session.progress.warn(warning);
-  CalibrationFiles(folder.path(), result, session.progress).write();
+  CalibrationFiles(folder.path(), job.output, result, session.progress).write();
   folder.commit();
   if (result.calibration.empty())
     throw Error(ErrorKind::data, "nothing calibrated: " + result.report.objection + " (" +

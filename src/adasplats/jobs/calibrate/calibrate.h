@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct CalibrateResult {
   LoadReport loaded;
   CalibrationReport report;
   Calibration calibration;
-  Trajectory given, corrected;       ///< poses of the scans
+  Trajectory given, corrected;  ///< poses of the scans
+  std::optional<Rig> rig;
   std::vector<CloudSensor> sensors;  ///< of a rig
   std::vector<RigMount> mounts;      ///< of these sensors
   std::string sensor;                ///< that measured all drives; empty: unknown

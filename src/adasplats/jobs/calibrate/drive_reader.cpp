@@ -14,7 +14,7 @@ DriveReader::DriveReader(const OpenInputs& inputs, Session& session)
 
 std::optional<DriveReader> DriveReader::of(const OpenInputs& inputs, std::size_t window_scans,
                                            Session& session) {
-  if (!inputs.are_drives() || !inputs.sensors().empty()) return std::nullopt;
+  if (!inputs.are_drives() || inputs.rig()) return std::nullopt;
   std::vector<std::size_t> counts;
   for (std::size_t k = 0; k < inputs.inputs().size(); ++k) counts.push_back(inputs.chosen_scans(k));
   // Of drives without a chosen scan load() says what is wrong.

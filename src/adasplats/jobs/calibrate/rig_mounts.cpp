@@ -9,7 +9,6 @@
 
 #include "adasplats/calibrate/map_alignment.h"
 #include "adasplats/core/constants.h"
-#include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/calibrate/calibration.h"
 
 namespace adasplats {
@@ -20,10 +19,7 @@ namespace fs = std::filesystem;
 /// With six digits behind the point.
 double rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
 
-std::string list_text(Vec3d v) {
-  return "[" + exact_text(rounded(v.x)) + ", " + exact_text(rounded(v.y)) + ", " +
-         exact_text(rounded(v.z)) + "]";
-}
+Vec3d rounded(Vec3d v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
 }  // namespace
 
@@ -77,21 +73,18 @@ nlohmann::ordered_json to_json(std::span<const RigMount> mounts, const Calibrati
   return list;
 }
 
-std::string rig_toml(std::span<const RigMount> mounts, std::span<const fs::path> inputs) {
-  std::string text =
-      "# Mounts in the frame of the first sensor, whose corrected poses are the trajectory.\n"
-      "trajectory = \"" +
-      mounts.front().name + "/trajectory.csv\"\n";
+Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const fs::path& folder) {
+  given.file = folder / "rig.toml";
   for (std::size_t k = 0; k < mounts.size(); ++k) {
+    RigSensor& sensor = given.sensors[k];
     const RigidTransform& mount = mounts[k].first_from_sensor;
-    text += "\n[[sensors]]\nname = \"" + mounts[k].name + "\"\n";
-    text += "input = " + nlohmann::json(inputs[k].string()).dump() + "\n";
-    text += "mount = " + list_text(mount.translation) + "\n";
-    text += "mount_rotation_deg = " + list_text(yaw_pitch_roll_deg(mount.rotation)) + "\n";
+    sensor.trajectory = folder / mounts.front().name / "trajectory.csv";
+    sensor.mount = rounded(mount.translation);
+    sensor.mount_rotation_deg = rounded(yaw_pitch_roll_deg(mount.rotation));
     if (mounts[k].clock_s != 0)
-      text += "time_offset_s = " + exact_text(rounded(mounts[k].clock_s)) + "\n";
+      sensor.time_offset_s = sensor.time_offset_s.value_or(0) + rounded(mounts[k].clock_s);
   }
-  return text;
+  return given;
 }
 
 }  // namespace adasplats

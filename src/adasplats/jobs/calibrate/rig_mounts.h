@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adasplats/calibrate/calibrate.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/maths/rigid_transform.h"
 
@@ -31,9 +32,9 @@ std::vector<RigMount> rig_mounts(std::span<const CloudSensor> sensors, const Tra
 nlohmann::ordered_json to_json(std::span<const RigMount> mounts, const CalibrationReport& report,
                                const Calibration& calibration);
 
-/// The file of the calibrated rig, for a folder with FIRST/trajectory.csv. `inputs`: of the
-/// sensors.
-std::string rig_toml(std::span<const RigMount> mounts,
-                     std::span<const std::filesystem::path> inputs);
+/// The rig with these mounts and clocks, for the file `folder`/rig.toml beside
+/// FIRST/trajectory.csv.
+Rig calibrated_rig(Rig given, std::span<const RigMount> mounts,
+                   const std::filesystem::path& folder);
 
 }  // namespace adasplats
