@@ -32,6 +32,8 @@ template <class Archive>
 void fields(Archive& archive, LaserOffsets& lasers) {
   archive("range_m", lasers.range_m);
   archive("elevation_rad", lasers.elevation_rad);
+  archive("azimuth_rad", lasers.azimuth_rad);
+  archive("cells", lasers.cells);
 }
 
 template <class Archive>
@@ -40,6 +42,8 @@ void fields(Archive& archive, Calibration& calibration) {
   archive("poses", calibration.poses);
   archive("lasers", calibration.lasers);
   archive("smooth_s", calibration.smooth_s);
+  archive("sensor", calibration.sensor);
+  archive("others", calibration.others);
 }
 
 template <class Archive>

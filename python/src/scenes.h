@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
 #include "bindings.h"
@@ -60,8 +61,9 @@ struct DriveArguments {
   bool rolling_shutter = false;
 
   void take(Keywords& keywords);
-  /// Errors: TypeError, ValueError.
-  std::vector<ScanMotion> scans_at(py::handle poses, const LidarModel& sensor) const;
+  /// `mount`: of the sensor in the frame of the poses. Errors: TypeError, ValueError.
+  std::vector<ScanMotion> scans_at(py::handle poses, const LidarModel& sensor,
+                                   const RigidTransform& mount = {}) const;
 };
 
 }  // namespace adasplats::python

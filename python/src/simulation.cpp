@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <deque>
 
+#include "adasplats/cloud/load/rig.h"
+#include "adasplats/jobs/scene/rig_sensors.h"
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 #include "clouds.h"
@@ -28,6 +30,12 @@ visibility, m. seed: of all random numbers. first_number: number of the first sc
 numbers depend on. Results do not depend on threads or device. Returns Scans. Raises TypeError,
 ValueError, OSError.)";
 
+constexpr const char* kRigDoc = R"(Simulate all sensors of a vehicle: {name: Scans}.
+
+rig: path of a rig file (docs/sensors.md), which has the sensors, their mounts, clocks and what hides
+them. poses, motion: of the vehicle. The times of scans are those of the sensors' clocks. The other
+keywords are those of simulate() and apply to every sensor. Raises TypeError, ValueError, OSError.)";
+
 constexpr const char* kIterDoc =
     R"(As simulate(), but an iterator that makes the scans on demand and holds only a few in memory.)";
 
@@ -47,24 +55,54 @@ struct Drive {
   }
 };
 
-std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, py::handle sensor,
-                                   py::handle poses, const py::kwargs& kwargs) {
-  Drive drive("simulate", sensor, poses, kwargs);
-  PythonProgress progress(drive.arguments.progress);
+/// The scans of one sensor; without the GIL. `time_offset_s`: subtracted from their times.
+std::shared_ptr<ScanList> simulated(const SceneObject& object, ScanSettings settings,
+                                    std::span<const ScanMotion> scans, std::uint64_t first_number,
+                                    double time_offset_s, ProgressSink& progress) {
   auto list = std::make_shared<ScanList>();
-  const py::gil_scoped_release released;
-  const auto lock = object->lock();
-  ScanSimulator simulator(*object->scene, std::move(drive.settings), object->executor);
+  ScanSimulator simulator(*object.scene, std::move(settings), object.executor);
   list->image_size = image_size_of(simulator.firings());
-  if (const LabelScheme* labels = object->scene->labels())
+  if (const LabelScheme* labels = object.scene->labels())
     list->labels = std::make_shared<LabelScheme>(*labels);
-  progress.begin_step("simulate", drive.scans.size());
-  simulator.run(drive.scans, drive.arguments.first_number, [&](std::size_t i, Scan scan) {
+  progress.begin_step("simulate", scans.size());
+  simulator.run(scans, first_number, [&](std::size_t i, Scan scan) {
+    scan.time_s -= time_offset_s;
     list->scans.push_back(std::make_shared<Scan>(std::move(scan)));
     progress.advance(i + 1);
   });
   progress.end_step();
   return list;
+}
+
+std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, py::handle sensor,
+                                   py::handle poses, const py::kwargs& kwargs) {
+  Drive drive("simulate", sensor, poses, kwargs);
+  PythonProgress progress(drive.arguments.progress);
+  const py::gil_scoped_release released;
+  const auto lock = object->lock();
+  return simulated(*object, std::move(drive.settings), drive.scans, drive.arguments.first_number, 0,
+                   progress);
+}
+
+py::dict simulate_rig(const std::shared_ptr<SceneObject>& object, py::handle rig, py::handle poses,
+                      const py::kwargs& kwargs) {
+  const auto arguments = arguments_of<SimulateArguments>("simulate_rig", kwargs);
+  std::vector<MountedSensor> sensors =
+      sensors_of_rig(read_rig_to_simulate(path_of(rig, "rig")), arguments.scan, arguments.seed);
+  for (MountedSensor& sensor : sensors)
+    sensor.scans = arguments.drive.scans_at(poses, sensor.settings.sensor, sensor.mount);
+  PythonProgress progress(arguments.progress);
+  py::dict lists;
+  for (MountedSensor& sensor : sensors) {
+    std::shared_ptr<ScanList> list = [&] {
+      const py::gil_scoped_release released;
+      const auto lock = object->lock();
+      return simulated(*object, std::move(sensor.settings), sensor.scans, arguments.first_number,
+                       sensor.time_offset_s, progress);
+    }();
+    lists[sensor.name.c_str()] = std::move(list);
+  }
+  return lists;
 }
 
 /// Makes the scans of a drive one by one.
@@ -131,13 +169,14 @@ void DriveArguments::take(Keywords& keywords) {
   keywords.take("rolling_shutter", rolling_shutter);
 }
 
-std::vector<ScanMotion> DriveArguments::scans_at(py::handle poses, const LidarModel& sensor) const {
-  const Trajectory at = trajectory_of(poses, "poses");
+std::vector<ScanMotion> DriveArguments::scans_at(py::handle poses, const LidarModel& sensor,
+                                                 const RigidTransform& mount) const {
+  const Trajectory at = mounted(trajectory_of(poses, "poses"), mount);
   if (!rolling_shutter) {
     if (!motion.is_none()) throw py::value_error("motion needs rolling_shutter=True");
     return still_scans(at);
   }
-  const Trajectory moves = motion.is_none() ? at : trajectory_of(motion, "motion");
+  const Trajectory moves = motion.is_none() ? at : mounted(trajectory_of(motion, "motion"), mount);
   if (moves.size() < 2)
     throw py::value_error("rolling_shutter needs at least two poses for the motion");
   if (fires_at_once(sensor)) return still_scans(at);
@@ -154,6 +193,8 @@ void add_simulation(SceneClass& type) {
       .def("__next__", &ScanIterator::next);
   type.def("simulate", &simulate, py::arg("sensor"), py::arg("poses"),
            doc_of("simulate", kSimulateDoc).c_str());
+  type.def("simulate_rig", &simulate_rig, py::arg("rig"), py::arg("poses"),
+           documented<SimulateArguments>("simulate_rig", "self, rig, poses", kRigDoc).c_str());
   type.def(
       "iter_scans",
       [](const std::shared_ptr<SceneObject>& object, py::handle sensor, py::handle poses,

@@ -45,7 +45,7 @@ class Manifest(ProgramTest):
         folder = self.folder / f"scans {self.count}"
         places = {"--trajectory", "--at", "--path"}
         defaults = [] if places & set(words) else ["--trajectory", trajectory or self.poses]
-        if "--sensor" not in words:
+        if "--sensor" not in words and "--rig" not in words:
             defaults += ["--sensor", self.sensor]
         self.run_good("simulate", model or self.place, *defaults, "-o", folder, *words)
         text = (folder / "adasplats.json").read_text(encoding="utf-8")
@@ -61,8 +61,11 @@ class Manifest(ProgramTest):
         write_poses(more, 5)
         sensor = self.file("other.toml", SENSOR.replace("16", "15"))
         unit = self.file("unit.toml", SENSOR + f"range_offsets_m = {[0.01 * k for k in range(16)]}\n")
+        rig = '[[sensors]]\nname = "a"\nsensor = "velodyne-vlp-16"\n'
+        rigs = [self.file("rig.toml", rig), self.file("moved.toml", rig + "mount = [0, 0, 0.1]\n")]
         return {
             "--sensor": ([], ["--sensor", sensor]),
+            "--rig": (["--rig", rigs[0]], ["--rig", rigs[1]]),
             "--labels": ([], ["--labels", self.file("scheme.toml", SCHEME)]),
             "--trajectory": ([], ["--trajectory", more]),
             "--at": (["--at", "5,0"], ["--at", "5,0", "--at", "6,0,2,90"]),

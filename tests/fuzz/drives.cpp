@@ -10,12 +10,14 @@
 #include "adasplats/cloud/load/nuscenes_drive.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/pandaset_drive.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "fuzz_readers.h"
 
 namespace adasplats::fuzz {
@@ -88,6 +90,22 @@ void open_nuscenes(const Input& input) {
     const TimedPose& pose = scene.scans[k].pose;
     require(is_finite(pose.world_from_sensor.translation), "poses that are finite");
     require(k == 0 || pose.time_s > scene.scans[k - 1].pose.time_s, "times that ascend");
+  }
+}
+
+void read_rig_text(const Input& input) {
+  const Rig rig = parse_rig(read_file(input.file), input.file);
+  const Rig back = parse_rig(rig_toml(rig), input.file);
+  require(!rig.sensors.empty() && back.sensors.size() == rig.sensors.size(), "sensors");
+  require(back.body.size() == rig.body.size(), "the same body in the text of the rig");
+  for (std::size_t k = 0; k < rig.sensors.size(); ++k) {
+    const RigSensor &one = rig.sensors[k], &other = back.sensors[k];
+    require(is_finite(one.mount.value_or(Vec3d{})), "mounts that are finite");
+    require(one.name == other.name && one.mount == other.mount &&
+                one.mount_rotation_deg == other.mount_rotation_deg &&
+                one.time_offset_s == other.time_offset_s && one.topic == other.topic &&
+                one.body.size() == other.body.size() && one.is_in_model == other.is_in_model,
+            "the same sensor in the text of the rig");
   }
 }
 

@@ -52,6 +52,7 @@ void open_kitti_raw(const Input& input);
 void open_pandaset(const Input& input);
 void open_av2(const Input& input);
 void open_nuscenes(const Input& input);
+void read_rig_text(const Input& input);
 
 // settings.cpp
 void read_lidar_file(const Input& input);

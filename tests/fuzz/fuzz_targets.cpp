@@ -96,6 +96,7 @@ constexpr FuzzTarget kTargets[] = {
      "v1.0-mini/sensor.json v1.0-mini/calibrated_sensor.json v1.0-mini/ego_pose.json "
      "v1.0-mini/lidarseg.json v1.0-mini/category.json",
      "cloud/load/nuscenes_drive.cpp cloud/load/json_rows.cpp", &open_nuscenes},
+    {"rig", "a.toml", "cloud/load/rig.cpp", &read_rig_text},
     // Settings
     {"sensor-toml", "a.toml",
      "sensors/lidar_toml.cpp sensors/lidar_file.cpp sensors/toml_table.cpp", &read_lidar_file},

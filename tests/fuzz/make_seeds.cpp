@@ -397,6 +397,12 @@ void add_drives(Seeds& seeds) {
 }
 
 void add_settings(Seeds& seeds) {
+  seeds.add("rig",
+            {"trajectory = \"p.csv\"\nbody = [[1, 0, 0.75, 4.5, 1.8, 1.5]]\n[[sensors]]\n"
+             "name = \"a\"\ninput = \"a/\"\nsensor = \"velodyne-vlp-16\"\ntopic = \"/t\"\n"
+             "mount = [1, -2, 0.5]\nmount_rotation_deg = [90, 5, 180]\ntime_offset_s = -0.02\n"
+             "in_model = false\n[[sensors]]\nname = \"b\"\npoints_in = \"world\"\n"
+             "sweep_points = \"measured\"\nbody = [[0, 0, 0, 1, 1, 1], [1, 2, 3, 4, 5, 6]]\n"});
   for (const LibraryLidar& lidar : lidar_library())
     if (lidar.toml.size() < 1500) seeds.add("sensor-toml", {std::string(lidar.toml)});
   seeds.add("sensor-toml",

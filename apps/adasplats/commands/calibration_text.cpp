@@ -59,7 +59,25 @@ std::string not_observed_text(const MountEstimate& found) {
   return text;
 }
 
-std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
+namespace {
+
+/// Of one sensor of a rig but the first.
+std::string sensor_text(const CalibrationReport& report) {
+  const MapAlignment& aligned = *report.aligned;
+  std::string text = report.sensor + ": mount turned by " +
+                     fixed(length(aligned.mount.rotation_rad) / kDegree, 3) +
+                     " deg and shifted by " + centimetres(length(aligned.mount.shift_m)) +
+                     ", clock " + fixed(1e3 * aligned.clock_s, 1) + " ms; " +
+                     fixed(100 * aligned.share, 1) +
+                     " % of its points are near surfaces of the sensors before it (" +
+                     fixed(100 * aligned.given_share, 1) + " % as given)";
+  if (!report.objection.empty())
+    return text + "; poses and lasers as given: " + report.objection + "\n";
+  return text + "; held-out points are " + centimetres(report.calibrated_m) + " from planes (" +
+         centimetres(report.given_m) + " before)\n";
+}
+
+std::string first_text(const CalibrationReport& report, const Calibration& calibration) {
   const std::string windows = report.windows ? windows_text(*report.windows) : std::string();
   if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n" + windows;
   std::string text;
@@ -71,6 +89,15 @@ std::string calibration_text(const CalibrationReport& report, const Calibration&
   return text + "; held-out points are " + centimetres(report.calibrated_m) + " from planes (" +
          centimetres(report.given_m) + " before); the scene as a whole stays at the given poses\n" +
          windows;
+}
+
+}  // namespace
+
+std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
+  std::string text = first_text(report, calibration);
+  if (!report.sensor.empty()) text = report.sensor + ": " + text;
+  for (const CalibrationReport& other : report.others) text += sensor_text(other);
+  return text;
 }
 
 }  // namespace adasplats::app

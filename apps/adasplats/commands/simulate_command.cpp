@@ -25,6 +25,7 @@ constexpr const char* kSimulateExamples =
     "      --offset 1,1,-0.5 -o scans --format npy\n"
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
+    "  adasplats simulate street.ply --rig car.toml --trajectory poses.csv -o scans --format mcap\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
     "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
     "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
@@ -45,6 +46,9 @@ class SimulateCommand final : public Command {
                    "Sensor: a name from 'adasplats sensors', or a file")
         ->capture_default_str()
         ->type_name("NAME|FILE")
+        ->basic();
+    add_path(app, "--rig", job_.rig,
+             "Instead of --sensor: rig file with the sensors of a car (TOML)")
         ->basic();
     add_labels_option(app, job_.labels, "that of the model");
     add_drive_options(app);
@@ -131,6 +135,9 @@ class SimulateCommand final : public Command {
 
   void check_options() const {
     if (!job_.scan.noise) reject({"--range-noise"}, "with --no-noise");
+    if (!job_.rig.empty())
+      reject({"--sensor", "--mount", "--mount-rotation"},
+             "with --rig, whose file has the sensors and their mounts");
     if (!job_.drive.rolling_shutter) reject({"--points"}, "without --rolling-shutter");
     if (!is_tree(job_.format))
       reject({"--point-order"}, "with formats that are not trees of a data set");
@@ -145,7 +152,7 @@ class SimulateCommand final : public Command {
   void add_drive_options(OptionSet& app) {
     constexpr const char* kGroup = "Trajectory";
     add_path(app, "--trajectory", job_.drive.trajectory,
-             "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording")
+             "Poses of sensor or car: KITTI, CSV, TUM, sequence folder or recording")
         ->group(kGroup)
         ->basic();
     add_places(app, "--at", job_.drive.at,

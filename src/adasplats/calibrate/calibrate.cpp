@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::size_t kLeftOut = 8;  // every eighth point is held out
 constexpr double kValidationFlatness_m = 0.1;
+constexpr double kFixed = 1e12;          // weight that keeps a pose
 constexpr double kMaxDistance_m = 0.25;  // of a point in the comparison of mounts
 
 double between(double first, double last, int round, int rounds) {
@@ -62,6 +63,8 @@ class Calibrator {
     corrected_from_mounted_.resize(positions_.size());
     corrections_.offsets.range_m.resize(lasers_);
     corrections_.offsets.elevation_rad.resize(lasers_);
+    corrections_.offsets.azimuth_rad.resize(lasers_);
+    free_ = std::min(options.free_scans, positions_.size());
     compose();
     choose_points();
     steps_.load(cloud_, few_, all_, axes_, lasers_);
@@ -74,7 +77,7 @@ class Calibrator {
     const bool is_mounted = report.mount && report.mount->objection.empty();
     double before_m = report.given_m;
     if (is_mounted) validate(before_m, report.calibrated);
-    if (!options_.poses && !options_.ranges && !options_.elevations)
+    if (!options_.poses && !options_.ranges && !options_.elevations && !options_.azimuths)
       report.objection = is_mounted || !report.mount ? "nothing else was asked for"
                                                      : "the mount: " + report.mount->objection;
     for (int round = 0; round < options_.rounds && report.objection.empty(); ++round)
@@ -109,7 +112,8 @@ class Calibrator {
                     between(options_.first_width_m, options_.last_width_m, round, options_.rounds),
                     options_.poses,
                     options_.ranges,
-                    options_.elevations};
+                    options_.elevations,
+                    options_.azimuths};
     steps_.choose_rows(rows);
     for (int step = 0; step < options_.steps; ++step) make_step(rows);
   }
@@ -119,6 +123,7 @@ class Calibrator {
     corrections_.offsets = {};
     corrections_.offsets.range_m.resize(lasers_);
     corrections_.offsets.elevation_rad.resize(lasers_);
+    corrections_.offsets.azimuth_rad.resize(lasers_);
     compose();
     validate(report.calibrated_m, report.calibrated);
     corrections_.offsets = {};
@@ -149,6 +154,8 @@ class Calibrator {
       all_.scans[next[chunk]++] = cloud_.scan_indices[i];
     });
     all_.left_out_every = kLeftOut;
+    const auto of_map = std::ranges::find_if(all_.scans, [&](auto scan) { return scan >= free_; });
+    all_.left_out_end = static_cast<std::uint32_t>(of_map - all_.scans.begin());
     for (std::size_t k = 0; k < count; k += options_.coarse_stride) {
       if (all_.is_left_out(k)) continue;
       few_.indices.push_back(all_.indices[k]);
@@ -277,7 +284,10 @@ class Calibrator {
     const auto weight = [&](double sigma) {
       return std::pow(options_.residual_sigma_m / sigma, 2);
     };
-    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
+    for (std::size_t scan = free_; scan < positions_.size(); ++scan)
+      for (std::size_t unknown = 0; unknown < 6; ++unknown)
+        system.add_pose_prior(scan, unknown, kFixed, 0);
+    for (std::size_t scan = 0; scan < free_; ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d turned = rotation_vector(correction.rotation);
       const Vec3d position = positions_[scan];
@@ -289,12 +299,17 @@ class Calibrator {
                               -shifted[axis]);
       }
     }
+    const LaserOffsets& offsets = corrections_.offsets;
     for (std::size_t laser = 0; has_lasers && laser < lasers_; ++laser) {
       system.add_laser_prior(laser, 0, weight(options_.range_sigma_m), options_.range_share,
-                             -corrections_.offsets.range_m[laser]);
+                             -offsets.range_m[laser]);
       system.add_laser_prior(laser, 1, weight(options_.elevation_sigma_rad),
-                             options_.elevation_share, -corrections_.offsets.elevation_rad[laser]);
+                             options_.elevation_share, -offsets.elevation_rad[laser]);
+      system.add_laser_prior(laser, 2, weight(options_.elevation_sigma_rad),
+                             options_.elevation_share, -offsets.azimuth_rad[laser]);
     }
+    if (has_lasers && options_.range_mean_share > 0)
+      system.pull_ranges_to_mean(options_.range_mean_share, offsets.range_m);
   }
 
   void make_step(const RowOptions& rows) {
@@ -307,14 +322,16 @@ class Calibrator {
   }
 
   void apply(const PlaneStep& step) {
-    for (std::size_t scan = 0; options_.poses && scan < positions_.size(); ++scan) {
+    for (std::size_t scan = 0; options_.poses && scan < free_; ++scan) {
       RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d pivot = correction * positions_[scan];
       const double* const x = step.poses.data() + 6 * scan;
       correction = moved_about(pivot, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * correction;
     }
-    if (options_.ranges) add_centred(corrections_.offsets.range_m, step.lasers, 0);
-    if (options_.elevations) add_centred(corrections_.offsets.elevation_rad, step.lasers, 1);
+    LaserOffsets& offsets = corrections_.offsets;
+    if (options_.ranges) add_step(offsets.range_m, step.lasers, 0, has_map());
+    if (options_.elevations) add_step(offsets.elevation_rad, step.lasers, 1, false);
+    if (options_.azimuths) add_step(offsets.azimuth_rad, step.lasers, 2, false);
     compose();
   }
 
@@ -351,19 +368,27 @@ class Calibrator {
     return {};
   }
 
-  /// Removes the mean, because a common offset does not calibrate lasers against each other.
-  static void add_centred(std::vector<double>& offsets, const std::vector<double>& steps,
-                          std::size_t which) {
-    double mean = 0;
-    for (std::size_t k = 0; k < offsets.size(); ++k) {
-      offsets[k] += steps[2 * k + which];
-      mean += offsets[k] / static_cast<double>(offsets.size());
-    }
+  /// Removes the mean unless it is observed: a common offset does not calibrate lasers against
+  /// each other.
+  static void add_step(std::vector<double>& offsets, const std::vector<double>& steps,
+                       std::size_t which, bool keeps_mean) {
+    for (std::size_t k = 0; k < offsets.size(); ++k)
+      offsets[k] += steps[kLaserUnknowns * k + which];
+    const double mean = keeps_mean ? 0 : mean_of(offsets);
     for (double& offset : offsets) offset -= mean;
   }
 
+  static double mean_of(const std::vector<double>& values) {
+    double mean = 0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    return mean;
+  }
+
+  bool has_map() const { return free_ < positions_.size(); }
+
   /// Aligns all poses to the given ones, with the mount corrected, by one rigid motion.
   void align_to_mounted() {
+    if (has_map()) return;
     std::vector<PoseCorrection> poses;
     for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
@@ -387,7 +412,7 @@ class Calibrator {
   Calibration calibration() const {
     Calibration result;
     result.mount = mount_;
-    for (std::size_t scan = 0; scan < positions_.size(); ++scan) {
+    for (std::size_t scan = 0; scan < free_; ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
       const TimedPose& given = cloud_.scan_poses[scan];
       const Vec3d position = given.world_from_sensor.translation - cloud_.origin;
@@ -409,9 +434,9 @@ class Calibrator {
   std::vector<Vec3d> axes_;       ///< of the sensor's rotation, upwards
   std::vector<RigidTransform> mounted_from_given_;
   std::vector<RigidTransform> corrected_from_mounted_;
-  std::size_t lasers_ = 0;
-  ChosenPoints all_;  ///< for the last rounds and for validation
-  ChosenPoints few_;  ///< for the rounds before
+  std::size_t lasers_ = 0, free_ = 0;  ///< numbers of lasers and of scans without the map
+  ChosenPoints all_;                   ///< for the last rounds and for validation
+  ChosenPoints few_;                   ///< for the rounds before
   MountCorrection mount_;
   ScanCorrections corrections_;  ///< of mount, scans and lasers
 };

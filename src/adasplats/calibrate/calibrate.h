@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "adasplats/calibrate/calibration_steps.h"
+#include "adasplats/calibrate/map_alignment.h"
 #include "adasplats/calibrate/mount.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/calibrate/windows_report.h"
@@ -48,6 +51,10 @@ struct CalibrateOptions {
   /// Nothing is applied if there are fewer planes, if less than this share of their weight
   /// constrains the poses along some direction, or if the residual of held-out points does not fall
   /// below this share.
+  /// Scans from this number on are a map: their poses stay, and their points are not held out.
+  std::size_t free_scans = std::numeric_limits<std::size_t>::max();
+  bool azimuths = false;        ///< one offset a laser, for lasers that are cells of directions
+  double range_mean_share = 0;  ///< pulls ranges towards their mean, as range_share towards zero
   std::size_t min_planes = 100;
   double min_share = 0.002, min_gain = 0.98;
   ScanPlaneOptions planes;  ///< except the flatness
@@ -103,7 +110,10 @@ struct CalibrationReport {
   Vec3d weakest;                     ///< ...the direction in which they constrain the poses least
   std::string objection;             ///< why nothing is applied; empty if the evidence is clear
   std::optional<MountReport> mount;  ///< nothing if not requested
-  std::optional<WindowsReport> windows;  ///< nothing if all scans were solved at once
+  std::optional<WindowsReport> windows;   ///< nothing if all scans were solved at once
+  std::string sensor;                     ///< its name in the rig; empty: no rig
+  std::optional<MapAlignment> aligned;    ///< mount and clock of a sensor of a rig
+  std::vector<CalibrationReport> others;  ///< of the other sensors of the rig
 };
 
 /// Estimates the errors of a recording from planes that several of its scans saw. The absolute

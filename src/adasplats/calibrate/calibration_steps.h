@@ -20,10 +20,10 @@ namespace adasplats {
 struct ChosenPoints {
   std::vector<std::uint32_t> indices;  ///< into the cloud
   std::vector<std::uint32_t> scans;    ///< one per point
-  /// Every n-th point is held out for validation; 0: none.
-  std::uint32_t left_out_every = 0;
+  /// Every n-th of the first points is held out for validation.
+  std::uint32_t left_out_every = 1, left_out_end = 0;
 
-  bool is_left_out(std::size_t k) const { return left_out_every != 0 && k % left_out_every == 0; }
+  bool is_left_out(std::size_t k) const { return k < left_out_end && k % left_out_every == 0; }
 };
 
 /// Current estimates.
@@ -35,10 +35,11 @@ struct ScanCorrections {
 
 /// Options of the sums over the distances of points from planes.
 struct RowOptions {
-  std::size_t max_points = 400;                         ///< used per plane
-  double max_weight = 200;                              ///< of a plane, in points
-  double width_m = 0;                                   ///< of the robust weight
-  bool poses = true, ranges = true, elevations = true;  ///< estimated unknowns
+  std::size_t max_points = 400;  ///< used per plane
+  double max_weight = 200;       ///< of a plane, in points
+  double width_m = 0;            ///< of the robust weight
+  // Estimated unknowns.
+  bool poses = true, ranges = true, elevations = true, azimuths = false;
 };
 
 /// Sum of the bounded distances of held-out points from one plane.

@@ -83,7 +83,7 @@ class CalibrationStepsOn final : public CalibrationSteps {
   void choose_rows(const RowOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
     const Set& set = set_of(searched_);
-    const bool has_lasers = options.ranges || options.elevations;
+    const bool has_lasers = options.ranges || options.elevations || options.azimuths;
     sums_.choose(members(), search_.planes().size(), options, set.scans.data(), set.indices.data(),
                  lasers_.data(), scan_count_, has_lasers ? laser_count_ : 0);
     backend_.wait("order points on planes");
@@ -108,7 +108,7 @@ class CalibrationStepsOn final : public CalibrationSteps {
 
   struct Set {
     Lent<std::uint32_t> indices, scans;
-    std::uint32_t left_out_every = 0;
+    std::uint32_t left_out_every = 1, left_out_end = 0;
     Array<Vec3d> corrected;
   };
 
@@ -118,6 +118,7 @@ class CalibrationStepsOn final : public CalibrationSteps {
     set.indices = backend_.lent(points.indices);
     set.scans = backend_.lent(points.scans);
     set.left_out_every = points.left_out_every;
+    set.left_out_end = points.left_out_end;
   }
 
   void take(const ScanCorrections& corrections) {
@@ -125,16 +126,19 @@ class CalibrationStepsOn final : public CalibrationSteps {
     pivots_ = backend_.copied(corrections.pivots);
     range_m_ = backend_.copied(corrections.offsets.range_m);
     elevation_rad_ = backend_.copied(corrections.offsets.elevation_rad);
+    azimuth_rad_ = backend_.copied(corrections.offsets.azimuth_rad);
   }
 
   RaysView rays() const {
     return {positions_.data(),     sensors_.data(),       scan_indices_.data(),
             data_or_null(lasers_), axes_.data(),          corrected_from_given_.data(),
-            range_m_.data(),       elevation_rad_.data(), laser_count_};
+            range_m_.data(),       elevation_rad_.data(), azimuth_rad_.data(),
+            laser_count_};
   }
 
   PlaneMembers members() {
-    return {search_.planes().data(), search_.order().data(), set_of(searched_).left_out_every};
+    const Set& set = set_of(searched_);
+    return {search_.planes().data(), search_.order().data(), set.left_out_every, set.left_out_end};
   }
 
   Backend backend_;
@@ -149,7 +153,7 @@ class CalibrationStepsOn final : public CalibrationSteps {
   PointSet searched_ = PointSet::few;
   Array<RigidTransform> corrected_from_given_;
   Array<Vec3d> pivots_;
-  Array<double> range_m_, elevation_rad_;
+  Array<double> range_m_, elevation_rad_, azimuth_rad_;
 };
 
 }  // namespace adasplats

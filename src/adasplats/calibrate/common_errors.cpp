@@ -56,9 +56,11 @@ double robust_mean(const std::vector<Weighted>& values) {
   return mean;
 }
 
-/// Pools one list of offsets and removes its mean; returns the RMS difference of the windows.
+/// Pools one list of offsets and removes its mean unless it is observed; returns the RMS difference
+/// of the windows.
 double pool_offsets(std::span<const WindowFinding> findings,
-                    std::vector<double> LaserOffsets::*which, std::vector<double>& result) {
+                    std::vector<double> LaserOffsets::*which, bool keeps_mean,
+                    std::vector<double>& result) {
   double mean = 0;
   for (std::size_t laser = 0; laser < result.size(); ++laser) {
     std::vector<Weighted> values;
@@ -69,7 +71,7 @@ double pool_offsets(std::span<const WindowFinding> findings,
     mean += result[laser] / static_cast<double>(result.size());
   }
   double square = 0, count = 0;
-  for (double& offset : result) offset -= mean;
+  for (double& offset : result) offset -= keeps_mean ? 0 : mean;
   for (const WindowFinding& finding : findings)
     for (std::size_t laser = 0; laser < (finding.lasers.*which).size(); ++laser) {
       square += std::pow((finding.lasers.*which)[laser] - result[laser], 2);
@@ -78,7 +80,8 @@ double pool_offsets(std::span<const WindowFinding> findings,
   return count > 0 ? std::sqrt(square / count) : 0;
 }
 
-void pool_lasers(std::span<const WindowFinding> findings, CommonErrors& common) {
+void pool_lasers(std::span<const WindowFinding> findings, bool keeps_range_mean,
+                 CommonErrors& common) {
   std::size_t lasers = 0;
   for (const WindowFinding& finding : findings) {
     lasers = std::max(lasers, finding.lasers.range_m.size());
@@ -87,9 +90,11 @@ void pool_lasers(std::span<const WindowFinding> findings, CommonErrors& common) 
   common.lasers.range_m.resize(lasers);
   common.lasers.elevation_rad.resize(lasers);
   common.range_disagreement_m =
-      pool_offsets(findings, &LaserOffsets::range_m, common.lasers.range_m);
+      pool_offsets(findings, &LaserOffsets::range_m, keeps_range_mean, common.lasers.range_m);
   common.elevation_disagreement_rad =
-      pool_offsets(findings, &LaserOffsets::elevation_rad, common.lasers.elevation_rad);
+      pool_offsets(findings, &LaserOffsets::elevation_rad, false, common.lasers.elevation_rad);
+  common.lasers.azimuth_rad.resize(lasers);
+  pool_offsets(findings, &LaserOffsets::azimuth_rad, false, common.lasers.azimuth_rad);
 }
 
 using MountColumn = ChainSystem::Column;
@@ -216,9 +221,10 @@ void pool_mount(std::span<const WindowFinding> findings, const MountOptions& opt
 
 }  // namespace
 
-CommonErrors pooled(std::span<const WindowFinding> findings, const MountOptions& options) {
+CommonErrors pooled(std::span<const WindowFinding> findings, const MountOptions& options,
+                    bool keeps_range_mean) {
   CommonErrors common;
-  pool_lasers(findings, common);
+  pool_lasers(findings, keeps_range_mean, common);
   pool_mount(findings, options, common);
   return common;
 }

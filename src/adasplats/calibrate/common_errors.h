@@ -26,10 +26,12 @@ struct CommonErrors {
   double mount_disagreement_rad = 0, mount_disagreement_m = 0;  ///< maximum from the pooled mount
 };
 
-/// Pools the findings of all windows. Offsets of a laser: mean over the windows, weighted by their
+/// Pools the findings of all windows; `keeps_range_mean`: the mean range offset is observed, from a
+/// map. Offsets of a laser: mean over the windows, weighted by their
 /// points; windows far from the weighted median have little weight. Mount: least squares, each
 /// window in the directions that it observes. Without a mount, and with an objection, unless more
 /// than half of the windows with enough planes found a mount error.
-CommonErrors pooled(std::span<const WindowFinding> findings, const MountOptions& options);
+CommonErrors pooled(std::span<const WindowFinding> findings, const MountOptions& options,
+                    bool keeps_range_mean = false);
 
 }  // namespace adasplats

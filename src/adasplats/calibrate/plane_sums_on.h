@@ -245,18 +245,18 @@ class PlaneSumsOn {
   }
 
   std::vector<double> coupled_lasers(const double* of_poses) {
-    backend_.resize(laser_parts_, 2 * lasers_.chunks.size());
+    backend_.resize(laser_parts_, kLaserUnknowns * lasers_.chunks.size());
     backend_.for_each(lasers_.chunks.size(), "couple lasers",
                       CoupleLaserChunk{lasers_.view(), lasers_.chunks.data(), laser_entries_.data(),
                                        of_planes_.data(), laser_parts_.data()});
-    backend_.resize(of_lasers_, 2 * laser_count_);
-    backend_.for_each(
-        of_lasers_.size(), "couple lasers",
-        FinishLaser{{laser_parts_.data(), lasers_.chunk_begins.data(), 2, of_lasers_.data()},
-                    crossings_.data(),
-                    scan_count_,
-                    laser_count_,
-                    of_poses});
+    backend_.resize(of_lasers_, kLaserUnknowns * laser_count_);
+    backend_.for_each(of_lasers_.size(), "couple lasers",
+                      FinishLaser{{laser_parts_.data(), lasers_.chunk_begins.data(), kLaserUnknowns,
+                                   of_lasers_.data()},
+                                  crossings_.data(),
+                                  scan_count_,
+                                  laser_count_,
+                                  of_poses});
     return backend_.on_host(of_lasers_);
   }
 

@@ -90,12 +90,28 @@ void PlaneSystem::add_pose_prior(std::size_t scan, std::size_t unknown, double w
 void PlaneSystem::add_laser_prior(std::size_t laser, std::size_t unknown, double weight,
                                   double share, double value) {
   LaserBlock& block = blocks_.lasers[laser];
-  add_prior(block, unknown, weight + share * block.full[unknown * 3], value);
+  add_prior(block, unknown, weight + share * block.full[unknown * (kLaserUnknowns + 1)], value);
+}
+
+double PlaneSystem::pulled_mean(const std::vector<double>& values, std::size_t stride) const {
+  double sum = 0, weight = 0;
+  for (std::size_t laser = 0; laser < pulls_.size(); ++laser) {
+    sum += pulls_[laser] * values[laser * stride];
+    weight += pulls_[laser];
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+void PlaneSystem::pull_ranges_to_mean(double share, const std::vector<double>& ranges_m) {
+  for (const LaserBlock& block : blocks_.lasers) pulls_.push_back(share * block.full[0]);
+  const double mean_m = pulled_mean(ranges_m, 1);
+  for (std::size_t laser = 0; laser < pulls_.size(); ++laser)
+    add_prior(blocks_.lasers[laser], 0, pulls_[laser], mean_m - ranges_m[laser]);
 }
 
 PlaneStep PlaneSystem::solve(double tolerance, int max_iterations, PlaneProduct coupled) const {
   const Preconditioner<6> of_poses(blocks_.poses);
-  const Preconditioner<2> of_lasers(blocks_.lasers);
+  const Preconditioner<kLaserUnknowns> of_lasers(blocks_.lasers);
   const auto preconditioned = [&](const PlaneStep& r) {
     return PlaneStep{of_poses(r.poses), of_lasers(r.lasers)};
   };
@@ -107,6 +123,9 @@ PlaneStep PlaneSystem::solve(double tolerance, int max_iterations, PlaneProduct 
   const double enough = tolerance * tolerance * energy;
   for (int k = 0; k < max_iterations && energy > enough; ++k) {
     PlaneStep product = coupled(direction);
+    const double mean = pulled_mean(direction.lasers, kLaserUnknowns);
+    for (std::size_t laser = 0; laser < pulls_.size(); ++laser)
+      product.lasers[laser * kLaserUnknowns] -= pulls_[laser] * mean;
     add_full(blocks_.poses, direction.poses, product.poses);
     add_full(blocks_.lasers, direction.lasers, product.lasers);
     const double curvature = dot_of(direction, product);

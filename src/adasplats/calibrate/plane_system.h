@@ -10,8 +10,11 @@
 
 namespace adasplats {
 
-/// Normal equations of the unknowns of one scan (N = 6: rotation and translation) or laser (N = 2:
-/// range and elevation). Row-major matrices.
+/// Unknowns of a laser: range, elevation, azimuth.
+inline constexpr std::size_t kLaserUnknowns = 3;
+
+/// Normal equations of the unknowns of one scan (N = 6: rotation and translation) or laser (N =
+/// kLaserUnknowns). Row-major matrices.
 template <std::size_t N>
 struct UnknownsBlock {
   double full[N * N]{};     ///< with fixed planes
@@ -19,7 +22,7 @@ struct UnknownsBlock {
   double right[N]{};        ///< with the planes eliminated
 };
 using PoseBlock = UnknownsBlock<6>;
-using LaserBlock = UnknownsBlock<2>;
+using LaserBlock = UnknownsBlock<kLaserUnknowns>;
 
 struct PlaneBlocks {
   std::vector<PoseBlock> poses;
@@ -29,7 +32,7 @@ struct PlaneBlocks {
 /// A value for every unknown.
 struct PlaneStep {
   std::vector<double> poses;   ///< six a scan
-  std::vector<double> lasers;  ///< two a laser
+  std::vector<double> lasers;  ///< kLaserUnknowns a laser
 };
 
 /// A Gauss-Newton step over poses and lasers. The unknowns of each plane are eliminated (Schur
@@ -49,12 +52,19 @@ class PlaneSystem {
   void add_laser_prior(std::size_t laser, std::size_t unknown, double weight, double share,
                        double value);
 
+  /// Pulls the ranges of all lasers to their common mean, which stays free, with `share` of each
+  /// one's diagonal. `ranges_m`: their present values.
+  void pull_ranges_to_mean(double share, const std::vector<double>& ranges_m);
+
   /// Iterates until the residual is below `tolerance` times the right-hand side, at most
   /// `max_iterations` times.
   PlaneStep solve(double tolerance, int max_iterations, PlaneProduct coupled) const;
 
  private:
+  double pulled_mean(const std::vector<double>& values, std::size_t stride) const;
+
   PlaneBlocks blocks_;
+  std::vector<double> pulls_;  ///< weights of the ranges' distances from their mean; empty: none
 };
 
 }  // namespace adasplats

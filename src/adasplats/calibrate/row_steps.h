@@ -29,6 +29,7 @@ struct RaysView {
   const RigidTransform* corrected_from_given;  ///< one per scan
   const double* range_m;                       ///< one per laser
   const double* elevation_rad;                 ///< one per laser
+  const double* azimuth_rad;                   ///< one per laser
   std::size_t laser_count;
 
   ADASPLATS_HD std::uint16_t laser_of(std::uint32_t i) const {
@@ -39,9 +40,10 @@ struct RaysView {
     const std::uint16_t laser = laser_of(i);
     const Vec3d end = vec_cast<double>(positions[i]);
     return corrected_from_given[scan] *
-           (laser >= laser_count ? end
-                                 : corrected_end(vec_cast<double>(sensors[i]), end, axes[scan],
-                                                 range_m[laser], elevation_rad[laser]));
+           (laser >= laser_count
+                ? end
+                : corrected_end(vec_cast<double>(sensors[i]), end, axes[scan], range_m[laser],
+                                elevation_rad[laser], azimuth_rad[laser]));
   }
 };
 
@@ -57,10 +59,10 @@ struct CorrectPoint {
 struct PlaneMembers {
   const ScanPlane* planes;
   const std::uint32_t* order;
-  std::uint32_t left_out_every;
+  std::uint32_t left_out_every, left_out_end;
 
   ADASPLATS_HD bool is_left_out(std::uint32_t k) const {
-    return left_out_every != 0 && k % left_out_every == 0;
+    return k < left_out_end && k % left_out_every == 0;
   }
   /// Calls take(k) for at most `max_points` points that are not held out.
   template <class Take>
@@ -114,7 +116,7 @@ struct PlaneRow {
   double residual_m;
   double u_m, v_m;  ///< coordinates in the plane
   double weight;    ///< before the weight of the plane is limited
-  double by_range, by_elevation;
+  double by_laser[kLaserUnknowns];
 };
 
 struct MeasureRow {
@@ -148,10 +150,13 @@ struct MeasureRow {
     if (!(range_m > 0)) return;
     const Vec3d direction = way / range_m;
     const Mat3d& rotation = rays.corrected_from_given[scan].rotation;
-    if (options.ranges) row.by_range = dot(plane.normal, rotation * direction);
+    if (options.ranges) row.by_laser[0] = dot(plane.normal, rotation * direction);
     if (options.elevations)
-      row.by_elevation =
+      row.by_laser[1] =
           range_m * dot(plane.normal, rotation * upward_across(direction, rays.axes[scan]));
+    if (options.azimuths)
+      row.by_laser[2] =
+          range_m * dot(plane.normal, rotation * sideways_across(direction, rays.axes[scan]));
   }
 };
 

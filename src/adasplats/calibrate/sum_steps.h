@@ -271,10 +271,13 @@ struct SumPoseChunk {
   }
 };
 
-/// Coupling of a laser with a plane (whitened, 3x2, row-major) and the laser's own block.
+/// Number of unknowns of a laser as an int, for loops.
+inline constexpr int kOfLaser = static_cast<int>(kLaserUnknowns);
+
+/// Coupling of a laser with a plane (whitened, 3 x kOfLaser, row-major) and the laser's own block.
 struct LaserEntry {
-  double whitened[6];
-  double full[4], right[2];
+  double whitened[3 * kOfLaser];
+  double full[kOfLaser * kOfLaser], right[kOfLaser];
 };
 
 struct SumLaserEntry {
@@ -293,22 +296,20 @@ struct SumLaserEntry {
          ++at) {
       const PlaneRow row = rows[row_order[at]];
       const double weight = factor.scale * row.weight;
-      const double by_laser[2] = {row.by_range, row.by_elevation};
-      for (int a = 0; a < 2; ++a) {
-        const double weighted = weight * by_laser[a];
+      for (int a = 0; a < kOfLaser; ++a) {
+        const double weighted = weight * row.by_laser[a];
         sum.whitened[a] += weighted;
-        sum.whitened[2 + a] += weighted * row.u_m;
-        sum.whitened[4 + a] += weighted * row.v_m;
-        sum.full[a * 2] += weighted * by_laser[0];
-        sum.full[a * 2 + 1] += weighted * by_laser[1];
+        sum.whitened[kOfLaser + a] += weighted * row.u_m;
+        sum.whitened[2 * kOfLaser + a] += weighted * row.v_m;
+        for (int b = 0; b < kOfLaser; ++b) sum.full[a * kOfLaser + b] += weighted * row.by_laser[b];
         sum.right[a] -= weighted * row.residual_m;
       }
     }
     double* const w = sum.whitened;
-    for (int a = 0; a < 2; ++a) {
-      factor.whiten(w[a], w[2 + a], w[4 + a]);
-      sum.right[a] +=
-          w[a] * factor.right[0] + w[2 + a] * factor.right[1] + w[4 + a] * factor.right[2];
+    for (int a = 0; a < kOfLaser; ++a) {
+      factor.whiten(w[a], w[kOfLaser + a], w[2 * kOfLaser + a]);
+      sum.right[a] += w[a] * factor.right[0] + w[kOfLaser + a] * factor.right[1] +
+                      w[2 * kOfLaser + a] * factor.right[2];
     }
     sums[e] = sum;
   }
@@ -327,12 +328,13 @@ struct SumLaserChunk {
     for (std::uint32_t k = chunks[c].begin; k < chunks[c].end; ++k) {
       const LaserEntry& entry = sums[entries.by_unknown[k]];
       const double* const w = entry.whitened;
-      for (int a = 0; a < 2; ++a) {
+      for (int a = 0; a < kOfLaser; ++a) {
         block.right[a] += entry.right[a];
-        for (int b = 0; b < 2; ++b) {
-          block.full[a * 2 + b] += entry.full[a * 2 + b];
-          block.reduced[a * 2 + b] +=
-              entry.full[a * 2 + b] - (w[a] * w[b] + w[2 + a] * w[2 + b] + w[4 + a] * w[4 + b]);
+        for (int b = 0; b < kOfLaser; ++b) {
+          block.full[a * kOfLaser + b] += entry.full[a * kOfLaser + b];
+          block.reduced[a * kOfLaser + b] +=
+              entry.full[a * kOfLaser + b] - (w[a] * w[b] + w[kOfLaser + a] * w[kOfLaser + b] +
+                                              w[2 * kOfLaser + a] * w[2 * kOfLaser + b]);
         }
       }
     }
@@ -340,9 +342,9 @@ struct SumLaserChunk {
   }
 };
 
-/// Coupling of one scan (rows of 6x2) and one laser (columns) by their common rows.
+/// Coupling of one scan (rows of 6 x kOfLaser) and one laser (columns) by their common rows.
 struct Crossing {
-  double values[12];
+  double values[6 * kOfLaser];
 };
 
 struct SumCrossing {
@@ -369,11 +371,11 @@ struct SumCrossing {
       const std::uint64_t plane = keys[r] >> scan_bits;
       const PlaneWrenches wrenches(planes[plane], pivot);
       const double weight = factors[plane].scale * row.weight;
-      const double by_laser[2] = {weight * row.by_range, weight * row.by_elevation};
       for (int a = 0; a < 6; ++a) {
         const double by_pose =
             wrenches.at(a, 0) + row.u_m * wrenches.at(a, 1) + row.v_m * wrenches.at(a, 2);
-        for (int b = 0; b < 2; ++b) sum.values[a * 2 + b] += by_pose * by_laser[b];
+        for (int b = 0; b < kOfLaser; ++b)
+          sum.values[a * kOfLaser + b] += by_pose * (weight * row.by_laser[b]);
       }
     }
     crossings[i] = sum;
@@ -444,9 +446,10 @@ struct CouplePlane {
     for (std::uint32_t e = lasers.plane_begins[plane]; e < lasers.plane_begins[plane + 1]; ++e) {
       const std::size_t laser = lasers.unknown_of(e);
       if (laser >= laser_count) continue;
-      const double* const x = of_lasers + 2 * laser;
+      const double* const x = of_lasers + kOfLaser * laser;
       const double* const w = laser_entries[e].whitened;
-      for (int r = 0; r < 3; ++r) sum.values[r] += w[2 * r] * x[0] + w[2 * r + 1] * x[1];
+      for (int r = 0; r < 3; ++r)
+        for (int a = 0; a < kOfLaser; ++a) sum.values[r] += w[kOfLaser * r + a] * x[a];
     }
   }
 };
@@ -492,18 +495,18 @@ struct CoupleLaserChunk {
   const EntryChunk* chunks;
   const LaserEntry* sums;
   const PlaneVector* of_planes;
-  double* parts;  ///< two per chunk
+  double* parts;  ///< kOfLaser per chunk
 
   ADASPLATS_HD void operator()(std::size_t c) const {
-    double sum[2] = {0, 0};
+    double sum[kOfLaser] = {};
     for (std::uint32_t k = chunks[c].begin; k < chunks[c].end; ++k) {
       const std::uint32_t e = entries.by_unknown[k];
       const double* const w = sums[e].whitened;
       const double* const z = of_planes[entries.plane_of(e)].values;
-      for (int a = 0; a < 2; ++a) sum[a] -= w[a] * z[0] + w[2 + a] * z[1] + w[4 + a] * z[2];
+      for (int a = 0; a < kOfLaser; ++a)
+        sum[a] -= w[a] * z[0] + w[kOfLaser + a] * z[1] + w[2 * kOfLaser + a] * z[2];
     }
-    parts[c * 2] = sum[0];
-    parts[c * 2 + 1] = sum[1];
+    for (int a = 0; a < kOfLaser; ++a) parts[c * kOfLaser + static_cast<std::size_t>(a)] = sum[a];
   }
 };
 
@@ -521,8 +524,9 @@ struct FinishPose {
     const std::size_t scan = i / 6, a = i % 6;
     double sum = chunks.sums[i];
     for (std::size_t laser = 0; laser < laser_count; ++laser) {
-      const double* const cross = crossings[scan * laser_count + laser].values + a * 2;
-      sum += cross[0] * of_lasers[laser * 2] + cross[1] * of_lasers[laser * 2 + 1];
+      const double* const cross = crossings[scan * laser_count + laser].values + a * kOfLaser;
+      for (int b = 0; b < kOfLaser; ++b)
+        sum += cross[b] * of_lasers[laser * kOfLaser + static_cast<std::size_t>(b)];
     }
     chunks.sums[i] = sum;
   }
@@ -538,11 +542,11 @@ struct FinishLaser {
 
   ADASPLATS_HD void operator()(std::size_t i) const {
     chunks(i);
-    const std::size_t laser = i / 2, b = i % 2;
+    const std::size_t laser = i / kOfLaser, b = i % kOfLaser;
     double sum = chunks.sums[i];
     for (std::size_t scan = 0; scan < scans; ++scan) {
       const double* const cross = crossings[scan * laser_count + laser].values + b;
-      for (std::size_t a = 0; a < 6; ++a) sum += cross[a * 2] * of_poses[scan * 6 + a];
+      for (std::size_t a = 0; a < 6; ++a) sum += cross[a * kOfLaser] * of_poses[scan * 6 + a];
     }
     chunks.sums[i] = sum;
   }

@@ -10,8 +10,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/calibrate/calibrate_rig.h"
 #include "adasplats/calibrate/common_errors.h"
 #include "adasplats/calibrate/window_gauges.h"
+#include "adasplats/cloud/load/join_clouds.h"
 
 namespace adasplats {
 namespace {
@@ -46,15 +48,6 @@ PointCloud thinned(PointCloud cloud, std::size_t points_a_scan) {
   return gather(cloud, kept);
 }
 
-/// Moves the local origin of the coordinates.
-void set_origin(PointCloud& cloud, Vec3d origin) {
-  if (cloud.origin == origin) return;
-  const Vec3d by = cloud.origin - origin;
-  for (std::vector<Vec3f>* positions : {&cloud.positions, &cloud.sensor_positions})
-    for (Vec3f& position : *positions) position = vec_cast<float>(vec_cast<double>(position) + by);
-  cloud.origin = origin;
-}
-
 /// Gives both clouds the same attributes.
 void match_attributes(PointCloud& a, PointCloud& b) {
   if (a.lasers.empty() != b.lasers.empty()) a.lasers = b.lasers = {};
@@ -73,7 +66,7 @@ PointCloud joined_pieces(const PointCloud& first, PointCloud second) {
   Trajectory poses = first.scan_poses;
   poses.insert(poses.end(), second.scan_poses.begin(), second.scan_poses.end());
   if (!whole.empty() && !second.empty()) {
-    set_origin(second, whole.origin);
+    move_origin(second, whole.origin);
     match_attributes(whole, second);
   }
   append(whole, std::move(second));
@@ -191,7 +184,7 @@ class WindowedCalibrator {
 
  private:
   bool wants_common() const {
-    return options_.ranges || options_.elevations || options_.mount_correction;
+    return options_.ranges || options_.elevations || options_.azimuths || options_.mount_correction;
   }
 
   /// Solves a few windows, spread over all, for everything, and pools their lasers and mounts.
@@ -207,7 +200,8 @@ class WindowedCalibrator {
       progress_.advance(k + 1);
     }
     progress_.end_step();
-    common_ = pooled(findings, options_.mount);
+    const bool has_map = options_.free_scans != CalibrateOptions().free_scans;
+    common_ = pooled(findings, options_.mount, has_map);
     report_.laser_windows = common_.laser_windows;
     report_.range_disagreement_m = common_.range_disagreement_m;
     report_.elevation_disagreement_rad = common_.elevation_disagreement_rad;
@@ -271,7 +265,7 @@ class WindowedCalibrator {
   std::vector<PoseCorrection> own_poses(PointCloud& cloud, WindowReport& window) {
     const Trajectory given = cloud.scan_poses;
     CalibrateOptions own = options_;
-    own.ranges = own.elevations = own.mount_correction = false;
+    own.ranges = own.elevations = own.azimuths = own.mount_correction = false;
     const Calibration common = common_calibration(common_, given);
     if (!common.lasers.empty() || !common.mount.empty()) {
       own.poses = false;  // measures the residuals only
@@ -418,6 +412,8 @@ WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
 std::pair<Calibration, CalibrationReport> calibrate_drives(
     const PointCloud& cloud, const CalibrateOptions& options, const CalibrateWindowOptions& windows,
     const CalibrateCloud& calibrate_cloud, const Executor& executor, ProgressSink& progress) {
+  if (cloud.sensors.size() > 1 && missing_for_calibration(cloud) == nullptr)
+    return calibrate_rig(cloud, options, windows, calibrate_cloud, executor, progress);
   const std::vector<ScanSpan> spans = drives_of(cloud.scan_poses);
   const bool is_long = std::ranges::any_of(
       spans, [&](const ScanSpan& span) { return span.size() > windows.window_scans; });

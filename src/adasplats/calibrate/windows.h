@@ -70,7 +70,7 @@ WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const Executor& executor, ProgressSink& progress);
 
 /// Calibrates a cloud in memory: all scans together if no drive is longer than a window, otherwise
-/// window by window.
+/// window by window. The sensors of a rig: calibrate_rig().
 std::pair<Calibration, CalibrationReport> calibrate_drives(
     const PointCloud& cloud, const CalibrateOptions& options, const CalibrateWindowOptions& windows,
     const CalibrateCloud& calibrate_cloud, const Executor& executor, ProgressSink& progress);

@@ -13,10 +13,6 @@ namespace {
 constexpr std::string_view kWorldFrame = "map";
 constexpr std::string_view kSensorFrame = "lidar";
 
-McapChannel ros_channel(std::string topic, std::string_view type, std::string definition) {
-  return {std::move(topic), "cdr", std::string(type), "ros2msg", std::move(definition)};
-}
-
 }  // namespace
 
 McapWriter::McapWriter(const std::filesystem::path& path, double later_s, std::string_view labels)
@@ -29,11 +25,12 @@ McapWriter::McapWriter(const std::filesystem::path& path, double later_s, std::s
 }
 
 std::vector<McapMessage> McapWriter::messages(const ScanView& scan) const {
-  Trajectory poses = ros_poses_of(scan);
-  for (TimedPose& pose : poses) pose.time_s += later_s_;
+  std::vector<RosTransform> poses;
+  for (const auto& [time_s, pose] : ros_poses_of(scan))
+    poses.push_back({{time_s + later_s_, pose}, kWorldFrame, kSensorFrame});
   std::vector<McapMessage> messages;
-  messages.push_back(mcap_message(transforms_, ros_time_ns(poses.front().time_s),
-                                  transforms_message(poses, kWorldFrame, kSensorFrame)));
+  messages.push_back(
+      mcap_message(transforms_, ros_time_ns(poses.front().pose.time_s), transforms_message(poses)));
   messages.push_back(mcap_message(points_, ros_time_ns(ros_stamp_s(scan) + later_s_),
                                   point_cloud2_message(scan, kSensorFrame, later_s_)));
   return messages;

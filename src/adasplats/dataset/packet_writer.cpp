@@ -25,10 +25,6 @@ constexpr std::uint64_t kNanosecondsInMicrosecond = 1000;
 constexpr double kSecondsInHour = 3600;
 constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are slightly irregular
 
-/// Factory settings of sensors; locally administered hardware addresses.
-UdpEndpoint sensor_end(std::uint16_t port) {
-  return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port};
-}
 UdpEndpoint everyone(std::uint16_t port) {
   return {{255, 255, 255, 255, 255, 255}, {255, 255, 255, 255}, port};
 }
@@ -45,14 +41,22 @@ PacketSensor sensor_of(const PacketOptions& options) {
 
 class PacketWriter final : public WriterWithPoses {
  public:
-  PacketWriter(std::filesystem::path folder, const PacketOptions& options)
+  /// Without `sink`, the packets go to a capture.
+  PacketWriter(std::filesystem::path folder, const PacketOptions& options, PacketSink sink)
       : WriterWithPoses(std::move(folder)),
         options_(options),
         sensor_(sensor_of(options)),
-        capture_(this->folder() / "drive.pcap"),
+        sender_(options.sender.value_or(factory_sender(sensor_.facts.port))),
+        sink_(std::move(sink)),
+        shift_s_(options.shift_s.value_or(0)),
         turn_s_(1.0 / sensor_.model.rotation_hz),
         column_s_(turn_s_ / sensor_.model.columns),
-        nothing_(sensor_.lasers()) {}
+        nothing_(sensor_.lasers()) {
+    if (sink_) return;
+    capture_.emplace(this->folder() / "drive.pcap");
+    sink_ = [this](std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
+                   const std::string& payload) { capture_->add(time_us, from, to, payload); };
+  }
 
   EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
     EncodedScan encoded;
@@ -72,7 +76,8 @@ class PacketWriter final : public WriterWithPoses {
 
   void append(std::size_t index, const EncodedScan& scan) override {
     // A revolution around time 0 begins before it: all is an hour later then.
-    if (index == 0 && scan.pose.time_s + options_.begin_after_s < 0) shift_s_ = kSecondsInHour;
+    if (index == 0 && !options_.shift_s && scan.pose.time_s + options_.begin_after_s < 0)
+      shift_s_ = kSecondsInHour;
     const double begin_s = scan.pose.time_s + options_.begin_after_s + shift_s_;
     require_time(begin_s, index);
     const bool goes_on = end_s_ && std::fabs(begin_s - *end_s_) < 0.5 * column_s_;
@@ -83,7 +88,7 @@ class PacketWriter final : public WriterWithPoses {
     end_s_ = begin_s + turn_s_;
     ++frame_;
     EncodedScan middle;
-    middle.pose = {begin_s + 0.5 * turn_s_, scan.pose.world_from_sensor};
+    middle.pose = {begin_s + 0.5 * turn_s_ - options_.time_offset_s, scan.pose.world_from_sensor};
     WriterWithPoses::append(index, middle);
   }
 
@@ -91,7 +96,7 @@ class PacketWriter final : public WriterWithPoses {
 
   void finish() override {
     flush();
-    capture_.finish();
+    if (capture_) capture_->finish();
     const CalibrationFile calibration = calibration_file(sensor_);
     write_file(folder() / calibration.name, calibration.text);
     WriterWithPoses::finish();
@@ -122,7 +127,8 @@ class PacketWriter final : public WriterWithPoses {
 
   void add_column(double begin_s, std::uint32_t column, std::span<const PacketReturn> returns) {
     const double late_ns = kNanosecondsInSecond * column_s_ * column;
-    const auto begin_ns = static_cast<std::uint64_t>(std::llround(begin_s * kNanosecondsInSecond));
+    const auto begin_ns = static_cast<std::uint64_t>(
+        std::llround((begin_s - options_.time_offset_s) * kNanosecondsInSecond));
     columns_.push_back({begin_ns + static_cast<std::uint64_t>(std::llround(late_ns)),
                         column % sensor_.model.columns,
                         static_cast<std::uint16_t>(frame_),
@@ -135,7 +141,10 @@ class PacketWriter final : public WriterWithPoses {
   void send() {
     const auto column_ns =
         static_cast<std::uint64_t>(std::llround(column_s_ * kNanosecondsInSecond));
-    const std::uint64_t sent_us = (columns_.back().time_ns + column_ns) / kNanosecondsInMicrosecond;
+    const auto offset_ns =
+        static_cast<std::uint64_t>(std::llround(options_.time_offset_s * kNanosecondsInSecond));
+    const std::uint64_t sent_us =
+        (columns_.back().time_ns + column_ns + offset_ns) / kNanosecondsInMicrosecond;
     sent_us_ = std::max(sent_us_, sent_us);
     // Packets outside the window of an Ouster are not sent.
     const bool is_sent = !is_ouster(sensor_.format) ||
@@ -143,8 +152,8 @@ class PacketWriter final : public WriterWithPoses {
                            return sensor_.model.fires_in(column.column);
                          });
     if (is_sent)
-      capture_.add(sent_us_, sensor_end(sensor_.facts.port), everyone(sensor_.facts.port),
-                   encode_packet(sensor_, columns_, packets_++));
+      sink_(sent_us_, sender_, everyone(sender_.port),
+            encode_packet(sensor_, columns_, packets_++));
     columns_.clear();
     returns_.clear();
   }
@@ -157,9 +166,11 @@ class PacketWriter final : public WriterWithPoses {
 
   PacketOptions options_;
   PacketSensor sensor_;
-  CaptureWriter capture_;
+  UdpEndpoint sender_;
+  PacketSink sink_;
+  std::optional<CaptureWriter> capture_;
+  double shift_s_;  ///< added to all times
   double turn_s_, column_s_;
-  double shift_s_ = 0;  ///< added to all times
   std::vector<PacketReturn> nothing_;
   std::optional<double> end_s_;  ///< of the last scan
   std::uint64_t frame_ = 0, packets_ = 0, sent_us_ = 0;
@@ -218,7 +229,17 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
 
 std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
                                                const ScanWriterOptions& options) {
-  return std::make_unique<PacketWriter>(folder, options.packets);
+  return std::make_unique<PacketWriter>(folder, options.packets, nullptr);
+}
+
+std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
+                                               const ScanWriterOptions& options, PacketSink sink) {
+  return std::make_unique<PacketWriter>(folder, options.packets, std::move(sink));
+}
+
+// Locally administered hardware address.
+UdpEndpoint factory_sender(std::uint16_t port) {
+  return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port};
 }
 
 }  // namespace adasplats

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "adasplats/dataset/scan_writer.h"
+#include "adasplats/io/packets/capture_writer.h"
 
 namespace adasplats {
 
@@ -22,5 +26,14 @@ void require_packets(const LidarModel& sensor, const PacketOptions& options);
 /// ended); cannot_create, io.
 std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
                                                const ScanWriterOptions& options);
+
+/// Receives the packets of a sensor; times since 1970 ascend.
+using PacketSink = std::function<void(std::uint64_t time_us, const UdpEndpoint& from,
+                                      const UdpEndpoint& to, std::string payload)>;
+/// The same without a capture of its own: the packets go to `sink`, in append() and finish().
+std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
+                                               const ScanWriterOptions& options, PacketSink sink);
+/// Where a sensor of factory settings sends from.
+UdpEndpoint factory_sender(std::uint16_t port);
 
 }  // namespace adasplats

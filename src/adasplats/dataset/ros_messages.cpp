@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "adasplats/cloud/poses/rotation.h"
@@ -218,12 +219,11 @@ Trajectory ros_poses_of(const ScanView& scan) {
   return poses;
 }
 
-std::string transforms_message(std::span<const TimedPose> poses, std::string_view frame,
-                               std::string_view child_frame) {
+std::string transforms_message(std::span<const RosTransform> transforms) {
   constexpr std::size_t kBytes = 256;
-  CdrWriter message(kBytes * std::max<std::size_t>(1, poses.size()));
-  message.put(static_cast<std::uint32_t>(poses.size()));
-  for (const TimedPose& pose : poses) {
+  CdrWriter message(kBytes * std::max<std::size_t>(1, transforms.size()));
+  message.put(static_cast<std::uint32_t>(transforms.size()));
+  for (const auto& [pose, frame, child_frame] : transforms) {
     message.header(pose.time_s, frame).text(child_frame);
     const Vec3d t = pose.world_from_sensor.translation;
     message.put(t.x).put(t.y).put(t.z);
@@ -231,6 +231,10 @@ std::string transforms_message(std::span<const TimedPose> poses, std::string_vie
     message.put(q.x).put(q.y).put(q.z).put(q.w);
   }
   return message.take();
+}
+
+McapChannel ros_channel(std::string topic, std::string_view type, std::string definition) {
+  return {std::move(topic), "cdr", std::string(type), "ros2msg", std::move(definition)};
 }
 
 }  // namespace adasplats

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
@@ -39,8 +40,15 @@ std::string point_cloud2_message(const ScanView& scan, std::string_view frame, d
 /// points are in its frame; otherwise only the scan's pose.
 Trajectory ros_poses_of(const ScanView& scan);
 
-/// A TFMessage with the poses of `child_frame` in `frame`. Errors: as above.
-std::string transforms_message(std::span<const TimedPose> poses, std::string_view frame,
-                               std::string_view child_frame);
+/// A pose of `child_frame` in `frame`.
+struct RosTransform {
+  TimedPose pose;
+  std::string_view frame, child_frame;
+};
+/// A TFMessage. Errors: as above.
+std::string transforms_message(std::span<const RosTransform> transforms);
+
+/// The channel of a topic with these messages in an MCAP file.
+McapChannel ros_channel(std::string topic, std::string_view type, std::string definition);
 
 }  // namespace adasplats

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "adasplats/dataset/kitti_order.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
+#include "adasplats/io/packets/capture_writer.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_view.h"
 #include "adasplats/simulate/world/world.h"
@@ -53,6 +55,11 @@ struct PacketOptions {
   bool has_angular_noise = true;  ///< angular noise is simulated
   bool is_raw = true;             ///< points as measured, without motion compensation
   double full_intensity = 1.0;    ///< intensity that becomes 255, the maximum
+  /// Added to the times of the sensor to get those of the capture, less than a minute.
+  double time_offset_s = 0;
+  /// Added to all times; not set: an hour if the first scan begins before 1970.
+  std::optional<double> shift_s;
+  std::optional<UdpEndpoint> sender;  ///< not set: the factory settings of sensors
 };
 
 struct ScanWriterOptions {

@@ -18,6 +18,7 @@
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/lidar_library.h"
+#include "adasplats/sensors/toml_nodes.h"
 #include "adasplats/sensors/toml_table.h"
 
 namespace adasplats {

@@ -11,6 +11,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/toml_nodes.h"
 #include "adasplats/sensors/toml_table.h"
 
 namespace adasplats {

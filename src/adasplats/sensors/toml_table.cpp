@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/toml_nodes.h"
 
 namespace adasplats {
 
@@ -47,6 +48,8 @@ TomlTable::TomlTable(std::shared_ptr<const toml::table> table, const std::filesy
   }
 }
 
+const toml::node* TomlTable::find(std::string_view key) const { return table_->get(key); }
+
 void TomlTable::require(std::string_view key) const {
   if (!has(key)) throw error(key, "is missing");
 }
@@ -65,6 +68,19 @@ TomlTable TomlTable::table(std::string_view key, const TomlKeys& known) const {
   const toml::table* inner = find(key)->as_table();
   if (inner == nullptr) throw error(key, "is not a table");
   return {std::shared_ptr<const toml::table>(table_, inner), path_, known};
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key, const TomlKeys& known) const {
+  std::vector<TomlTable> list;
+  const toml::node* node = find(key);
+  if (node == nullptr) return list;
+  if (!node->is_array()) throw error(key, "is not a list of tables");
+  for (const toml::node& element : *node->as_array()) {
+    const toml::table* inner = element.as_table();
+    if (inner == nullptr) throw error(key, "is not a list of tables");
+    list.emplace_back(std::shared_ptr<const toml::table>(table_, inner), path_, known);
+  }
+  return list;
 }
 
 double TomlTable::number(std::string_view key, double otherwise, double low, double high) const {
@@ -113,9 +129,9 @@ std::vector<std::uint32_t> TomlTable::whole_numbers(std::string_view key, std::i
   return numbers;
 }
 
-std::vector<float> TomlTable::rows(std::string_view key, double low, double high,
-                                   std::size_t& columns) const {
-  std::vector<float> values;
+std::vector<double> TomlTable::number_rows(std::string_view key, double low, double high,
+                                           std::size_t& columns) const {
+  std::vector<double> values;
   for (const toml::node* row : elements(key)) {
     const toml::array* list = row->as_array();
     if (list == nullptr || list->empty())
@@ -124,9 +140,16 @@ std::vector<float> TomlTable::rows(std::string_view key, double low, double high
     if (list->size() != columns)
       throw error_at(*row, std::string(key) + " has a list of " + std::to_string(list->size()) +
                                " numbers, expected " + std::to_string(columns));
-    for (const toml::node& number : *list)
-      values.push_back(static_cast<float>(number_of(number, key, low, high)));
+    for (const toml::node& number : *list) values.push_back(number_of(number, key, low, high));
   }
+  return values;
+}
+
+std::vector<float> TomlTable::rows(std::string_view key, double low, double high,
+                                   std::size_t& columns) const {
+  std::vector<float> values;
+  for (const double value : number_rows(key, low, high, columns))
+    values.push_back(static_cast<float>(value));
   return values;
 }
 

@@ -2,13 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Private to sensors/.
-
-// toml++ 3 asserts conditions that malformed files violate ("a = [}") before it reports their
-// error.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -18,6 +11,14 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/vec3.h"
+
+// Of toml++ 3, which only sources include (sensors/toml_nodes.h).
+namespace toml {
+inline namespace v3 {
+class node;
+class table;
+}  // namespace v3
+}  // namespace toml
 
 namespace adasplats {
 
@@ -30,7 +31,7 @@ class TomlTable {
   TomlTable(std::shared_ptr<const toml::table> table, const std::filesystem::path& path,
             const TomlKeys& known);
 
-  bool has(std::string_view key) const { return table_->contains(key); }
+  bool has(std::string_view key) const { return find(key) != nullptr; }
   /// Throws if the key is missing.
   void require(std::string_view key) const;
 
@@ -40,6 +41,8 @@ class TomlTable {
 
   /// The table under an existing key.
   TomlTable table(std::string_view key, const TomlKeys& known) const;
+  /// The tables of a list, [[key]]; none if the key is missing.
+  std::vector<TomlTable> tables(std::string_view key, const TomlKeys& known) const;
 
   double number(std::string_view key, double otherwise, double low, double high) const;
   std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const;
@@ -51,13 +54,15 @@ class TomlTable {
   std::vector<double> angles_rad(std::string_view key, double low_deg, double high_deg) const;
   std::vector<std::uint32_t> whole_numbers(std::string_view key, std::int64_t low) const;
   /// Lists of equal length, concatenated. `columns`: their length; 0 sets it from the first list.
+  std::vector<double> number_rows(std::string_view key, double low, double high,
+                                  std::size_t& columns) const;
   std::vector<float> rows(std::string_view key, double low, double high,
                           std::size_t& columns) const;
   /// Points, or one point repeated `count` times.
   std::vector<Vec3d> points(std::string_view key, std::size_t count) const;
 
   /// The value of a key, for callers that parse it themselves; nullptr if the key is missing.
-  const toml::node* find(std::string_view key) const { return table_->get(key); }
+  const toml::node* find(std::string_view key) const;
   double number_of(const toml::node& node, std::string_view key, double low, double high) const;
 
  private:

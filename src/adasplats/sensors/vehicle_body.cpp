@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -29,6 +30,27 @@ std::size_t VehicleBody::find(std::uint16_t ring, Vec3f direction) const {
       });
   const bool is_there = found != cells.end() && found->ring == ring && found->column == column;
   return is_there ? static_cast<std::size_t>(found - cells.begin()) : cells.size();
+}
+
+double VehicleBody::range_to_boxes(Vec3d origin, Vec3d direction) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const BodyBox& box : boxes) {
+    const RigidTransform box_from_sensor = box.sensor_from_box.inverse();
+    const Vec3d from = box_from_sensor * origin, along = box_from_sensor.rotation * direction;
+    double begin = 0, end = nearest;
+    for (int axis = 0; axis < 3 && begin <= end; ++axis) {
+      if (along[axis] == 0) {  // parallel to these sides
+        if (!(std::fabs(from[axis]) < box.half_size_m[axis])) end = -1;
+        continue;
+      }
+      const double near_side = (-box.half_size_m[axis] - from[axis]) / along[axis];
+      const double far_side = (box.half_size_m[axis] - from[axis]) / along[axis];
+      begin = std::max(begin, std::min(near_side, far_side));
+      end = std::min(end, std::max(near_side, far_side));
+    }
+    if (begin < end) nearest = begin;
+  }
+  return nearest;
 }
 
 std::string vehicle_body_toml(const VehicleBody& body) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
@@ -28,12 +29,22 @@ struct BodyCell {
   float intensity = 0;  ///< in the sensor's intensity unit; 0 if it reports none
 };
 
-/// All cells of a calibrated sensor on its vehicle, by ring, then column.
+/// A box of the vehicle, such as its roof, that no beam passes.
+struct BodyBox {
+  RigidTransform sensor_from_box;  ///< the box's centre and axes
+  Vec3d half_size_m;
+};
+
+/// All cells of a calibrated sensor on its vehicle, by ring, then column; and boxes.
 struct VehicleBody {
   std::vector<BodyCell> cells;
+  std::vector<BodyBox> boxes;
 
   /// Index of the cell that a beam hits; cells.size(): none.
   std::size_t find(std::uint16_t ring, Vec3f direction) const;
+  /// Distance at which a ray in the sensor's frame enters the nearest box, in lengths of
+  /// `direction`; 0: it begins in a box; infinite: it misses all.
+  double range_to_boxes(Vec3d origin, Vec3d direction) const;
 };
 
 /// The keys of a TOML table: cells, rows of ring, azimuth_deg, percent, range_mm, intensity.

@@ -65,6 +65,8 @@ struct DriveSettings {
   /// Start beams at the poses even if the sensor is recognised (ScanBeams).
   bool beams_from_poses = false;
 
+  bool operator==(const DriveSettings&) const = default;
+
   /// The mount, if a position or a rotation is set.
   std::optional<MountSettings> given_mount() const {
     if (!mount && mount_rotation_deg == Vec3d{}) return std::nullopt;

@@ -15,6 +15,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/dropped_points.h"
+#include "adasplats/cloud/load/join_clouds.h"
 #include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/cloud/load/point_origins.h"
 #include "adasplats/cloud/load/timed_points.h"
@@ -27,108 +28,6 @@
 #include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
-
-namespace {
-
-/// If any cloud has sensor positions, gives all of them some: a point without one gets its own
-/// position and OriginKind::none. Removes the kinds if all are measured.
-void unify_origins(std::vector<PointCloud>& clouds) {
-  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
-  const auto all_measured = [](const PointCloud& c) {
-    return c.empty() ||
-           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
-             return kind == OriginKind::measured;
-           }));
-  };
-  if (std::ranges::none_of(clouds, has_sensors)) return;
-  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
-  for (PointCloud& cloud : clouds) {
-    if (!needs_kinds) {
-      cloud.origin_kinds = {};
-    } else if (cloud.sensor_positions.empty()) {
-      cloud.sensor_positions = cloud.positions;
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
-    } else if (cloud.origin_kinds.empty()) {
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
-    }
-  }
-}
-
-/// Empties an attribute that some clouds have and others lack.
-template <class Attribute>
-void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute,
-                     ProgressSink& progress) {
-  std::size_t with = 0, filled = 0;
-  for (const PointCloud& cloud : clouds) {
-    if (cloud.empty()) continue;
-    ++filled;
-    if (!attribute.of(cloud).empty()) ++with;
-  }
-  if (with == filled) return;
-  for (PointCloud& cloud : clouds) attribute.of(cloud) = {};
-  if (with != 0)
-    progress.warn(std::string(attribute.title) + " are dropped: only " + std::to_string(with) +
-                  " of " + std::to_string(filled) + " inputs have them");
-}
-
-/// Gives all clouds the same other columns, in one order: those that all of them have. Columns of
-/// several types become doubles.
-void unify_other_columns(std::vector<PointCloud>& clouds, ProgressSink& progress) {
-  std::vector<PointCloud*> filled;
-  for (PointCloud& cloud : clouds)
-    if (!cloud.empty()) filled.push_back(&cloud);
-  const auto find = [](PointCloud& cloud, const std::string& name) {
-    return std::ranges::find(cloud.others.columns, name, &Column::name);
-  };
-  std::vector<std::string> names;
-  for (PointCloud* const cloud : filled)
-    for (const Column& column : cloud->others.columns)
-      if (std::ranges::find(names, column.name) == names.end()) names.push_back(column.name);
-  std::vector<std::vector<Column>> unified(filled.size());
-  std::string dropped;
-  for (const std::string& name : names) {
-    bool have_all = true, are_alike = true;
-    for (PointCloud* const cloud : filled) {
-      const auto column = find(*cloud, name);
-      have_all = have_all && column != cloud->others.columns.end();
-      are_alike =
-          have_all && are_alike && column->values.index() == find(*filled[0], name)->values.index();
-    }
-    if (!have_all) {
-      dropped += (dropped.empty() ? "" : ", ") + name;
-      continue;
-    }
-    for (std::size_t k = 0; k < filled.size(); ++k) {
-      Column& column = *find(*filled[k], name);
-      if (!are_alike) {
-        std::vector<double> values(column.size());
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = column.as_double(i);
-        column.values = std::move(values);
-      }
-      unified[k].push_back(std::move(column));
-    }
-  }
-  for (std::size_t k = 0; k < filled.size(); ++k) filled[k]->others.columns = std::move(unified[k]);
-  if (!dropped.empty())
-    progress.warn("columns that only some of the inputs have are dropped: " + dropped);
-}
-
-/// Joins the clouds; `scan_poses` are those of their scans. An attribute that only some inputs have
-/// is dropped with a warning; sensor positions are kept (load_cloud).
-PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,
-                  ProgressSink& progress) {
-  unify_origins(clouds);
-  for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
-  unify_other_columns(clouds, progress);
-  PointCloud all;
-  all.origin = origin;
-  for (PointCloud& cloud : clouds)
-    if (!cloud.empty()) append(all, std::move(cloud));
-  all.scan_poses = std::move(scan_poses);
-  return all;
-}
-
-}  // namespace
 
 namespace {
 
@@ -607,7 +506,7 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
     const CloudInput& input = sources[p].input;
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
-  PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
+  PointCloud cloud = join_clouds(std::move(clouds), origin, std::move(scan_poses), progress);
   cloud.crs = std::move(crs);
   clock.end("place");
   // Before any point is removed: where one was, its beam did return.
@@ -636,12 +535,45 @@ void require_poses_of_scans(const std::string& name, const LoadReport& report) {
 
 std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
                                                    ProgressSink& progress) const {
+  if (rig_) return load_sensors(executor, progress);
   const PieceContext context = {options_.selection.is_all(), {}};
   auto loaded = load_open(inputs_, options_, name_, context, executor, progress);
   std::vector<float>& intensities = loaded.first.intensities;
   if (std::ranges::all_of(intensities, is_unknown)) intensities = {};
   if (loaded.second.points_read == 0 && options_.selection.extent) throw empty_extent_error();
   return loaded;
+}
+
+std::pair<PointCloud, LoadReport> OpenInputs::load_sensors(const Executor& executor,
+                                                           ProgressSink& progress) const {
+  std::vector<PointCloud> clouds;
+  std::vector<CloudSensor> sensors;
+  LoadReport report;
+  for (std::size_t k = 0; k < inputs_.size(); ++k) {
+    sensors.push_back({rig_->sensors[k].name, 0, rig_->sensors[k].is_in_model});
+    auto [cloud, loaded] = load({k}, executor, progress);
+    clouds.push_back(std::move(cloud));
+    report.add(std::move(loaded));
+  }
+  return {join_sensors(std::move(clouds), std::move(sensors), progress), std::move(report)};
+}
+
+void LoadReport::add(LoadReport&& other) {
+  points_read += other.points_read;
+  dropped_not_finite += other.dropped_not_finite;
+  no_returns += other.no_returns;
+  unknown_intensities += other.unknown_intensities;
+  dropped_far += other.dropped_far;
+  in_boxes += other.in_boxes;
+  own_body += other.own_body;
+  driven_path += other.driven_path;
+  for (std::size_t kind = 0; kind < origins.size(); ++kind) origins[kind] += other.origins[kind];
+  const auto move_to = [](auto& all, auto&& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  move_to(beams, std::move(other.beams));
+  move_to(drives, std::move(other.drives));
+  move_to(seconds, std::move(other.seconds));
 }
 
 std::pair<PointCloud, LoadReport> OpenInputs::load(const InputPiece& piece,

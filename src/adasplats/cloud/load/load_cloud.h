@@ -239,6 +239,9 @@ struct LoadReport {
     double seconds;
   };
   std::vector<PartTime> seconds;  ///< time of each part of loading
+
+  /// Adds the report of another drive or piece.
+  void add(LoadReport&& other);
 };
 
 /// Loads and joins point files and SemanticKITTI sequence folders (read_points,

@@ -198,7 +198,8 @@ std::optional<KittiSequence> open_as_world(const DriveInput& drive,
                                            const std::vector<std::filesystem::path>& files,
                                            const Executor& executor, ProgressSink& progress) {
   // With a stated mount the sensor need not be recognised.
-  if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
+  const std::optional<MountSettings> mount = drive.given_mount();
+  if ((mount && !drive.is_rig_sensor) || !has_timed_frames(drive.folder)) return std::nullopt;
   if (!has_times(drive.trajectory))
     throw Error(ErrorKind::data,
                 drive.trajectory.string() + ": its poses have no times, but the points of " +
@@ -210,6 +211,8 @@ std::optional<KittiSequence> open_as_world(const DriveInput& drive,
   frames.vehicle = read_trajectory(drive.trajectory);
   for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
   frames.poses_file = drive.trajectory;
+  frames.is_stated = mount.has_value();
+  if (mount) frames.own_mount = mount->transform();
   auto sequence = open_world_frames(drive, frames, executor, progress);
   if (sequence) sequence->facts.crs = crs_of_files(files, progress);
   return sequence;
@@ -330,7 +333,7 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
                 drive.folder.string() + ": is not a nuScenes data root, which `scene` needs");
   if (is_recording(drive.folder)) {
     const RecordingSurvey survey = survey_recording(drive.folder, progress);
-    if (!is_read_by_packets(survey, drive))
+    if (!is_read_by_packets(survey, drive, drive.is_rig_sensor))
       return open_recording_drive(drive, survey, executor, progress);
     return open_packet_drive(drive, survey_packets(survey, drive, progress), executor, progress);
   }

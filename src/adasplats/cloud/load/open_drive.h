@@ -21,6 +21,9 @@ struct DriveInput : DriveSettings {
   /// (is_capture()), or the root of a data set (data_tree_of()).
   std::filesystem::path folder;
   bool with_classes = true;  ///< read the classes that the files have
+  /// A sensor of a rig: points in world coordinates with a stated mount are a drive, too, and
+  /// `packets_of` may name the sensor of points instead of packets.
+  bool is_rig_sensor = false;
 };
 
 inline DriveInput drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {

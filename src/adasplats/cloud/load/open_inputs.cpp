@@ -14,6 +14,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/rig_of_recording.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
@@ -33,6 +34,51 @@ std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths
   }
   std::ranges::copy_if(inputs, std::back_inserter(sequences), &CloudInput::is_sequence);
   if (sequences.size() > 1) require_distinct_starts(sequences);
+  return inputs;
+}
+
+/// The rig of a file with the sensor that `topic` names or all, or of a recording of several
+/// sensors; nothing for other inputs.
+std::optional<Rig> rig_of(const std::filesystem::path& input, const LoadOptions& options,
+                          ProgressSink& progress) {
+  if (!is_rig(input)) {
+    if (!options.topic.empty() || !is_recording(input)) return std::nullopt;
+    return rig_of_recording(input, options, progress);
+  }
+  Rig rig = read_rig(input);
+  require_no_settings(rig, options);
+  if (!options.topic.empty()) {
+    rig.sensors = {rig.sensors[rig.index_of(options.topic)]};
+    rig.sensors.front().is_in_model = true;
+  }
+  return rig;
+}
+
+/// Throws data for sensors without a common time.
+void require_common_time(const KittiSequence& first, const KittiSequence& other) {
+  if (!first.has_times || !other.has_times) return;
+  const auto begin_s = [](const KittiSequence& drive) { return drive.trajectory.front().time_s; };
+  const auto end_s = [](const KittiSequence& drive) { return drive.trajectory.back().time_s; };
+  if (begin_s(other) <= end_s(first) && begin_s(first) <= end_s(other)) return;
+  const auto span = [&](const KittiSequence& drive) {
+    return exact_text(begin_s(drive)) + " to " + exact_text(end_s(drive)) + " s";
+  };
+  throw Error(ErrorKind::data,
+              "sensor '" + other.rig_sensor + "': its scans are of " + span(other) +
+                  ", those of '" + first.rig_sensor + "' of " + span(first) +
+                  ": their clocks differ (set time_offset_s in the rig file), or they are of two "
+                  "drives");
+}
+
+/// Opens the sensors of a rig.
+std::vector<OpenInput> opened_sensors(const Rig& rig, const Executor& executor,
+                                      ProgressSink& progress) {
+  std::vector<OpenInput> inputs;
+  for (const RigSensor& sensor : rig.sensors) {
+    KittiSequence drive = open_rig_sensor(sensor, executor, progress);
+    inputs.push_back({{sensor.folder, true}, std::move(drive), true});
+    require_common_time(*inputs.front().sequence, *inputs.back().sequence);
+  }
   return inputs;
 }
 
@@ -153,8 +199,17 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
                        const Executor& executor, ProgressSink& progress)
     : options_(options) {
   require_sound(options);
-  inputs_ = opened(inputs, options, executor, progress);
   name_ = name_of(inputs);
+  const auto file = std::ranges::find_if(inputs, is_rig);
+  if (file != inputs.end() && inputs.size() > 1)
+    throw usage(file->string() + ": is a rig; other inputs cannot be joined with it");
+  if (inputs.size() == 1) rig_ = rig_of(inputs[0], options, progress);
+  if (rig_) {
+    inputs_ = opened_sensors(*rig_, executor, progress);
+    options_.topic.clear();
+    return;
+  }
+  inputs_ = opened(inputs, options, executor, progress);
   require_applicable_options(options, inputs_);
   require_registered(inputs_);
   for (OpenInput& input : inputs_)

@@ -14,6 +14,7 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/core/error.h"
@@ -52,6 +53,8 @@ class OpenInputs {
   const LoadOptions& options() const { return options_; }
   /// Whether all of them are drives.
   bool are_drives() const;
+  /// The rig that the inputs are, one sensor per input; nothing for other inputs.
+  const std::optional<Rig>& rig() const { return rig_; }
   /// Number of scans of a drive that the options choose; 0 if the first is after its end.
   std::size_t chosen_scans(std::size_t input) const;
 
@@ -67,11 +70,14 @@ class OpenInputs {
   Error empty_extent_error() const;
 
  private:
+  std::pair<PointCloud, LoadReport> load_sensors(const Executor& executor,
+                                                 ProgressSink& progress) const;
   PathBeyond path_beyond(const InputPiece& piece) const;
 
   std::string name_;  ///< of all, for messages
   LoadOptions options_;
   std::vector<OpenInput> inputs_;
+  std::optional<Rig> rig_;  ///< with the sensors that `topic` chose
 };
 
 /// Cuts files with random access (random_access_records()) into pieces of at most `records`; other

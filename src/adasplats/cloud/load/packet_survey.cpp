@@ -194,14 +194,15 @@ PacketSurvey survey_packets(const RecordingSurvey& recording, const DriveSetting
   return surveyed(std::move(survey), progress);
 }
 
-bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings) {
+bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings,
+                        bool may_lack_packets) {
   bool has_clouds = false, has_packets = false;
   for (const auto& [name, topic] : survey.topics) {
     if (!settings.topic.empty() && name != settings.topic) continue;
     has_clouds = has_clouds || topic.holds_clouds();
     has_packets = has_packets || !topic.packets.empty();
   }
-  if (!settings.packets_of.empty() && !has_packets)
+  if (!settings.packets_of.empty() && !has_packets && !may_lack_packets)
     throw Error(ErrorKind::usage,
                 survey.recording->path().string() + ": `packet_sensor` needs a topic of packets; " +
                     (settings.topic.empty() ? "there is none" : settings.topic + " is none"));

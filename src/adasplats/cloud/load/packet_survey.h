@@ -37,7 +37,8 @@ PacketSurvey survey_packets(const std::filesystem::path& path,
 
 /// Whether a recording is read by the packets in it: of the chosen topic, or if it has no clouds.
 /// Errors: usage (a packet sensor for a recording without packets).
-bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings);
+bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& settings,
+                        bool may_lack_packets = false);
 
 /// The same for the packets of a recording. Their sensor is the stated one, else that of Ouster
 /// metadata in a topic next to that of the packets, else sensor_of_capture().

@@ -120,6 +120,7 @@ PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indice
   result.crs = cloud.crs;
   result.label_scheme = cloud.label_scheme;
   result.scan_poses = cloud.scan_poses;
+  result.sensors = cloud.sensors;
   result.empty_beams = cloud.empty_beams;
   result.positions = gathered(cloud.positions, indices);
   for_each_attribute([&](const auto& attribute) {
@@ -133,6 +134,18 @@ PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indice
         },
         column.values));
   return result;
+}
+
+void keep_sensors_of_model(PointCloud& cloud) {
+  if (std::ranges::all_of(cloud.sensors, &CloudSensor::is_in_model)) return;
+  std::vector<bool> is_kept;  // scan by scan
+  for (const CloudSensor& sensor : cloud.sensors)
+    is_kept.insert(is_kept.end(), sensor.scans, sensor.is_in_model);
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_kept[cloud.scan_indices[i]]) kept.push_back(static_cast<std::uint32_t>(i));
+  std::erase_if(cloud.empty_beams, [&](const EmptyBeam& beam) { return !is_kept[beam.scan]; });
+  cloud = gather(cloud, kept);
 }
 
 void append(PointCloud& cloud, PointCloud&& other) {

@@ -33,6 +33,13 @@ struct OtherColumns {
   bool has_adjusted_times = false;  ///< gps_time is adjusted GPS time, as LAS has it
 };
 
+/// The scans of one sensor of a rig.
+struct CloudSensor {
+  std::string name;
+  std::size_t scans = 0;
+  bool is_in_model = true;  ///< its points become part of models
+};
+
 /// Points of one or many scans, as a structure of arrays. World coordinates are origin +
 /// position: double at the border, float inside. An attribute is empty or as long as `positions`.
 struct PointCloud {
@@ -49,6 +56,8 @@ struct PointCloud {
   std::vector<std::uint16_t> lasers;  ///< of the sensor, topmost 0; kNoLaser where it is not known
   /// Of the scans by their numbers, world_from_sensor; empty: not known. No attribute of points.
   Trajectory scan_poses;
+  /// Of a rig: whose scans these are, in the order of their numbers. Empty: one sensor.
+  std::vector<CloudSensor> sensors;
   /// Of the scans, where they were looked for (find_empty_beams()). No attribute of points.
   std::vector<EmptyBeam> empty_beams;
   OtherColumns others;
@@ -141,6 +150,9 @@ inline bool has_several(std::span<const ColorBytes> colors) {
 
 /// The points of `cloud` with all attributes, in the order of `indices`; empty beams stay.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);
+
+/// Removes the points and empty beams of sensors that are not part of models.
+void keep_sensors_of_model(PointCloud& cloud);
 
 /// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes
 /// (std::logic_error otherwise; an empty `cloud` takes all from `other`). The poses of other's

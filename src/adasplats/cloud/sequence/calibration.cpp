@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "adasplats/core/maths/median.h"
@@ -123,6 +125,12 @@ bool Calibration::moves_scans() const {
   });
 }
 
+const Calibration* Calibration::of_sensor(std::string_view name) const {
+  if (sensor.empty() || sensor == name) return this;
+  const auto found = std::ranges::find(others, name, &Calibration::sensor);
+  return found == others.end() ? nullptr : &*found;
+}
+
 std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) const {
   return CorrectionLookup(*this).at(time_s, position);
 }
@@ -234,28 +242,63 @@ bool apply(const Calibration& calibration, Trajectory& poses) {
   return true;
 }
 
+std::vector<const Calibration*> calibrations_of_scans(const Calibration& calibration,
+                                                      std::span<const CloudSensor> sensors,
+                                                      std::size_t scans) {
+  if (sensors.empty()) return std::vector<const Calibration*>(scans, &calibration);
+  std::vector<const Calibration*> of_scans;
+  for (const CloudSensor& sensor : sensors) {
+    const Calibration* own = calibration.of_sensor(sensor.name);
+    if (own == nullptr) throw std::logic_error("calibrations_of_scans: a sensor without one");
+    of_scans.insert(of_scans.end(), sensor.scans, own);
+  }
+  return of_scans;
+}
+
+std::optional<Trajectory> corrected_poses(const Trajectory& given,
+                                          std::span<const Calibration* const> of_scans) {
+  Trajectory corrected;
+  for (std::size_t begin = 0, end = 0; begin < given.size(); begin = end) {
+    while (end < given.size() && of_scans[end] == of_scans[begin]) ++end;
+    Trajectory part(given.begin() + static_cast<std::ptrdiff_t>(begin),
+                    given.begin() + static_cast<std::ptrdiff_t>(end));
+    if (!apply(*of_scans[begin], part)) return std::nullopt;
+    corrected.insert(corrected.end(), part.begin(), part.end());
+  }
+  return corrected;
+}
+
 bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& executor) {
   if (missing_for_calibration(cloud) != nullptr) return false;
+  const std::vector<const Calibration*> of_scans =
+      calibrations_of_scans(calibration, cloud.sensors, cloud.scan_poses.size());
   const Trajectory given = cloud.scan_poses;
-  if (!apply(calibration, cloud.scan_poses)) return false;
+  const auto corrected = corrected_poses(given, of_scans);
+  if (!corrected) return false;
+  cloud.scan_poses = *corrected;
   const auto local = [&](RigidTransform pose) {
     pose.translation = pose.translation - cloud.origin;
     return pose;
   };
   std::vector<RigidTransform> corrections;
   std::vector<Vec3d> axes;
+  std::vector<Mat3d> frames;  // sensor_from_world
   for (std::size_t scan = 0; scan < given.size(); ++scan) {
     const RigidTransform before = local(given[scan].world_from_sensor);
     corrections.push_back(local(cloud.scan_poses[scan].world_from_sensor) * before.inverse());
     axes.push_back(before.rotation * Vec3d{0, 0, 1});
+    frames.push_back(before.rotation.transposed());
   }
   executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t scan = cloud.scan_indices[i];
       const Vec3d sensor = vec_cast<double>(cloud.sensor_positions[i]);
-      const Vec3d point =
-          calibration.lasers.corrected(sensor, vec_cast<double>(cloud.positions[i]), axes[scan],
-                                       cloud.lasers.empty() ? kNoLaser : cloud.lasers[i]);
+      const Vec3d measured = vec_cast<double>(cloud.positions[i]);
+      const Vec3d direction = frames[scan] * (measured - sensor);
+      const LaserOffsets& lasers = of_scans[scan]->lasers;
+      const std::uint16_t laser =
+          lasers.laser_of(direction, cloud.lasers.empty() ? kNoLaser : cloud.lasers[i]);
+      const Vec3d point = lasers.corrected(sensor, measured, axes[scan], laser);
       cloud.positions[i] = vec_cast<float>(corrections[scan] * point);
       cloud.sensor_positions[i] = vec_cast<float>(corrections[scan] * sensor);
     }
@@ -268,9 +311,43 @@ bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& ex
   return true;
 }
 
+namespace {
+
+/// Largest distance of poses from those that a calibration was estimated from, at their times.
+double distance_m(const std::vector<PoseCorrection>& given, const Trajectory& poses) {
+  double largest = 0;
+  for (const TimedPose& pose : poses) {
+    auto after = std::ranges::lower_bound(given, pose.time_s, {}, &PoseCorrection::time_s);
+    if (after == given.end()) --after;
+    const PoseCorrection &b = *after, &a = after == given.begin() ? b : *std::prev(after);
+    const double step_s = b.time_s - a.time_s;
+    const double share = step_s > 0 ? (pose.time_s - a.time_s) / step_s : 0;
+    const Vec3d there = a.position + share * (b.position - a.position);
+    largest = std::max(largest, length(there - pose.world_from_sensor.translation));
+  }
+  return largest;
+}
+
+/// The calibration of a drive; of one without the name of a sensor: that with the nearest poses.
+const Calibration* calibration_of(const Calibration& calibration, const KittiSequence& sequence) {
+  if (!sequence.rig_sensor.empty() || calibration.others.empty())
+    return calibration.of_sensor(sequence.rig_sensor.empty() ? calibration.sensor
+                                                             : sequence.rig_sensor);
+  const Calibration* nearest = &calibration;
+  for (const Calibration& other : calibration.others)
+    if (!other.poses.empty() && !nearest->poses.empty() &&
+        distance_m(other.poses, sequence.trajectory) <
+            distance_m(nearest->poses, sequence.trajectory))
+      nearest = &other;
+  return nearest;
+}
+
+}  // namespace
+
 bool apply(const Calibration& calibration, KittiSequence& sequence) {
-  if (!apply(calibration, sequence.trajectory)) return false;
-  sequence.beams.offsets = calibration.lasers;
+  const Calibration* own = calibration_of(calibration, sequence);
+  if (own == nullptr || !apply(*own, sequence.trajectory)) return false;
+  sequence.beams.offsets = own->lasers;
   return true;
 }
 

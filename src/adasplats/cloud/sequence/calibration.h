@@ -4,6 +4,9 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "adasplats/cloud/points/laser_offsets.h"
@@ -36,7 +39,8 @@ struct PoseCorrection {
 };
 
 /// Corrections of a recording: the mount, the poses of its scans and the lasers of its sensor.
-/// Corrected coordinates are in the world frame of the given poses.
+/// Corrected coordinates are in the world frame of the given poses. Of a rig: those of its first
+/// sensor, and of the `others`.
 struct Calibration {
   MountCorrection mount;              ///< applied first; `poses` correct the remaining errors
   std::vector<PoseCorrection> poses;  ///< scan by scan; a time that does not ascend starts a drive
@@ -45,11 +49,15 @@ struct Calibration {
   /// part of the estimate, s: drift persists from scan to scan, noise of single poses does not. 0:
   /// interpolate between the two adjacent scans.
   double smooth_s = 0;
+  std::string sensor;               ///< its name in the rig; empty: no rig
+  std::vector<Calibration> others;  ///< of the other sensors of the rig
 
   bool empty() const { return mount.empty() && poses.empty() && lasers.empty(); }
   /// Whether the mount or any pose is corrected.
   bool moves_scans() const;
 
+  /// That of a sensor of a rig by its name; itself if it is not of a rig. Null: no such sensor.
+  const Calibration* of_sensor(std::string_view name) const;
   /// See CorrectionLookup, which is faster for many poses.
   std::optional<PoseCorrection> at(double time_s, Vec3d position) const;
   std::optional<RigidTransform> corrected(const TimedPose& given) const;
@@ -105,6 +113,15 @@ struct CalibrationSizes {
   double range_rms_m = 0, elevation_rms_rad = 0;         ///< of the lasers
 };
 CalibrationSizes sizes_of(const Calibration& calibration);
+
+/// The calibration of each of `scans` scans of the sensors of a rig (none: one sensor). Errors:
+/// std::logic_error (a sensor without one).
+std::vector<const Calibration*> calibrations_of_scans(const Calibration& calibration,
+                                                      std::span<const CloudSensor> sensors,
+                                                      std::size_t scans);
+/// Poses corrected by the calibration of each; nothing if one is not covered.
+std::optional<Trajectory> corrected_poses(const Trajectory& given,
+                                          std::span<const Calibration* const> of_scans);
 
 /// Corrects the poses of scans (CorrectionLookup). If a pose belongs to no drive of the
 /// calibration, returns false and leaves `poses` unchanged.

@@ -170,8 +170,11 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
   const Vec3d point = vec_cast<double>(scan.positions[i]);
   if (scan.origins.empty()) return sequence.beams.beam_of(index, point);
   const Vec3d origin = vec_cast<double>(scan.origins[i]);
+  const LaserOffsets& offsets = sequence.beams.offsets;
   const std::uint16_t laser = scan.lasers[i];
-  return {origin, sequence.beams.offsets.corrected(origin, point, {0, 0, 1}, laser), laser};
+  const Vec3d end =
+      offsets.corrected(origin, point, {0, 0, 1}, offsets.laser_of(point - origin, laser));
+  return {origin, end, laser};
 }
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {

@@ -61,6 +61,7 @@ struct KittiSequence {
   ScanBeams beams;   ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
   DriveFacts facts;
+  std::string rig_sensor;  ///< its name in the rig; empty: no rig
 };
 
 /// True for a folder with a `velodyne` folder in it, and for a drive of KITTI's raw data

@@ -169,7 +169,8 @@ Vec3d ScanBeams::origin_of(std::size_t scan, Vec3d point) const {
 MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
   const double phase = sweep_phase(point);
   MeasuredBeam beam{origin_in_sweep(*this, scan, point, phase), point, laser_of(scan, point)};
-  beam.end = offsets.corrected(beam.origin, beam.end, {0, 0, 1}, beam.laser);
+  beam.end = offsets.corrected(beam.origin, beam.end, {0, 0, 1},
+                               offsets.laser_of(beam.end - beam.origin, beam.laser));
   if (scan < raw_motions.size()) {
     const RigidTransform moved = frame_from_sensor(raw_motions[scan], phase);
     beam.origin = moved * beam.origin;

@@ -28,7 +28,7 @@ class DeviceRules {
   DeviceBuffer<double> ring_noise_m_;
   DeviceBuffer<float> weights_;
   DeviceBuffer<std::uint8_t> blocked_;
-  DeviceBuffer<std::uint16_t> body_cells_;
+  DeviceBuffer<std::uint32_t> body_cells_;
   DeviceBuffer<BodyCell> body_;
   DeviceBuffer<double> expected_;
   DeviceBuffer<float> gains_;

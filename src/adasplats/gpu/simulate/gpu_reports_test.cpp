@@ -105,6 +105,10 @@ std::vector<Option> options() {
            body.cells.push_back({3, column, 0.6F, 1 + 0.01F * column, 0.3F});
          s.sensor.body = body;
        }},
+      {"vehicle's boxes",
+       [](ReportCase& s) {
+         s.sensor.body = VehicleBody{{{3, 5, 1, 2, 0.3F}}, {{{{}, {2, 1, -1}}, {1, 0.5, 0.4}}}};
+       }},
       {"noise of rings",
        [](ReportCase& s) {
          s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};

@@ -90,12 +90,18 @@ std::string lasers_text(const LaserOffsets& lasers) {
 /// Writes the files of a result below a folder and notes their names.
 class CalibrationFiles {
  public:
-  CalibrationFiles(fs::path folder, CalibrateResult& result, ProgressSink& progress)
-      : folder_(std::move(folder)), result_(result), progress_(progress) {}
+  /// `output`: the name of the folder when it is complete.
+  CalibrationFiles(fs::path folder, fs::path output, CalibrateResult& result,
+                   ProgressSink& progress)
+      : folder_(std::move(folder)),
+        output_(std::move(output)),
+        result_(result),
+        progress_(progress) {}
 
   void write() {
     if (!result_.calibration.empty()) {
       write_drives();
+      if (!result_.mounts.empty()) write_rig();
       if (!result_.calibration.lasers.empty()) write_lasers();
     }
     result_.files.insert(result_.files.end(), {"report.json", "report.html"});
@@ -115,7 +121,8 @@ class CalibrationFiles {
     const std::vector<LoadedDrive>& drives = result_.loaded.drives;
     auto begin = result_.corrected.begin();
     for (std::size_t k = 0; k < drives.size(); ++k) {
-      const fs::path place = drives.size() == 1 ? "" : "drive_" + std::to_string(k);
+      fs::path place = drives.size() == 1 ? "" : "drive_" + std::to_string(k);
+      if (!result_.sensors.empty()) place = result_.sensors[k].name;
       if (!place.empty()) fs::create_directory(folder_ / place);
       const auto end = std::next(begin, static_cast<std::ptrdiff_t>(drives[k].scans));
       write_trajectory_csv(named(place / "trajectory.csv"), Trajectory(begin, end));
@@ -135,6 +142,11 @@ class CalibrationFiles {
                    "were calibrated; trajectory.csv has these");
   }
 
+  void write_rig() {
+    write_file(named("rig.toml"),
+               rig_toml(calibrated_rig(*result_.rig, result_.mounts, fs::absolute(output_))));
+  }
+
   void write_lasers() {
     const LaserOffsets& lasers = result_.calibration.lasers;
     write_file(named("lasers.csv"), lasers_text(lasers));
@@ -143,7 +155,7 @@ class CalibrationFiles {
                calibrated_sensor_toml(result_.sensor, {lasers.range_m, lasers.elevation_rad}));
   }
 
-  fs::path folder_;
+  fs::path folder_, output_;
   CalibrateResult& result_;
   ProgressSink& progress_;
 };
@@ -153,7 +165,10 @@ void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session&
                      CalibrateResult& result) {
   auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   result.loaded = std::move(loaded);
-  if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
+  result.sensors = cloud.sensors;
+  result.rig = inputs.rig();
+  if (cloud.sensors.empty() && (job.calibrate.ranges || job.calibrate.elevations))
+    require_one_sensor(result.loaded.drives);
   auto [calibration, report] = calibrate_drives(
       cloud, job.calibrate, job.windows, calibrate_on(session), session.executor, session.progress);
   result.calibration = std::move(calibration);
@@ -185,8 +200,13 @@ CalibrateResult estimated(const CalibrateJob& job, Session& session) {
     estimate_loaded(job, inputs, session, result);
   result.sensor = sensor_of_all(result.loaded.drives);
   result.corrected = result.given;
-  if (!result.calibration.empty() && !adasplats::apply(result.calibration, result.corrected))
-    throw std::logic_error("run_calibrate: a calibration of other scans");
+  if (result.calibration.empty()) return result;
+  const auto corrected = corrected_poses(
+      result.given, calibrations_of_scans(result.calibration, result.sensors, result.given.size()));
+  if (!corrected) throw std::logic_error("run_calibrate: a calibration of other scans");
+  result.corrected = *corrected;
+  if (result.sensors.size() > 1)
+    result.mounts = rig_mounts(result.sensors, result.corrected, result.report);
   return result;
 }
 
@@ -237,7 +257,7 @@ CalibrateResult run_calibrate(const CalibrateJob& job, Session& session) {
   CalibrateResult result = estimated(job, session);
   const std::string warning = warning_of(result.report);
   if (!result.calibration.empty() && !warning.empty()) session.progress.warn(warning);
-  CalibrationFiles(folder.path(), result, session.progress).write();
+  CalibrationFiles(folder.path(), job.output, result, session.progress).write();
   folder.commit();
   if (result.calibration.empty())
     throw Error(ErrorKind::data, "nothing calibrated: " + result.report.objection + " (" +
@@ -262,6 +282,8 @@ Json to_json(const CalibrateResult& result) {
                               {"beams", result.loaded.beams[k]},
                               {"scans", drive.scans}});
   }
+  if (!result.mounts.empty())
+    json["sensors"] = to_json(result.mounts, result.report, result.calibration);
   json["scans"] = scans_json(result);
   json["lasers"] = {{"range_offset_m", result.calibration.lasers.range_m},
                     {"elevation_offset_rad", result.calibration.lasers.elevation_rad}};

@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/jobs/calibrate/rig_mounts.h"
 #include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
@@ -28,17 +30,21 @@ struct CalibrateResult {
   LoadReport loaded;
   CalibrationReport report;
   Calibration calibration;
-  Trajectory given, corrected;     ///< poses of the scans
-  std::string sensor;              ///< that measured all drives; empty: unknown
-  std::vector<std::string> files;  ///< below the folder
+  Trajectory given, corrected;  ///< poses of the scans
+  std::optional<Rig> rig;
+  std::vector<CloudSensor> sensors;  ///< of a rig
+  std::vector<RigMount> mounts;      ///< of these sensors
+  std::string sensor;                ///< that measured all drives; empty: unknown
+  std::vector<std::string> files;    ///< below the folder
   double seconds = 0;
 };
 
 /// Estimates and writes, for a drive (several: each in a folder drive_N of its own, from 0 on),
 /// trajectory.csv, lasers.csv, report.json and report.html; for a SemanticKITTI folder with all
 /// scans covered also poses.txt, which can replace its own; for a recognised sensor sensor.toml.
-/// Without a correction to apply only the reports. Errors: usage (nothing to estimate); data with
-/// the objection (no correction to apply); those of load_cloud and OutputFolder.
+/// For a rig: a folder for each sensor by its name, and rig.toml with mounts and clocks. Without a
+/// correction to apply only the reports. Errors: usage (nothing to estimate); data with the
+/// objection (no correction to apply); those of load_cloud and OutputFolder.
 CalibrateResult run_calibrate(const CalibrateJob& job, Session& session);
 
 /// The keys of report.json; the same for the same job.

@@ -24,16 +24,15 @@ CalibrateCloud calibrate_on(Session& session) {
   };
 }
 
+Vec3d yaw_pitch_roll_deg(const Mat3d& rotation) {
+  const Vec3d* const r = rotation.rows;
+  return {std::atan2(r[1].x, r[0].x) / kDegree, std::asin(std::clamp(-r[2].x, -1.0, 1.0)) / kDegree,
+          std::atan2(r[2].y, r[2].z) / kDegree};
+}
+
 namespace {
 
 using MountJson = nlohmann::ordered_json;
-
-/// Yaw, pitch and roll, as rotation_from_yaw_pitch_roll() takes them, in degrees.
-MountJson yaw_pitch_roll_deg(const Mat3d& r) {
-  return {std::atan2(r.rows[1].x, r.rows[0].x) / kDegree,
-          std::asin(std::clamp(-r.rows[2].x, -1.0, 1.0)) / kDegree,
-          std::atan2(r.rows[2].y, r.rows[2].z) / kDegree};
-}
 
 MountJson mount_json(const MountReport& report) {
   const MountEstimate& found = report.found;
@@ -43,7 +42,8 @@ MountJson mount_json(const MountReport& report) {
   if (!report.alone_because.empty()) json["alone_because"] = report.alone_because;
   if (found.planes == 0) return json;
   json["planes"] = found.planes;
-  json["yaw_pitch_roll_deg"] = yaw_pitch_roll_deg(found.mount.given_from_mounted().rotation);
+  const Vec3d turn_deg = yaw_pitch_roll_deg(found.mount.given_from_mounted().rotation);
+  json["yaw_pitch_roll_deg"] = {turn_deg.x, turn_deg.y, turn_deg.z};
   const Vec3d shift = found.mount.shift_m, turn_sd = found.rotation_sd_rad;
   json["shift_m"] = {shift.x, shift.y, shift.z};
   json["yaw_pitch_roll_sd_deg"] = {turn_sd.z / kDegree, turn_sd.y / kDegree, turn_sd.x / kDegree};

@@ -14,7 +14,7 @@ DriveReader::DriveReader(const OpenInputs& inputs, Session& session)
 
 std::optional<DriveReader> DriveReader::of(const OpenInputs& inputs, std::size_t window_scans,
                                            Session& session) {
-  if (!inputs.are_drives()) return std::nullopt;
+  if (!inputs.are_drives() || inputs.rig()) return std::nullopt;
   std::vector<std::size_t> counts;
   for (std::size_t k = 0; k < inputs.inputs().size(); ++k) counts.push_back(inputs.chosen_scans(k));
   // Of drives without a chosen scan load() says what is wrong.
@@ -43,22 +43,11 @@ std::vector<DriveSource> DriveReader::sources() {
 PointCloud DriveReader::read(std::size_t drive, ScanSpan span) {
   auto [cloud, loaded] =
       inputs_->load({drive, span.begin, span.size()}, session_->executor, *warnings_);
-  if (!is_counted_[drive][span.begin]) count(loaded);
+  loaded.beams.clear();
+  loaded.drives.clear();
+  if (!is_counted_[drive][span.begin]) report_.add(std::move(loaded));
   is_counted_[drive][span.begin] = true;
   return std::move(cloud);
-}
-
-void DriveReader::count(const LoadReport& piece) {
-  report_.points_read += piece.points_read;
-  report_.dropped_not_finite += piece.dropped_not_finite;
-  report_.no_returns += piece.no_returns;
-  report_.unknown_intensities += piece.unknown_intensities;
-  report_.dropped_far += piece.dropped_far;
-  report_.in_boxes += piece.in_boxes;
-  report_.own_body += piece.own_body;
-  report_.driven_path += piece.driven_path;
-  for (std::size_t kind = 0; kind < piece.origins.size(); ++kind)
-    report_.origins[kind] += piece.origins[kind];
 }
 
 void DriveReader::end() { warnings_->end(); }

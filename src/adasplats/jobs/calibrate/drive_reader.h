@@ -32,7 +32,6 @@ class DriveReader {
  private:
   DriveReader(const OpenInputs& inputs, Session& session);
   PointCloud read(std::size_t drive, ScanSpan span);
-  void count(const LoadReport& piece);
 
   const OpenInputs* inputs_;
   Session* session_;

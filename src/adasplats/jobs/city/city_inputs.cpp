@@ -30,10 +30,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kPieceScans = 200;
 
 void correct(const Calibration& calibration, PointCloud& cloud, const Executor& executor) {
-  if (calibration.empty()) return;
-  if (!apply(calibration, cloud, executor))
+  if (!calibration.empty() && !apply(calibration, cloud, executor))
     throw std::logic_error("read_city_points: a calibration of other scans");
-  cloud.lasers = {};  // all that they are for
+  cloud.lasers = {};  // they are for the calibration only
+  keep_sensors_of_model(cloud);
 }
 
 CityPoints read_drives(const ModelJob& job, DriveReader& pieces, Session& session,

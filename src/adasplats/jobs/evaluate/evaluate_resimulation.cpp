@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/load/rig_of_recording.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/constants.h"
@@ -35,6 +36,7 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   chosen.beams.recognised = all.beams.recognised;
   chosen.reader = all.reader;
   chosen.facts = all.facts;
+  chosen.rig_sensor = all.rig_sensor;
   for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
     chosen.scans.push_back(all.scans[i]);
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
@@ -64,6 +66,7 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
                                      ": beams cannot be cast again, because their origins are "
                                      "unknown; give a folder of scans with a pose each, or points "
                                      "with times of a recognised sensor");
+  if (is_recording(scans.sequence)) drive->rig_sensor = sensor_of_topic(scans.topic);
   return std::move(*drive);
 }
 
@@ -170,7 +173,22 @@ void warn_of_other_place(const ModelScene& scene, const KittiSequence& sequence,
 
 }  // namespace
 
+namespace {
+
+/// The sensor of a rig that `topic` names.
+KittiSequence open_sensor(const HeldOutScans& scans, Session& session) {
+  const Rig rig = read_rig(scans.sequence);
+  require_no_settings(rig, scans);
+  if (!scans.motion.empty())
+    throw Error(ErrorKind::usage, "`motion` is for raw scans of a sequence, not for a rig");
+  const std::size_t sensor = rig.sensors.size() == 1 ? 0 : rig.index_of(scans.topic);
+  return open_rig_sensor(rig.sensors[sensor], session.executor, session.progress);
+}
+
+}  // namespace
+
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
+  if (is_rig(scans.sequence)) return with_scans(open_sensor(scans, session), scans.scans);
   const bool is_drive = !scans.trajectory.empty() || is_self_contained_drive(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage,

@@ -116,7 +116,7 @@ class ModelMaker {
       session_.progress.warn(
           "all points and sensor positions are in one plane, as those of a 2-D scanner: the "
           "normals of surfaces are unknown, and the splats lie in that plane");
-    correct(cloud, result);
+    if (is_calibrated_ || !options_.calibration.on) correct(cloud, result);
     if (!classes_.empty()) cloud.classes = classes_;
     return cloud;
   }
@@ -132,12 +132,11 @@ class ModelMaker {
     result.steps.push_back({"segment", watch.seconds()});
   }
 
-  /// Before anything is calibrated: nothing.
-  void correct(PointCloud& cloud, const ModelResult& result) {
-    if (result.calibration.empty()) return;
-    if (!apply(result.calibration, cloud, session_.executor))
+  void correct(PointCloud& cloud, const ModelResult& result) const {
+    if (!result.calibration.empty() && !apply(result.calibration, cloud, session_.executor))
       throw std::logic_error("make_model: a calibration of other scans");
-    cloud.lasers = {};  // all that they are for
+    cloud.lasers = {};  // they are for the calibration only
+    keep_sensors_of_model(cloud);
   }
 
   void estimate_calibration(PointCloud& cloud, ModelResult& result) {
@@ -147,6 +146,7 @@ class ModelMaker {
                          calibrate_on(session_), session_.executor, session_.progress);
     result.calibration = std::move(calibration);
     result.calibrated = std::move(report);
+    is_calibrated_ = true;
     correct(cloud, result);
     result.steps.push_back({"calibrate", watch.seconds()});
   }
@@ -174,6 +174,7 @@ class ModelMaker {
   std::optional<PointClassifier> classifier_;
   std::vector<std::uint16_t> classes_;  ///< by the network, of the points as they are loaded
   LoadPoints load_points_;
+  bool is_calibrated_ = false;  ///< result.calibration is the final one
   Session& session_;
 };
 

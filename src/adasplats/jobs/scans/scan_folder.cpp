@@ -93,27 +93,29 @@ ScanRecorder::ScanRecorder(ScanWriter& writer, ParallelWriteOptions options, std
       done_(done) {}
 
 ReportTimes ScanRecorder::record(ScanSimulator& simulator, std::span<const ScanMotion> scans,
-                                 std::size_t first, std::size_t count, std::uint64_t number) {
+                                 std::size_t first, std::size_t count, std::uint64_t number,
+                                 const SensorOfRig& sensor) {
   return simulator.run_held(scans.subspan(first, count), number,
                             [&](std::size_t i, HeldScan&& held) {
                               rays_ += held.scan.rays;
                               hits_ += held.scan.size();
-                              files_.write(first + i, std::move(held));
+                              files_.write(sensor.number(first + i), std::move(held));
                               session_.progress.advance(++done_);
                             });
 }
 
 std::size_t keep_written_scans(ScanWriter& writer, const ResumableFolder& folder,
-                               std::span<const ScanMotion> scans) {
+                               std::span<const ScanMotion> scans, const SensorOfRig& sensor) {
   std::map<std::size_t, std::vector<std::string>> files;
   for (const auto& [name, digest] : folder.recorded())
-    if (const auto scan = scan_of_file(name)) files[*scan].push_back(name);
+    if (const auto scan = scan_of_file(name); scan && name.starts_with(sensor.folder))
+      files[*scan].push_back(name);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     // The files of a scan are recorded together, the main one last: if it is there, all are.
-    const std::string main_file = writer.main_file(i);
+    const std::string main_file = writer.main_file(sensor.number(i));
     if (main_file.empty() || !folder.recorded().contains(main_file)) return i;
     if (!folder.has(files[i])) return i;
-    writer.keep(i, scans[i].reference);
+    writer.keep(sensor.number(i), scans[i].reference);
   }
   return scans.size();
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/dataset/parallel_scan_writer.h"
+#include "adasplats/dataset/rig_writer.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/jobs/output/resumable_folder.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
@@ -20,6 +21,15 @@ namespace adasplats {
 
 // Writing of simulated scans into a ResumableFolder, in one run or in many tasks.
 
+/// The scans of one sensor among those of a rig; by default, of the only sensor.
+struct SensorOfRig {
+  std::string folder;  ///< "NAME/"; empty: the sensor is the only one
+  std::size_t sensor = 0, sensors = 1;
+
+  /// The number of a scan for the writer.
+  std::size_t number(std::size_t scan) const { return rig_scan_number(scan, sensor, sensors); }
+};
+
 /// Casts scans and writes them meanwhile, on the session's threads.
 class ScanRecorder {
  public:
@@ -29,9 +39,9 @@ class ScanRecorder {
                Session& session);
 
   /// Casts `count` scans from `first` on, the first with this number (ScanSimulator::run). By
-  /// ascending `first`.
+  /// ascending `first`, for each sensor.
   ReportTimes record(ScanSimulator& simulator, std::span<const ScanMotion> scans, std::size_t first,
-                     std::size_t count, std::uint64_t number);
+                     std::size_t count, std::uint64_t number, const SensorOfRig& sensor = {});
   /// Waits until all scans are written. Call once, last.
   void finish() { files_.finish(); }
 
@@ -47,7 +57,7 @@ class ScanRecorder {
 /// Announces to a writer the scans that an interrupted run wrote, from the first one up to the
 /// first that is missing or damaged, and returns their number. Errors: io.
 std::size_t keep_written_scans(ScanWriter& writer, const ResumableFolder& folder,
-                               std::span<const ScanMotion> scans);
+                               std::span<const ScanMotion> scans, const SensorOfRig& sensor = {});
 
 /// Records written scans in the journal of a folder as soon as one of them has a return: the scans
 /// of an interrupted run are never all empty.

@@ -150,22 +150,52 @@ Json sensor_content(const LidarModel& sensor) {
   return json;
 }
 
-Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
-                      const ScanScene& scene) {
+namespace {
+
+Json rig_content(const Rig& rig, std::span<const MountedSensor> sensors) {
+  const auto boxes_content = [](const std::vector<RigBox>& boxes) {
+    Json list = Json::array();
+    for (const auto& [center, size] : boxes)
+      list.push_back({center.x, center.y, center.z, size.x, size.y, size.z});
+    return list;
+  };
+  Json json = {{"body", boxes_content(rig.body)}, {"sensors", Json::array()}};
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const MountedSensor& sensor = sensors[k];
+    Json content = sensor_content(sensor.settings.sensor);
+    if (sensor.settings.sensor_offsets)
+      content["range_offsets_m"] = sensor.settings.sensor.range_offsets_m;
+    json["sensors"].push_back({{"name", sensor.name},
+                               {"sensor", content},
+                               {"mount", matrix_content(sensor.mount)},
+                               {"time_offset_s", sensor.time_offset_s},
+                               {"topic", rig.sensors[k].topic},
+                               {"in_model", rig.sensors[k].is_in_model},
+                               {"body", boxes_content(rig.sensors[k].body)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json simulate_content(const SimulateJob& job, std::span<const MountedSensor> sensors,
+                      const std::optional<Rig>& rig, const ScanScene& scene) {
+  const ScanSettings& settings = sensors.front().settings;
   Json model = Json::array();
   for (const std::filesystem::path& file : files_of_scene(job.model))
     model.push_back(file_content(file));
-  Json content = {{"model", model},
-                  {"sensor", sensor_content(settings.sensor)},
-                  {"drive", drive_content(job.drive)},
-                  {"points", word_of(settings.frame, kPointFrames)},
-                  {"beam", content_of(settings.beam)},
-                  {"noise", settings.noise},
-                  {"weather", content_of(settings.weather)},
-                  {"seed", settings.seed},
-                  {"format", word_of(job.format, kScanFormats)},
-                  {"point_order", word_of(job.point_order, kPointOrders)}};
-  if (settings.sensor_offsets)
+  Json content = {
+      {"model", model},
+      {rig ? "rig" : "sensor", rig ? rig_content(*rig, sensors) : sensor_content(settings.sensor)},
+      {"drive", drive_content(job.drive)},
+      {"points", word_of(settings.frame, kPointFrames)},
+      {"beam", content_of(settings.beam)},
+      {"noise", settings.noise},
+      {"weather", content_of(settings.weather)},
+      {"seed", settings.seed},
+      {"format", word_of(job.format, kScanFormats)},
+      {"point_order", word_of(job.point_order, kPointOrders)}};
+  if (settings.sensor_offsets && !rig)
     content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
   if (is_ray_drop_file(job.scan.ray_drop_file))

@@ -4,8 +4,12 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
 
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/jobs/scans/simulate.h"
+#include "adasplats/jobs/scene/rig_sensors.h"
 #include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
 
@@ -17,7 +21,8 @@ nlohmann::ordered_json sensor_content(const LidarModel& sensor);
 
 /// What the folder of a simulation says of itself (docs/formats.md): everything that decides the
 /// scans, and nothing that differs between two runs of the same. Files go by name and SHA-256.
-nlohmann::ordered_json simulate_content(const SimulateJob& job, const ScanSettings& settings,
-                                        const ScanScene& scene);
+nlohmann::ordered_json simulate_content(const SimulateJob& job,
+                                        std::span<const MountedSensor> sensors,
+                                        const std::optional<Rig>& rig, const ScanScene& scene);
 
 }  // namespace adasplats

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,19 +13,23 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
+#include "adasplats/dataset/rig_writer.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/folder_task.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/output/resumable_folder.h"
 #include "adasplats/jobs/scans/scan_folder.h"
 #include "adasplats/jobs/scans/scan_manifest.h"
+#include "adasplats/jobs/scans/written_rig.h"
 #include "adasplats/jobs/scene/city_scene.h"
 #include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/rig_sensors.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
@@ -38,13 +43,14 @@ std::vector<EncodedFile> boxes_of(const ScanScene& scene, std::size_t index, con
   return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
 
-/// Throws data if no ray hit anything.
+/// Throws data if no ray of a sensor hit anything.
 void require_returns(const SimulateResult& result, const ScanScene& scene,
-                     std::span<const ScanMotion> scans, const LidarModel& sensor) {
+                     const MountedSensor& sensor) {
   if (result.hits != 0 || result.scans_resumed != 0) return;
   throw_no_returns(
-      result.rays, scene, scans, sensor,
-      "are trajectory and model in the same frame? `offset` and `mount` shift the sensor");
+      result.rays, scene, sensor.scans, sensor.settings.sensor,
+      (sensor.name.empty() ? "" : "sensor '" + sensor.name + "' of the rig; ") +
+          "are trajectory and model in the same frame? `offset` and `mount` shift the sensor");
 }
 
 /// The smallest usual scale of intensities that the scene does not exceed.
@@ -63,6 +69,35 @@ PacketOptions packet_options(const ScanSettings& settings, const DriveOptions& d
   packets.is_raw = settings.frame == PointFrame::raw;
   if (drive.rolling_shutter) packets.begin_after_s = -0.5 / settings.sensor.rotation_hz;
   return packets;
+}
+
+/// Scans of a sensor that are cast before it is the turn of the next one: many for large launches
+/// of a GPU; fewer where the messages or packets of the other sensors wait in memory.
+std::size_t scans_a_turn(ScanFormat format) {
+  constexpr std::size_t kMany = 64, kFew = 16;
+  return format == ScanFormat::mcap || format == ScanFormat::pcap ? kFew : kMany;
+}
+
+/// The part of a simulation that does not depend on its scene.
+struct Plan {
+  SimulateJob job;                     ///< with the trajectory of the rig
+  std::optional<Rig> rig;              ///< else one sensor without a name
+  std::vector<MountedSensor> sensors;  ///< without scans if positions depend on the scene
+  Trajectory vehicle;                  ///< likewise; of a rig
+
+  std::size_t scans() const { return sensors.front().scans.size(); }  // as many as of the others
+  SensorOfRig place_of(std::size_t sensor) const {
+    return rig ? SensorOfRig{sensors[sensor].name + "/", sensor, sensors.size()} : SensorOfRig();
+  }
+};
+
+using Simulators = std::deque<ScanSimulator>;
+
+Simulators simulators_of(const Plan& plan, const ScanScene& scene, const Executor& executor) {
+  Simulators simulators;
+  for (const MountedSensor& sensor : plan.sensors)
+    simulators.emplace_back(scene, sensor.settings, executor);
+  return simulators;
 }
 
 ScanWriterOptions writing_options(const ScanSimulator& simulator, const SimulateJob& job,
@@ -84,10 +119,31 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
   return writing;
 }
 
-void warn_about_delay(const SimulateJob& job, const DriveSpan& drive, ProgressSink& progress) {
-  const double later_s = ros_delay_s(drive);
-  if (job.format != ScanFormat::mcap || later_s == 0) return;
-  progress.warn(job.output.string() +
+std::vector<RigWriterSensor> writer_sensors(const Simulators& simulators, const Plan& plan) {
+  std::vector<RigWriterSensor> sensors;
+  for (std::size_t k = 0; k < plan.sensors.size(); ++k) {
+    const MountedSensor& sensor = plan.sensors[k];
+    sensors.push_back({sensor.name, sensor.mount, sensor.time_offset_s,
+                       writing_options(simulators[k], plan.job, sensor.scans)});
+    if (plan.rig && plan.job.format == ScanFormat::pcap)
+      sensors.back().writing.packets.sender = sender_of(*plan.rig, k);
+  }
+  return sensors;
+}
+
+std::unique_ptr<ScanWriter> writer_of(const std::filesystem::path& folder,
+                                      const std::vector<RigWriterSensor>& sensors,
+                                      const Plan& plan) {
+  if (plan.rig) return make_rig_writer(folder, plan.job.format, sensors, plan.vehicle);
+  return make_scan_writer(folder, plan.job.format, sensors.front().writing);
+}
+
+void warn_about_delay(const Plan& plan, const std::vector<RigWriterSensor>& sensors,
+                      ProgressSink& progress) {
+  const double later_s = plan.rig ? rig_ros_delay_s(sensors, plan.vehicle)
+                                  : ros_delay_s(sensors.front().writing.drive);
+  if (plan.job.format != ScanFormat::mcap || later_s == 0) return;
+  progress.warn(plan.job.output.string() +
                 ": the first revolution begins before 0 s, and ROS messages have no negative " +
                 "times; all times in scans.mcap and poses.csv are shifted by +" +
                 std::to_string(static_cast<long>(later_s)) + " s");
@@ -95,58 +151,115 @@ void warn_about_delay(const SimulateJob& job, const DriveSpan& drive, ProgressSi
 
 /// A run that was interrupted while it finished may have written the poses, which mark a sequence
 /// as complete.
-void remove_poses(const std::filesystem::path& folder) {
-  std::filesystem::remove(folder / "sequences" / "00" / "poses.txt");
+void remove_poses(const std::filesystem::path& folder, const Plan& plan) {
+  for (std::size_t k = 0; k < plan.sensors.size(); ++k)
+    std::filesystem::remove(folder / plan.place_of(k).folder / "sequences" / "00" / "poses.txt");
 }
 
-/// Casts and writes the missing scans.
-ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
-                        const SimulateJob& job, ResumableFolder& folder, Session& session,
-                        SimulateResult& result) {
-  const ScanScene& scene = simulator.scene();
-  remove_poses(folder.path());
-  const ScanWriterOptions writing = writing_options(simulator, job, scans);
-  warn_about_delay(job, writing.drive, session.progress);
-  const auto writer = make_scan_writer(folder.path(), job.format, writing);
-  const std::size_t first = keep_written_scans(*writer, folder, scans);
-  const LidarModel& sensor = simulator.settings().sensor;
-  require_disk_space(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),
-                     simulator.settings().beam.returns);
-  result.scans = scans.size();
-  result.scans_resumed = first;
-  ScanJournal journal(folder);
-  ParallelWriteOptions parallel;
-  if (scene.world() != nullptr)
-    parallel.more_files = [&scene](std::size_t i, const ScanView& scan) {
-      return boxes_of(scene, i, scan);
-    };
-  parallel.written = [&journal](std::size_t, std::size_t points,
-                                std::span<const FileDigest> files) { journal.note(points, files); };
-  ScanRecorder recorder(*writer, parallel, first, session);
-  const ReportTimes times = recorder.record(simulator, scans, first, scans.size() - first, first);
+/// The files of boxes of a scan with the writer's number.
+std::vector<EncodedFile> numbered_boxes(const ScanScene& scene, const Plan& plan,
+                                        std::size_t number, const ScanView& scan) {
+  const std::size_t sensors = plan.sensors.size();
+  std::vector<EncodedFile> files = boxes_of(scene, number / sensors, scan);
+  for (EncodedFile& file : files) file.name.insert(0, plan.place_of(number % sensors).folder);
+  return files;
+}
+
+/// Casts the scans that are not `done` yet, a few of each sensor in turns. Errors: as
+/// require_returns(), for every sensor.
+ReportTimes record_scans(Simulators& simulators, const Plan& plan,
+                         const std::vector<std::size_t>& done, ScanRecorder& recorder,
+                         SimulateResult& result) {
+  ReportTimes times;
+  const std::size_t turn = plan.rig ? scans_a_turn(plan.job.format) : plan.scans();
+  std::vector<SimulateResult> results(plan.sensors.size());
+  for (std::size_t first = 0; first < plan.scans(); first += turn)
+    for (std::size_t k = 0; k < simulators.size(); ++k) {
+      const std::size_t begin = std::max(first, done[k]);
+      const std::size_t end = std::min(first + turn, plan.scans());
+      if (begin >= end) continue;
+      const std::size_t rays = recorder.rays(), hits = recorder.hits();
+      times += recorder.record(simulators[k], plan.sensors[k].scans, begin, end - begin, begin,
+                               plan.place_of(k));
+      results[k].rays += recorder.rays() - rays;
+      results[k].hits += recorder.hits() - hits;
+    }
   result.rays = recorder.rays();
   result.hits = recorder.hits();
-  require_returns(result, scene, scans, sensor);
-  recorder.finish();
+  for (std::size_t k = 0; k < simulators.size(); ++k) {
+    results[k].scans_resumed = done[k];
+    require_returns(results[k], simulators[k].scene(), plan.sensors[k]);
+  }
   return times;
 }
 
-/// The part of a simulation that does not depend on its scene.
-struct Plan {
-  ScanSettings settings;
-  std::vector<ScanMotion> scans;  ///< empty: positions depend on the scene (find_scans)
-};
+/// Casts and writes the missing scans.
+ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolder& folder,
+                        Session& session, SimulateResult& result) {
+  const ScanScene& scene = simulators.front().scene();
+  remove_poses(folder.path(), plan);
+  const std::vector<RigWriterSensor> sensors = writer_sensors(simulators, plan);
+  warn_about_delay(plan, sensors, session.progress);
+  const auto writer = writer_of(folder.path(), sensors, plan);
+  std::vector<std::size_t> done;
+  std::size_t missing = 0, missing_rays = 0;
+  for (std::size_t k = 0; k < plan.sensors.size(); ++k) {
+    const MountedSensor& sensor = plan.sensors[k];
+    done.push_back(keep_written_scans(*writer, folder, sensor.scans, plan.place_of(k)));
+    result.scans += plan.scans();
+    result.scans_resumed += done[k];
+    missing += plan.scans() - done[k];
+    missing_rays += (plan.scans() - done[k]) * sensor.settings.sensor.rays_per_scan();
+  }
+  require_disk_space(folder.path(), plan.job.format, missing,
+                     missing == 0 ? 0 : missing_rays / missing,
+                     plan.sensors.front().settings.beam.returns);
+  ScanJournal journal(folder);
+  ParallelWriteOptions parallel;
+  if (scene.world() != nullptr)
+    parallel.more_files = [&](std::size_t number, const ScanView& scan) {
+      return numbered_boxes(scene, plan, number, scan);
+    };
+  parallel.written = [&journal](std::size_t, std::size_t points,
+                                std::span<const FileDigest> files) { journal.note(points, files); };
+  ScanRecorder recorder(*writer, parallel, result.scans_resumed, session);
+  const ReportTimes times = record_scans(simulators, plan, done, recorder, result);
+  recorder.finish();
+  if (plan.rig) write_written_rig(folder.path(), *plan.rig, plan.job, sensors, *writer);
+  return times;
+}
+
+/// Sets the scans along a drive.
+void set_drive(Plan& plan, const DrivenPoses& driven, Session& session) {
+  MountedSensor& only = plan.sensors.front();
+  if (plan.rig)
+    plan.vehicle = set_scans(plan.sensors, plan.job.drive, driven, session.progress);
+  else
+    only.scans = scans_at(plan.job.drive, only.settings.sensor, driven, session.progress);
+}
 
 /// Checks the job before long work.
 Plan plan_of(const SimulateJob& job, Session& session) {
   require_input(job.model);
-  Plan plan{job.scan.settings(session.seed), {}};
-  plan.settings.fields = fields_of(job.format);
-  check_drive(job.drive);
-  if (job.format == ScanFormat::pcap)
-    require_packets(plan.settings.sensor, packet_options(plan.settings, job.drive));
-  if (!job.drive.trajectory.empty())
-    plan.scans = scans_along(job.drive, plan.settings.sensor, session.progress);
+  Plan plan{job, {}, {}, {}};
+  DriveOptions& drive = plan.job.drive;
+  if (job.rig.empty()) {
+    plan.sensors.push_back({"", job.scan.settings(session.seed), drive.mount, 0, {}});
+  } else {
+    require_input(job.rig);
+    require_rig_format(job.format);
+    plan.rig = read_rig_to_simulate(job.rig);
+    plan.sensors = sensors_of_rig(*plan.rig, job.scan, session.seed);
+    if (drive.trajectory.empty() && drive.at.empty() && drive.path.empty())
+      drive.trajectory = plan.rig->sensors.front().trajectory;
+  }
+  check_drive(drive);
+  for (MountedSensor& sensor : plan.sensors) {
+    sensor.settings.fields = fields_of(job.format);
+    if (job.format == ScanFormat::pcap)
+      require_packets(sensor.settings.sensor, packet_options(sensor.settings, drive));
+  }
+  if (!drive.trajectory.empty()) set_drive(plan, poses_along(drive, session.progress), session);
   return plan;
 }
 
@@ -188,24 +301,26 @@ class OpenScene {
 };
 
 /// Finds scan positions that depend on the scene, which is in memory then.
-void find_scans(Plan& plan, const SimulateJob& job, const ModelScene* scene, Session& session) {
-  if (job.drive.trajectory.empty())
-    plan.scans =
-        scans_along(job.drive, plan.settings.sensor, *scene, session.executor, session.progress);
+void find_scans(Plan& plan, const ModelScene* scene, Session& session) {
+  if (plan.job.drive.trajectory.empty())
+    set_drive(plan, poses_along(plan.job.drive, *scene, session.executor, session.progress),
+              session);
 }
 
-SimulateResult simulate_in(const ScanScene& scene, const Plan& plan, const SimulateJob& job,
-                           Session& session) {
-  ResumableFolder folder(job.output, job.overwrite, kCommand,
-                         simulate_content(job, plan.settings, scene));
+nlohmann::ordered_json content_of(const Plan& plan, const ScanScene& scene) {
+  return simulate_content(plan.job, plan.sensors, plan.rig, scene);
+}
+
+SimulateResult simulate_in(const ScanScene& scene, const Plan& plan, Session& session) {
+  ResumableFolder folder(plan.job.output, plan.job.overwrite, kCommand, content_of(plan, scene));
   record_spans(folder);
-  ScanSimulator simulator(scene, plan.settings, session.executor);
+  Simulators simulators = simulators_of(plan, scene, session.executor);
   SimulateResult result;
-  session.progress.begin_step("simulate", plan.scans.size());
+  session.progress.begin_step("simulate", plan.scans() * plan.sensors.size());
   const Stopwatch all;
   ReportTimes times;
   try {
-    times = write_scans(simulator, plan.scans, job, folder, session, result);
+    times = write_scans(simulators, plan, folder, session, result);
     session.progress.end_step();
     folder.commit(nlohmann::ordered_json::object(), span_note_files(folder.path()));
   } catch (const Error&) {
@@ -236,26 +351,30 @@ void require_files_of_scans(ScanFormat format) {
                 "`plan` needs a `format` with a file for each scan; this one has one file for all");
 }
 
-/// Casts and writes a span; each file appears complete or not at all.
-SpanResult write_span(ScanSimulator& simulator, std::span<const ScanMotion> scans, ScanTask span,
+/// Casts and writes a span of each sensor; each file appears complete or not at all.
+SpanResult write_span(Simulators& simulators, const Plan& plan, ScanTask span,
                       const ScanWriter& writer, const FolderTask& task, Session& session) {
-  const ScanScene& scene = simulator.scene();
+  const ScanScene& scene = simulators.front().scene();
   SpanResult result;
   std::vector<FileDigest> digests;
-  const auto write_scan = [&](std::size_t i, HeldScan&& held) {
-    const std::size_t number = span.first + i;
+  const auto write_scan = [&](std::size_t number, HeldScan&& held) {
     std::vector<EncodedFile> files;
-    if (scene.world() != nullptr) files = boxes_of(scene, number, held.scan);
+    if (scene.world() != nullptr) files = numbered_boxes(scene, plan, number, held.scan);
     EncodedScan encoded = writer.encode(number, held.scan);
     std::move(encoded.files.begin(), encoded.files.end(), std::back_inserter(files));
     write_encoded(task.path(), files, FileWrites::atomic);
     for (const EncodedFile& file : files) digests.push_back({file.name, sha256_of(file.bytes)});
     result.rays += held.scan.rays;
     result.hits += held.scan.size();
-    session.progress.advance(i + 1);
   };
-  session.progress.begin_step("simulate", span.count);
-  simulator.run_held(scans.subspan(span.first, span.count), span.first, write_scan);
+  session.progress.begin_step("simulate", span.count * simulators.size());
+  std::uint64_t done = 0;
+  for (std::size_t k = 0; k < simulators.size(); ++k)
+    simulators[k].run_held(std::span(plan.sensors[k].scans).subspan(span.first, span.count),
+                           span.first, [&](std::size_t i, HeldScan&& held) {
+                             write_scan(plan.place_of(k).number(span.first + i), std::move(held));
+                             session.progress.advance(++done);
+                           });
   session.progress.end_step();
   note_span(task.path(), span.first, span.count, digests, result.hits == 0);
   return result;
@@ -266,48 +385,48 @@ SpanResult write_span(ScanSimulator& simulator, std::span<const ScanMotion> scan
 std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count, Session& session) {
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
-  const OpenScene open(job, session);
+  const OpenScene open(plan.job, session);
   const ScanScene& scene = *open;
-  find_scans(plan, job, open.model(), session);
-  ResumableFolder folder(job.output, job.overwrite, kCommand,
-                         simulate_content(job, plan.settings, scene));
+  find_scans(plan, open.model(), session);
+  ResumableFolder folder(job.output, job.overwrite, kCommand, content_of(plan, scene));
   record_spans(folder);
   begin_spans(folder);
-  remove_poses(folder.path());
-  ScanSimulator simulator(scene, plan.settings, session.executor);
-  const auto writer =
-      make_scan_writer(folder.path(), job.format, writing_options(simulator, job, plan.scans));
-  return spans_to_do(plan.scans.size(), count,
-                     [&](std::size_t i) { return folder.has(writer->main_file(i)); });
+  remove_poses(folder.path(), plan);
+  const Simulators simulators = simulators_of(plan, scene, session.executor);
+  const auto writer = writer_of(folder.path(), writer_sensors(simulators, plan), plan);
+  return spans_to_do(plan.scans(), count, [&](std::size_t i) {
+    for (std::size_t k = 0; k < plan.sensors.size(); ++k)
+      if (!folder.has(writer->main_file(plan.place_of(k).number(i)))) return false;
+    return true;
+  });
 }
 
 SpanResult simulate_span(const SimulateJob& job, ScanTask span, Session& session) {
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
-  const OpenScene open(job, session);
+  const OpenScene open(plan.job, session);
   const ScanScene& scene = *open;
-  find_scans(plan, job, open.model(), session);
-  const std::size_t scans = plan.scans.size();
+  find_scans(plan, open.model(), session);
+  const std::size_t scans = plan.scans();
   if (span.count == 0 || span.first >= scans || span.count > scans - span.first)
     throw Error(ErrorKind::usage, "`only_scans` " + std::to_string(span.first) + ":" +
                                       std::to_string(span.count) + ": the drive has " +
                                       std::to_string(scans) + " scans");
-  const FolderTask task(job.output, kCommand, simulate_content(job, plan.settings, scene));
+  const FolderTask task(job.output, kCommand, content_of(plan, scene));
   if (task.is_finished() || has_span(task.path(), span.first, span.count)) return {0, 0, true};
-  ScanSimulator simulator(scene, plan.settings, session.executor);
-  remove_poses(task.path());
-  const auto writer =
-      make_scan_writer(task.path(), job.format, writing_options(simulator, job, plan.scans));
-  return write_span(simulator, plan.scans, span, *writer, task, session);
+  Simulators simulators = simulators_of(plan, scene, session.executor);
+  remove_poses(task.path(), plan);
+  const auto writer = writer_of(task.path(), writer_sensors(simulators, plan), plan);
+  return write_span(simulators, plan, span, *writer, task, session);
 }
 
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   Plan plan = plan_of(job, session);
   checked_output_folder(job.output, job.overwrite, kCommand);
-  const OpenScene open(job, session);
-  find_scans(plan, job, open.model(), session);
-  SimulateResult result = simulate_in(*open, plan, job, session);
+  const OpenScene open(plan.job, session);
+  find_scans(plan, open.model(), session);
+  SimulateResult result = simulate_in(*open, plan, session);
   result.tiles = open.tiles();
   result.seconds = total.seconds();
   return result;
@@ -317,8 +436,8 @@ SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Ses
   const Stopwatch total;
   Plan plan = plan_of(job, session);
   checked_output_folder(job.output, job.overwrite, kCommand);
-  find_scans(plan, job, &scene, session);
-  SimulateResult result = simulate_in(scene, plan, job, session);
+  find_scans(plan, &scene, session);
+  SimulateResult result = simulate_in(scene, plan, session);
   result.seconds = total.seconds();
   return result;
 }

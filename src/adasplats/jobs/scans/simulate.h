@@ -18,12 +18,16 @@
 
 namespace adasplats {
 
-/// Paper section "New Trajectory Simulation": a sensor along a shifted trajectory.
+/// Paper section "New Trajectory Simulation": a sensor, or those of a rig, along a shifted
+/// trajectory.
 struct SimulateJob {
   std::filesystem::path model;  ///< splats, a mesh, or a world file
   std::string labels;           ///< scheme of the classes; empty: the model's
   ScanChoice scan;
   DriveOptions drive;
+  /// The sensors of a vehicle that drives (read by parse_rig()), instead of `scan.sensor` and
+  /// `drive.mount`; its `trajectory` is the default of the drive. Empty: one sensor.
+  std::filesystem::path rig;
   std::filesystem::path output;
   ScanFormat format = ScanFormat::semantickitti;
   PointOrder point_order = PointOrder::kitti;  ///< in files of data sets
@@ -48,7 +52,8 @@ struct SimulateResult {
 /// Simulates and writes. After an interruption at any moment the same job resumes after the last
 /// complete scan, with the same bytes; formats with one file for all scans (mcap, pcap) start
 /// again. Along trajectories, tiles of a city are loaded on demand (CityScene), with the same
-/// bytes. Errors: cannot_create (also if the unfinished folder is of another job, other inputs or
+/// bytes. A rig is written as make_rig_writer() does, with a rig.toml of the result. Errors:
+/// cannot_create (also if the unfinished folder is of another job, other inputs or
 /// another version), io (also if the disk has too little space for the scans), data (no ray hit
 /// anything).
 SimulateResult run_simulate(const SimulateJob& job, Session& session);

@@ -83,28 +83,30 @@ void warn_of_jump(const std::filesystem::path& file, const Trajectory& motion,
                 "; scans there are simulated on the way; check that all poses are of one drive");
 }
 
-/// The scans at these poses.
-std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
-                                 const Trajectory& all, const Trajectory& motion,
-                                 ProgressSink& progress) {
+Trajectory every_nth(const Trajectory& all, const DriveOptions& drive) {
   Trajectory chosen;
   for (std::size_t i = 0; i < all.size(); i += drive.every) chosen.push_back(all[i]);
   if (chosen.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
-  const Trajectory poses = shifted(mounted(std::move(chosen), drive.mount), drive.offset_m);
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
+                                 const DrivenPoses& driven, ProgressSink& progress) {
+  const Trajectory poses = shifted(mounted(driven.poses, drive.mount), drive.offset_m);
   warn_of_poses(drive, poses, progress);
   if (!drive.rolling_shutter || fires_at_once(sensor)) return still_scans(poses);
-  if (motion.size() < 2)
+  if (driven.motion.size() < 2)
     throw Error(ErrorKind::data,
                 "a rolling shutter needs at least two poses, which define the motion");
   const double duration_s = 1 / sensor.rotation_hz;
   if (!drive.trajectory.empty())
-    if (const std::string note = motion_ends_note(poses, motion, duration_s); !note.empty())
+    if (const std::string note = motion_ends_note(poses, driven.motion, duration_s); !note.empty())
       progress.warn((drive.motion.empty() ? drive.trajectory : drive.motion).string() + ": " +
                     note);
-  return moving_scans(poses, mounted(motion, drive.mount), duration_s);
+  return moving_scans(poses, mounted(driven.motion, drive.mount), duration_s);
 }
-
-}  // namespace
 
 void check_drive(const DriveOptions& drive) {
   check_settings(drive);
@@ -146,35 +148,32 @@ DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress) {
   return driven;
 }
 
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    ProgressSink& progress) {
+DrivenPoses poses_along(const DriveOptions& drive, ProgressSink& progress) {
   check_drive(drive);
-  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path needs a model");
+  if (drive.trajectory.empty()) throw std::logic_error("poses_along: a path needs a model");
   DrivenPoses driven = driven_poses(drive, progress);
-  Trajectory all = std::move(driven.poses);
   if (drive.rate_hz || drive.spacing_m || drive.rolling_shutter)
     warn_of_jump(drive.motion.empty() ? drive.trajectory : drive.motion, driven.motion, progress);
-  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
-  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
-  return scans_at(drive, sensor, all, driven.motion, progress);
+  if (drive.rate_hz) driven.poses = resampled_by_time(driven.poses, *drive.rate_hz);
+  if (drive.spacing_m) driven.poses = resampled_by_distance(driven.poses, *drive.spacing_m);
+  driven.poses = every_nth(driven.poses, drive);
+  return driven;
 }
 
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    const ModelScene& scene, const Executor& executor,
-                                    ProgressSink& progress) {
-  if (!drive.trajectory.empty()) return scans_along(drive, sensor, progress);
+DrivenPoses poses_along(const DriveOptions& drive, const ModelScene& scene,
+                        const Executor& executor, ProgressSink& progress) {
+  if (!drive.trajectory.empty()) return poses_along(drive, progress);
   check_drive(drive);
   PathDrive path_drive;
   path_drive.height_m = drive.height_m.value_or(kRoofHeight_m);
   if (!drive.at.empty())
-    return scans_at(drive, sensor,
-                    poses_at(scene, drive.at, path_drive.height_m, executor, progress), {},
-                    progress);
+    return {every_nth(poses_at(scene, drive.at, path_drive.height_m, executor, progress), drive),
+            {}};
   path_drive.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
   path_drive.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
   path_drive.spacing_m = drive.spacing_m;
   const Trajectory poses = poses_on_path(scene, drive.path, path_drive, executor, progress);
-  return scans_at(drive, sensor, poses, poses, progress);
+  return {every_nth(poses, drive), poses};
 }
 
 }  // namespace adasplats

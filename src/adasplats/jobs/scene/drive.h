@@ -120,13 +120,26 @@ struct DrivenPoses {
 };
 DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress);
 
-/// The scans of a trajectory. Errors: those of check_drive(); usage, data (no poses).
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    ProgressSink& progress);
+/// The poses of the scans that a drive chooses, of its vehicle, and their motion. Errors: those of
+/// check_drive(); usage, data (no poses).
+DrivenPoses poses_along(const DriveOptions& drive, ProgressSink& progress);
+/// Also of `at` or `path` in a model. Errors: also data (no ground).
+DrivenPoses poses_along(const DriveOptions& drive, const ModelScene& scene,
+                        const Executor& executor, ProgressSink& progress);
 
-/// The scans of a trajectory, or of `at` or `path` in a model. Errors: also data (no ground).
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    const ModelScene& scene, const Executor& executor,
-                                    ProgressSink& progress);
+/// The scans of a sensor at poses of poses_along(), mounted and shifted as `drive` states.
+std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
+                                 const DrivenPoses& driven, ProgressSink& progress);
+
+/// Both in one.
+inline std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                           ProgressSink& progress) {
+  return scans_at(drive, sensor, poses_along(drive, progress), progress);
+}
+inline std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                           const ModelScene& scene, const Executor& executor,
+                                           ProgressSink& progress) {
+  return scans_at(drive, sensor, poses_along(drive, scene, executor, progress), progress);
+}
 
 }  // namespace adasplats

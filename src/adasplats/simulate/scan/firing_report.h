@@ -53,7 +53,7 @@ struct FiringRules {
   const float* weights = nullptr;  ///< of sub-rays
   DropRules drop;
   const std::uint8_t* blocked = nullptr;  ///< of firings; null: none is
-  const std::uint16_t* body_cells =
+  const std::uint32_t* body_cells =
       nullptr;  ///< of firings, numbers in `body`, kNoBody; null: none
   const BodyCell* body = nullptr;
   AirRules air;
@@ -68,7 +68,7 @@ struct FiringRules {
 };
 
 /// For firings that hit no cell of the vehicle's body.
-inline constexpr std::uint16_t kNoBody = 0xffff;
+inline constexpr std::uint32_t kNoBody = 0xffffffff;
 
 /// Data of one scan.
 struct ScanState {

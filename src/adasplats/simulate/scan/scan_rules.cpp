@@ -3,6 +3,7 @@
 #include "adasplats/simulate/scan/scan_rules.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -75,17 +76,28 @@ void ScanRules::set_firings(std::vector<Firing> firings) {
   if (options_.ray_drop && !options_.ray_drop->blocked.empty())
     for (const Firing& firing : firings_)
       blocked_.push_back(options_.ray_drop->blocks(firing.direction) ? 1 : 0);
-  body_cells_.clear();
-  if (body().empty()) return;
-  for (const Firing& firing : firings_) {
-    const std::size_t cell = sensor_.body->find(firing.ring, firing.direction);
-    body_cells_.push_back(cell < body().size() ? static_cast<std::uint16_t>(cell) : kNoBody);
-  }
+  set_body_cells();
 }
 
-std::span<const BodyCell> ScanRules::body() const {
-  if (!options_.vehicle_body || !sensor_.body) return {};
-  return sensor_.body->cells;
+/// The cells of the sensor's file, and one for each firing that a box stops.
+void ScanRules::set_body_cells() {
+  body_cells_.clear();
+  body_.clear();
+  if (!options_.vehicle_body || !sensor_.body) return;
+  const VehicleBody& body = *sensor_.body;
+  body_ = body.cells;
+  for (const Firing& firing : firings_) {
+    const std::size_t found = body.find(firing.ring, firing.direction);
+    std::size_t cell = found < body.cells.size() ? found : kNoBody;
+    const double range_m =
+        body.range_to_boxes(vec_cast<double>(firing.origin), vec_cast<double>(firing.direction));
+    if (std::isfinite(range_m)) {
+      cell = body_.size();
+      body_.push_back({firing.ring, 0, 1, static_cast<float>(range_m), 0});
+    }
+    body_cells_.push_back(static_cast<std::uint32_t>(cell));
+  }
+  if (body_.empty()) body_cells_.clear();
 }
 
 std::span<const double> ScanRules::range_offsets_m() const {

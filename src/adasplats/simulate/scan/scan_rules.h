@@ -45,8 +45,8 @@ class ScanRules {
   /// Flags of firings in directions blocked by the ray drop; empty if none is blocked.
   std::span<const std::uint8_t> blocked() const { return blocked_; }
   /// Per firing, its number in body() or kNoBody; empty if none hits the vehicle.
-  std::span<const std::uint16_t> body_cells() const { return body_cells_; }
-  std::span<const BodyCell> body() const;
+  std::span<const std::uint32_t> body_cells() const { return body_cells_; }
+  std::span<const BodyCell> body() const { return body_; }
   /// Table of AirRules.
   std::span<const double> expected() const { return expected_; }
   std::span<const double> range_offsets_m() const;
@@ -68,6 +68,7 @@ class ScanRules {
 
  private:
   bool has_field_noise() const;
+  void set_body_cells();
 
   LidarModel sensor_;
   SimulateOptions options_;
@@ -76,7 +77,8 @@ class ScanRules {
   std::vector<Firing> cast_firings_;
   std::vector<float> weights_;
   std::vector<std::uint8_t> blocked_;
-  std::vector<std::uint16_t> body_cells_;
+  std::vector<std::uint32_t> body_cells_;
+  std::vector<BodyCell> body_;
   std::vector<double> expected_;
   AirRules air_;
   std::shared_ptr<const int> identity_;

@@ -160,6 +160,60 @@ TEST(SimulateScan, BeamsEndOnTheVehicleBody) {
   EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
 }
 
+// Oracle: analytic. A sensor 2 m above the ground has a roof 0.5 m below it: a turned box whose rim
+// hides the ground from beams that look down more than it does, and reports them if it is far
+// enough.
+TEST(SimulateScan, NoBeamPassesABoxOfTheVehicle) {
+  const auto disks = ground_disks(60, 0.5F);
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.pose.world_from_sensor.translation = {0, 0, 2};
+  drive.sensor.min_range_m = 1.2;
+  const Scan without = drive.scan();
+  const double yaw = 0.4;
+  const Vec3d half = {2, 1, 0.25};
+  const RigidTransform sensor_from_box = {rotation_from_yaw_pitch_roll(yaw, 0, 0), {0, 0, -0.75}};
+  drive.sensor.body = VehicleBody{{}, {{sensor_from_box, half}}};
+  const Scan with = drive.scan();
+  const auto on_roof = [&](Vec3f direction) {  // where the beam passes the plane of the roof
+    const Vec3d d = vec_cast<double>(direction);
+    const Vec3d p = sensor_from_box.inverse() * ((-0.5 / d.z) * d);
+    return d.z < 0 && std::fabs(p.x) < half.x && std::fabs(p.y) < half.y;
+  };
+  std::size_t next = 0, roof = 0, hidden = 0;
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    const Vec3f direction = without.positions[i] / length(without.positions[i]);
+    const bool meets = on_roof(direction);
+    const auto to_roof_m = static_cast<float>(-0.5 / static_cast<double>(direction.z));
+    if (meets && to_roof_m <= 1.2F) {
+      ++hidden;
+      continue;
+    }
+    ASSERT_LT(next, with.size());
+    EXPECT_NEAR(with.ranges_m[next], meets ? to_roof_m : without.ranges_m[i], 1e-4F);
+    roof += meets ? 1 : 0;
+    ++next;
+  }
+  EXPECT_EQ(next, with.size());
+  EXPECT_GT(roof, 1000U);
+  EXPECT_GT(hidden, 0U);
+  drive.options.vehicle_body = false;
+  EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
+}
+
+// Oracle: by hand.
+TEST(VehicleBody, RangesToBoxes) {
+  const VehicleBody body = {{}, {{{{}, {5, 0, 0}}, {1, 2, 3}}, {{{}, {9, 0, 0}}, {1, 1, 1}}}};
+  const double none = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(body.range_to_boxes({}, {1, 0, 0}), 4);  // the nearer one
+  EXPECT_EQ(body.range_to_boxes({20, 0, 0}, {-1, 0, 0}), 10);
+  EXPECT_EQ(body.range_to_boxes({}, {-1, 0, 0}), none);     // behind
+  EXPECT_EQ(body.range_to_boxes({5, 1, 1}, {0, 0, 1}), 0);  // inside
+  EXPECT_EQ(body.range_to_boxes({0, 2.5, 0}, {1, 0, 0}), none);
+  EXPECT_EQ(body.range_to_boxes({0, 2, 0}, {1, 0, 0}), none);  // along a side
+  EXPECT_EQ(VehicleBody().range_to_boxes({}, {1, 0, 0}), none);
+}
+
 TEST(SimulateScan, AttributesComeFromTheHitPrimitive) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}, {{0, 7, 0}, 1, {0, 1, 0}}};
   const std::vector<std::uint16_t> classes = {40, 50}, instances = {3, 4};

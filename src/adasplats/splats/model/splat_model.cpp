@@ -15,6 +15,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/splats/model/calibration_comments.h"
 #include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
@@ -25,11 +26,6 @@ constexpr const char* kNetworkComment = "adasplats.network_sha256 ";
 constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
-constexpr const char* kRangeOffsetsComment = "adasplats.calibration_range_offsets_m ";
-constexpr const char* kElevationOffsetsComment = "adasplats.calibration_elevation_offsets_rad ";
-constexpr const char* kMountComment = "adasplats.calibration_mount ";
-constexpr const char* kSmoothComment = "adasplats.calibration_smooth_s ";
-constexpr const char* kPoseComment = "adasplats.calibration_pose ";
 constexpr const char* kFormatComment = "adasplats.splats 1";
 
 const Column& required(const Table& table, const std::filesystem::path& path,
@@ -126,78 +122,6 @@ std::vector<float> numbers_of(const std::filesystem::path& path, const std::stri
     numbers.push_back(*value);
   }
   return numbers;
-}
-
-std::string comment_of(const char* key, std::span<const double> values) {
-  std::string comment = key;
-  for (const double value : values) comment += number_text(value) + " ";
-  comment.pop_back();
-  return comment;
-}
-
-void add_calibration_comments(const Calibration& calibration, std::vector<std::string>& comments) {
-  if (!calibration.lasers.empty()) {
-    comments.push_back(comment_of(kRangeOffsetsComment, calibration.lasers.range_m));
-    comments.push_back(comment_of(kElevationOffsetsComment, calibration.lasers.elevation_rad));
-  }
-  if (!calibration.mount.empty()) {
-    const auto& [r, s] = calibration.mount;
-    comments.push_back(comment_of(kMountComment, std::array{r.x, r.y, r.z, s.x, s.y, s.z}));
-  }
-  if (!calibration.poses.empty())
-    comments.push_back(comment_of(kSmoothComment, std::array{calibration.smooth_s}));
-  for (const PoseCorrection& pose : calibration.poses) {
-    const auto& [time_s, p, r, s] = pose;
-    comments.push_back(
-        comment_of(kPoseComment, std::array{time_s, p.x, p.y, p.z, r.x, r.y, r.z, s.x, s.y, s.z}));
-  }
-}
-
-std::vector<double> calibration_numbers(const std::filesystem::path& path,
-                                        const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::optional<double> value = parse_number<double>(word);
-    if (!value || !std::isfinite(*value))
-      throw data_error({path, {}, {}}, std::string("the calibration contains ") + shown(word) +
-                                           ", expected a number");
-    numbers.push_back(*value);
-  }
-  return numbers;
-}
-
-Calibration calibration_of(const Table& table, const std::filesystem::path& path) {
-  Calibration calibration;
-  LaserOffsets& lasers = calibration.lasers;
-  lasers.range_m = calibration_numbers(path, comment_value(table, kRangeOffsetsComment));
-  lasers.elevation_rad = calibration_numbers(path, comment_value(table, kElevationOffsetsComment));
-  if (lasers.range_m.size() != lasers.elevation_rad.size())
-    throw data_error({path, {}, {}}, "the calibration has offsets of " +
-                                         std::to_string(lasers.range_m.size()) + " ranges and " +
-                                         std::to_string(lasers.elevation_rad.size()) +
-                                         " elevations");
-  const std::vector<double> mount = calibration_numbers(path, comment_value(table, kMountComment));
-  if (!mount.empty() && mount.size() != 6)
-    throw data_error({path, {}, {}}, "the mount of the calibration has " +
-                                         std::to_string(mount.size()) + " numbers, expected 6");
-  if (!mount.empty())
-    calibration.mount = {{mount[0], mount[1], mount[2]}, {mount[3], mount[4], mount[5]}};
-  const std::vector<double> smooth =
-      calibration_numbers(path, comment_value(table, kSmoothComment));
-  if (smooth.size() > 1 || (!smooth.empty() && smooth.front() < 0))
-    throw data_error({path, {}, {}}, "the calibration's smooth_s must be one number of at least 0");
-  if (!smooth.empty()) calibration.smooth_s = smooth.front();
-  for (const std::string& comment : table.comments) {
-    if (!comment.starts_with(kPoseComment)) continue;
-    const std::vector<double> v =
-        calibration_numbers(path, comment.substr(std::string_view(kPoseComment).size()));
-    if (v.size() != 10)
-      throw data_error({path, {}, {}}, "a pose of the calibration has " + std::to_string(v.size()) +
-                                           " numbers, expected 10");
-    calibration.poses.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, {v[7], v[8], v[9]}});
-  }
-  return calibration;
 }
 
 IntensityResponse response_of(const Table& table, const std::filesystem::path& path) {
@@ -309,7 +233,7 @@ SplatModel load_model(const std::filesystem::path& path) {
   model.label_scheme = comment_value(table, kLabelsComment);
   model.network_sha256 = comment_value(table, kNetworkComment);
   model.response = response_of(table, path);
-  model.calibration = calibration_of(table, path);
+  model.calibration = calibration_of_comments(table.comments, path);
   return model;
 }
 

@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/calibrate/map_alignment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+#include "adasplats/calibrate/robust_weight.h"
+#include "adasplats/core/maths/median.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kUnknowns = 8;  // rotation, shift, clock, range
+using Matrix = std::array<double, kUnknowns * kUnknowns>;
+using Unknowns = std::array<double, kUnknowns>;
+
+/// How a sensor moves at a scan: m/s and rad/s, world axes.
+struct Twist {
+  Vec3d velocity, rotation;
+};
+
+std::vector<Twist> twists_of(const Trajectory& poses) {
+  std::vector<Twist> twists(poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const TimedPose& before = poses[k == 0 ? 0 : k - 1];
+    const TimedPose& after = poses[std::min(k + 1, poses.size() - 1)];
+    const double seconds = after.time_s - before.time_s;
+    if (!(seconds > 0)) continue;
+    const RigidTransform &a = before.world_from_sensor, &b = after.world_from_sensor;
+    twists[k] = {(1 / seconds) * (b.translation - a.translation),
+                 (1 / seconds) * rotation_vector(b.rotation * a.rotation.transposed())};
+  }
+  return twists;
+}
+
+RigidTransform moved_pose(const RigidTransform& given, const Twist& twist,
+                          const MountCorrection& mount, double clock_s) {
+  const RigidTransform then = {rotation_by(clock_s * twist.rotation) * given.rotation,
+                               given.translation + clock_s * twist.velocity};
+  return then * mount.given_from_mounted();
+}
+
+/// A surface in a cell of the map.
+struct MapPlane {
+  Vec3d center, normal;
+};
+
+/// Planes of the map in cubic cells.
+class MapPlanes {
+ public:
+  MapPlanes(const PointCloud& map, Vec3d origin, double cell_m) : cell_m_(cell_m) {
+    struct Sums {
+      double count = 0;
+      Vec3d sum;
+      SymmetricMat3d squares;
+    };
+    std::unordered_map<std::uint64_t, Sums> cells;
+    for (const Vec3f position : map.positions) {
+      const Vec3d p = vec_cast<double>(position) + (map.origin - origin);
+      Sums& s = cells[key_of(p)];
+      ++s.count;
+      s.sum = s.sum + p;
+    }
+    for (const Vec3f position : map.positions) {
+      const Vec3d p = vec_cast<double>(position) + (map.origin - origin);
+      Sums& s = cells[key_of(p)];
+      const Vec3d d = p - s.sum / s.count;
+      s.squares.xx += d.x * d.x, s.squares.xy += d.x * d.y, s.squares.xz += d.x * d.z;
+      s.squares.yy += d.y * d.y, s.squares.yz += d.y * d.z, s.squares.zz += d.z * d.z;
+    }
+    constexpr double kMinPoints = 6, kFlat = 0.1;  // thickness against the width of the cell
+    for (const auto& [key, s] : cells) {
+      if (s.count < kMinPoints) continue;
+      const SymmetricEigen eigen = symmetric_eigen(s.squares);
+      const double thick_m = std::sqrt(std::max(0.0, eigen.values[2]) / s.count);
+      const double wide_m = std::sqrt(std::max(0.0, eigen.values[1]) / s.count);
+      if (thick_m > kFlat * cell_m || thick_m > 0.5 * wide_m) continue;
+      planes_[key] = {s.sum / s.count, eigen.vectors[2]};
+    }
+  }
+
+  /// The nearest plane in the cells around a point; null if there is none.
+  const MapPlane* nearest(Vec3d p) const {
+    const MapPlane* nearest = nullptr;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 27; ++k) {
+      const Vec3d at =
+          p + cell_m_ * Vec3d{double(k % 3 - 1), double(k / 3 % 3 - 1), double(k / 9 - 1)};
+      const auto found = planes_.find(key_of(at));
+      if (found == planes_.end()) continue;
+      const Vec3d away = p - found->second.center;
+      const double square = dot(away, away);
+      if (square < smallest) nearest = &found->second;
+      smallest = std::min(smallest, square);
+    }
+    return nearest;
+  }
+
+ private:
+  std::uint64_t key_of(Vec3d p) const {
+    const auto index = [this](double value) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / cell_m_)) +
+                                        (1 << 20)) &
+             0x1fffff;
+    };
+    return index(p.x) << 42 | index(p.y) << 21 | index(p.z);
+  }
+
+  double cell_m_;
+  std::unordered_map<std::uint64_t, MapPlane> planes_;
+};
+
+/// Sums over points: normal equations and the share near planes.
+struct AlignmentSums {
+  Matrix matrix{};
+  Unknowns right{};
+  double weight = 0;
+  std::size_t with_plane = 0, near = 0;
+
+  AlignmentSums& operator+=(const AlignmentSums& other) {
+    for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] += other.matrix[k];
+    for (std::size_t k = 0; k < right.size(); ++k) right[k] += other.right[k];
+    weight += other.weight;
+    with_plane += other.with_plane;
+    near += other.near;
+    return *this;
+  }
+  double share() const {
+    return with_plane == 0 ? 0 : static_cast<double>(near) / static_cast<double>(with_plane);
+  }
+};
+
+class Aligner {
+ public:
+  Aligner(const PointCloud& sensor, const MapAlignmentOptions& options, const Executor& executor)
+      : options_(options), executor_(executor), poses_(sensor.scan_poses) {
+    for (TimedPose& pose : poses_)
+      pose.world_from_sensor.translation = pose.world_from_sensor.translation - sensor.origin;
+    twists_ = twists_of(poses_);
+    const std::size_t stride = std::max<std::size_t>(1, sensor.size() / options.points) | 1;
+    std::vector<RigidTransform> sensor_from_local;
+    for (const TimedPose& pose : poses_)
+      sensor_from_local.push_back(pose.world_from_sensor.inverse());
+    for (std::size_t i = 0; i < sensor.size(); i += stride) {
+      scans_.push_back(sensor.scan_indices[i]);
+      in_sensor_.push_back(sensor_from_local[scans_.back()] *
+                           vec_cast<double>(sensor.positions[i]));
+    }
+  }
+
+  struct Estimate {
+    MountCorrection mount;
+    double clock_s = 0, range_m = 0;
+    double share = 0;
+  };
+
+  /// Gauss-Newton steps against planes of one cell size; every `stride`-th point.
+  void refine(const MapPlanes& planes, double width_m, int steps, std::size_t stride,
+              Estimate& estimate) const {
+    for (int step = 0; step < steps; ++step) {
+      AlignmentSums sums = sums_of(planes, width_m, stride, estimate);
+      add_priors(estimate, sums);
+      Matrix l = sums.matrix;
+      factor<kUnknowns>(l);
+      const Unknowns x = solved<kUnknowns>(l, sums.right);
+      const Mat3d rotation =
+          rotation_by(estimate.mount.rotation_rad) * rotation_by({x[0], x[1], x[2]});
+      estimate.mount.rotation_rad = rotation_vector(rotation);
+      estimate.mount.shift_m = estimate.mount.shift_m + Vec3d{x[3], x[4], x[5]};
+      estimate.clock_s += x[6];
+      estimate.range_m += x[7];
+    }
+    estimate.share = sums_of(planes, width_m, stride, estimate).share();
+  }
+
+  AlignmentSums sums_of(const MapPlanes& planes, double width_m, std::size_t stride,
+                        const Estimate& estimate) const {
+    std::vector<RigidTransform> moved;
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      moved.push_back(
+          moved_pose(poses_[k].world_from_sensor, twists_[k], estimate.mount, estimate.clock_s));
+    const std::size_t count = (in_sensor_.size() + stride - 1) / stride;
+    return executor_.sum_chunks(count, kCoarseGrain, AlignmentSums{},
+                                [&](std::size_t begin, std::size_t end) {
+                                  AlignmentSums sums;
+                                  for (std::size_t k = begin; k < end; ++k)
+                                    add(planes, width_m, k * stride, moved, estimate.range_m, sums);
+                                  return sums;
+                                });
+  }
+
+ private:
+  void add(const MapPlanes& planes, double width_m, std::size_t i,
+           const std::vector<RigidTransform>& moved, double range_m, AlignmentSums& sums) const {
+    const RigidTransform& world_from_sensor = moved[scans_[i]];
+    const Vec3d direction = normalized(in_sensor_[i]);
+    const Vec3d in_sensor = in_sensor_[i] + range_m * direction;
+    const Vec3d p = world_from_sensor * in_sensor;
+    const MapPlane* plane = planes.nearest(p);
+    if (plane == nullptr) return;
+    const double residual_m = dot(plane->normal, p - plane->center);
+    ++sums.with_plane;
+    sums.near += std::fabs(residual_m) < options_.near_m ? 1 : 0;
+    const double weight = robust_weight(residual_m, width_m);
+    const Vec3d normal_in_sensor = world_from_sensor.rotation.transposed() * plane->normal;
+    const Vec3d turning = cross(in_sensor, normal_in_sensor);
+    const RigidTransform& given = poses_[scans_[i]].world_from_sensor;
+    const Vec3d shifting = given.rotation.transposed() * plane->normal;
+    const Twist& twist = twists_[scans_[i]];
+    const Vec3d moving = twist.velocity + cross(twist.rotation, p - given.translation);
+    const Unknowns row = {turning.x,
+                          turning.y,
+                          turning.z,
+                          shifting.x,
+                          shifting.y,
+                          shifting.z,
+                          dot(plane->normal, moving),
+                          dot(direction, normal_in_sensor)};
+    for (std::size_t a = 0; a < kUnknowns; ++a) {
+      for (std::size_t b = 0; b < kUnknowns; ++b)
+        sums.matrix[a * kUnknowns + b] += weight * row[a] * row[b];
+      sums.right[a] -= weight * row[a] * residual_m;
+    }
+    sums.weight += weight;
+  }
+
+  void add_priors(const Estimate& estimate, AlignmentSums& sums) const {
+    constexpr double kResidual_m = 0.05;
+    const auto add_one = [&](std::size_t unknown, double sigma, double value) {
+      const double weight = std::pow(kResidual_m / sigma, 2);
+      sums.matrix[unknown * (kUnknowns + 1)] += weight;
+      sums.right[unknown] -= weight * value;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto unknown = static_cast<std::size_t>(axis);
+      add_one(unknown, options_.rotation_rad, estimate.mount.rotation_rad[axis]);
+      add_one(unknown + 3, options_.shift_m, estimate.mount.shift_m[axis]);
+    }
+    add_one(6, options_.clock_s, estimate.clock_s);
+    add_one(7, std::max(1e-6, options_.range_m), estimate.range_m);
+  }
+
+  const MapAlignmentOptions& options_;
+  const Executor& executor_;
+  Trajectory poses_;  ///< relative to the cloud's origin
+  std::vector<Twist> twists_;
+  std::vector<Vec3d> in_sensor_;
+  std::vector<std::uint32_t> scans_;
+};
+
+}  // namespace
+
+bool MapAlignment::fits(const MapAlignmentOptions& expected) const {
+  constexpr double kMinShare = 0.5, kFactor = 2;
+  return share >= kMinShare && length(mount.rotation_rad) <= kFactor * expected.rotation_rad &&
+         length(mount.shift_m) <= kFactor * expected.shift_m &&
+         std::fabs(clock_s) <= kFactor * expected.clock_s &&
+         std::fabs(range_m) <= kFactor * expected.range_m + 1e-3;
+}
+
+Trajectory moved_poses(const Trajectory& given, const MountCorrection& mount, double clock_s) {
+  const std::vector<Twist> twists = twists_of(given);
+  Trajectory moved = given;
+  for (std::size_t k = 0; k < given.size(); ++k)
+    moved[k].world_from_sensor = moved_pose(given[k].world_from_sensor, twists[k], mount, clock_s);
+  return moved;
+}
+
+MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
+                            const MapAlignmentOptions& options, const Executor& executor) {
+  constexpr double kCoarse_m = 2, kMedium_m = 1, kFine_m = 0.5;
+  constexpr std::size_t kCoarseStride = 5;
+  const Aligner aligner(sensor, options, executor);
+  const MapPlanes coarse(map, sensor.origin, kCoarse_m), medium(map, sensor.origin, kMedium_m),
+      fine(map, sensor.origin, kFine_m);
+  Aligner::Estimate best;
+  best.share = -1;
+  for (int start = 0; start < 27; ++start) {
+    const double turn_rad = 0.8 * options.rotation_rad;
+    Aligner::Estimate estimate;
+    estimate.mount.rotation_rad =
+        turn_rad * Vec3d{double(start % 3 - 1), double(start / 3 % 3 - 1), double(start / 9 - 1)};
+    aligner.refine(coarse, 1.0, 6, kCoarseStride, estimate);
+    aligner.refine(medium, 0.4, 4, kCoarseStride, estimate);
+    if (estimate.share > best.share) best = estimate;
+  }
+  aligner.refine(medium, 0.3, 6, 1, best);
+  aligner.refine(fine, 0.15, 6, 1, best);
+  aligner.refine(fine, 0.06, 8, 1, best);
+  const double given_share = aligner.sums_of(fine, 0.1, 1, {}).share();
+  return {best.mount, best.clock_s, best.range_m, given_share, best.share};
+}
+
+RigidTransform mount_between(const Trajectory& first, const Trajectory& second) {
+  const std::size_t middle = first.size() / 2;
+  const RigidTransform guess =
+      first[middle].world_from_sensor.inverse() * second[middle].world_from_sensor;
+  Trajectory guessed;  // of one time: without motion, so without a clock
+  for (const TimedPose& pose : first) guessed.push_back({0, pose.world_from_sensor * guess});
+  return guess * mount_of_poses(guessed, second).mount.given_from_mounted();
+}
+
+MapAlignment mount_of_poses(const Trajectory& given, const Trajectory& corrected) {
+  constexpr double kArm_m = 10;  // rotations count as the displacement at this distance
+  const std::vector<Twist> twists = twists_of(given);
+  MapAlignment result;
+  double width_m = 1;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    Matrix matrix{};
+    Unknowns right{};
+    std::vector<double> misses_m;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      const RigidTransform now =
+          moved_pose(given[k].world_from_sensor, twists[k], result.mount, result.clock_s);
+      const RigidTransform miss = now.inverse() * corrected[k].world_from_sensor;
+      const Vec3d turned = rotation_vector(miss.rotation), shifted = miss.translation;
+      const Mat3d sensor_from_world = now.rotation.transposed();
+      const Vec3d speed = sensor_from_world * twists[k].velocity;
+      const Vec3d turning = sensor_from_world * twists[k].rotation;
+      const double miss_m = length(shifted) + kArm_m * length(turned);
+      misses_m.push_back(miss_m);
+      const double weight = robust_weight(miss_m, width_m);
+      const Mat3d shift_in_now = rotation_by(result.mount.rotation_rad).transposed();
+      for (int axis = 0; axis < 3; ++axis) {
+        Unknowns turn{}, shift{};
+        turn[static_cast<std::size_t>(axis)] = 1;
+        turn[6] = turning[axis];
+        for (int other = 0; other < 3; ++other)
+          shift[3 + static_cast<std::size_t>(other)] = shift_in_now.rows[axis][other];
+        shift[6] = speed[axis];
+        for (std::size_t a = 0; a < kUnknowns; ++a) {
+          for (std::size_t b = 0; b < kUnknowns; ++b)
+            matrix[a * kUnknowns + b] +=
+                weight * (kArm_m * kArm_m * turn[a] * turn[b] + shift[a] * shift[b]);
+          right[a] +=
+              weight * (kArm_m * kArm_m * turn[a] * turned[axis] + shift[a] * shifted[axis]);
+        }
+      }
+    }
+    // A clock that the motion does not show stays: 1 s has the weight of a millimetre in one scan.
+    matrix[6 * (kUnknowns + 1)] += 1e-6;
+    matrix[7 * (kUnknowns + 1)] = 1;  // ranges are not part of poses
+    factor<kUnknowns>(matrix);
+    const Unknowns x = solved<kUnknowns>(matrix, right);
+    result.mount.rotation_rad =
+        rotation_vector(rotation_by(result.mount.rotation_rad) * rotation_by({x[0], x[1], x[2]}));
+    result.mount.shift_m = result.mount.shift_m + Vec3d{x[3], x[4], x[5]};
+    result.clock_s += x[6];
+    width_m = std::max(1e-3, 3 * upper_median_of(std::move(misses_m)));
+  }
+  return result;
+}
+
+}  // namespace adasplats
