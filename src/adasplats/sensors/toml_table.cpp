@@ -67,6 +67,16 @@ TomlTable TomlTable::table(std::string_view key, const TomlKeys& known) const {
   return {std::shared_ptr<const toml::table>(table_, inner), path_, known};
 }
 
+std::vector<TomlTable> TomlTable::tables(std::string_view key, const TomlKeys& known) const {
+  require(key);
+  if (!find(key)->is_array_of_tables())
+    throw error(key, "is not a list of tables, each headed [[" + std::string(key) + "]]");
+  std::vector<TomlTable> tables;
+  for (const toml::node& each : *find(key)->as_array())
+    tables.push_back({std::shared_ptr<const toml::table>(table_, each.as_table()), path_, known});
+  return tables;
+}
+
 double TomlTable::number(std::string_view key, double otherwise, double low, double high) const {
   const toml::node* node = find(key);
   return node == nullptr ? otherwise : number_of(*node, key, low, high);

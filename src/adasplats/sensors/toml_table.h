@@ -41,6 +41,9 @@ class TomlTable {
   /// The table under an existing key.
   TomlTable table(std::string_view key, const TomlKeys& known) const;
 
+  /// The tables of a list that must be there: [[KEY]].
+  std::vector<TomlTable> tables(std::string_view key, const TomlKeys& known) const;
+
   double number(std::string_view key, double otherwise, double low, double high) const;
   std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const;
   bool flag(std::string_view key, bool otherwise) const;
