@@ -168,20 +168,21 @@ std::size_t choose_camera(const std::vector<std::string>& names, const std::stri
   throw Error(ErrorKind::usage, file.string() + ": no camera '" + wanted + "': expected " + list);
 }
 
-void set_intrinsics(Lens& lens, const std::vector<double>& matrix, const fs::path& file,
-                    const std::string& key) {
+Lens pinhole_lens(const std::vector<double>& matrix, const std::string& name) {
   if (matrix.size() != 9)
-    throw camera_fault(file, key + " has " + std::to_string(matrix.size()) +
-                                 " numbers, expected 9: fx 0 cx 0 fy cy 0 0 1");
+    throw Error(ErrorKind::config, name + " has " + std::to_string(matrix.size()) +
+                                       " numbers, expected 9: fx 0 cx 0 fy cy 0 0 1");
+  const bool is_upper = matrix[1] == 0 && matrix[3] == 0 && matrix[6] == 0 && matrix[7] == 0;
+  if (!is_upper || matrix[8] != 1)
+    throw Error(ErrorKind::config, name +
+                                       " is not fx 0 cx 0 fy cy 0 0 1: cameras with skew are "
+                                       "not supported");
+  Lens lens;
   lens.fx = matrix[0];
   lens.cx = matrix[2];
   lens.fy = matrix[4];
   lens.cy = matrix[5];
-  const bool is_upper = matrix[1] == 0 && matrix[3] == 0 && matrix[6] == 0 && matrix[7] == 0;
-  if (!is_upper || matrix[8] != 1)
-    throw camera_fault(file, key +
-                                 " is not fx 0 cx 0 fy cy 0 0 1: cameras with skew are not "
-                                 "supported");
+  return lens;
 }
 
 Lens distorted_lens(Lens lens, const std::string& model, const std::vector<double>& coefficients,

@@ -34,6 +34,10 @@ struct MountedCamera {
 /// file does not have, or none of several).
 MountedCamera load_camera(const std::string& file_and_name);
 
+/// A lens with the focal lengths and the principal point of a matrix fx 0 cx, 0 fy cy, 0 0 1 by
+/// rows. Errors: config, with `name` of the matrix (another matrix).
+Lens pinhole_lens(const std::vector<double>& matrix, const std::string& name);
+
 /// The lens for a distortion model by name (none, brown_conrady or plumb_bob, rational or
 /// rational_polynomial, fisheye or equidistant) and its coefficients in the order of OpenCV. `lens`
 /// has the other values. Errors: config, with `name` of the camera (an unknown model, another

@@ -35,8 +35,4 @@ bool is_kitti_calibration(std::string_view text);
 FileCamera read_kitti_camera(std::string_view text, const std::filesystem::path& file,
                              const std::string& wanted);
 
-/// Sets the focal lengths and the principal point from a matrix by rows. Errors: config.
-void set_intrinsics(Lens& lens, const std::vector<double>& matrix,
-                    const std::filesystem::path& file, const std::string& key);
-
 }  // namespace adasplats

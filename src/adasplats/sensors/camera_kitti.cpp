@@ -132,8 +132,8 @@ FileCamera read_kitti_camera(std::string_view text, const fs::path& file,
   const char number = result.camera.name.back();
   const std::vector<double> p = calibration.numbers(result.camera.name, 12);
   Lens& lens = result.camera.lens;
-  set_intrinsics(lens, {p[0], p[1], p[2], p[4], p[5], p[6], p[8], p[9], p[10]}, file,
-                 result.camera.name);
+  lens = pinhole_lens({p[0], p[1], p[2], p[4], p[5], p[6], p[8], p[9], p[10]},
+                      file.string() + ": " + result.camera.name);
   if (is_raw) {
     const std::vector<double> size = calibration.numbers(std::string("S_rect_0") + number, 2);
     for (const double side : size)

@@ -187,15 +187,14 @@ FileCamera read_ros_camera(std::string_view text, const std::filesystem::path& f
   const auto matrix = info.numbers({"camera_matrix", "K", "k"});
   if (!matrix) throw camera_fault(file, "no camera_matrix (K)");
   Lens& lens = result.camera.lens;
-  set_intrinsics(lens, *matrix, file, "camera_matrix (K)");
+  lens = pinhole_lens(*matrix, file.string() + ": camera_matrix (K)");
   lens.width = info.size({"image_width", "width"});
   lens.height = info.size({"image_height", "height"});
   result.coefficients =
       info.numbers({"distortion_coefficients", "D", "d"}).value_or(std::vector<double>());
   result.model = info.text({"distortion_model"});
   if (result.model.empty()) result.model = model_by_count(result.coefficients.size(), file);
-  const bool is_zero = std::ranges::all_of(result.coefficients, [](double k) { return k == 0; });
-  if (is_zero && result.coefficients.empty() && result.model == "plumb_bob") result.model = "none";
+  if (result.coefficients.empty() && result.model == "plumb_bob") result.model = "none";
   return result;
 }
 

@@ -21,7 +21,7 @@ constexpr std::size_t kSlabRows = 256;  // rows, a multiple of a block
 class LayerCaster {
  public:
   LayerCaster(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
-              std::span<const Layer> wanted, const Executor& executor)
+              std::span<const ImageLayer> wanted, const Executor& executor)
       : tracer_(tracer),
         executor_(executor),
         rays_of_(camera.rays(scene.origin)),
@@ -33,13 +33,13 @@ class LayerCaster {
     images_.height = camera.height;
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     const std::size_t count = width_ * height_;
-    for (const Layer layer : wanted) {
+    for (const ImageLayer layer : wanted) {
       switch (layer) {
-        case Layer::depth: images_.depth_m.assign(count, kNone); break;
-        case Layer::range: images_.range_m.assign(count, kNone); break;
-        case Layer::class_id: images_.classes.assign(count, -1); break;
-        case Layer::normal: images_.normals.assign(3 * count, kNone); break;
-        case Layer::primitive: images_.primitives.assign(count, -1); break;
+        case ImageLayer::depth: images_.depth_m.assign(count, kNone); break;
+        case ImageLayer::range: images_.range_m.assign(count, kNone); break;
+        case ImageLayer::class_id: images_.classes.assign(count, -1); break;
+        case ImageLayer::normal: images_.normals.assign(3 * count, kNone); break;
+        case ImageLayer::primitive: images_.primitives.assign(count, -1); break;
       }
     }
   }
@@ -109,10 +109,10 @@ class LayerCaster {
 }  // namespace
 
 LayerImages cast_layers(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
-                        std::span<const Layer> wanted, const Executor& executor) {
+                        std::span<const ImageLayer> wanted, const Executor& executor) {
   check_image(camera, {});
   if (scene.attributes.classes.empty() &&
-      std::ranges::find(wanted, Layer::class_id) != wanted.end())
+      std::ranges::find(wanted, ImageLayer::class_id) != wanted.end())
     throw Error(ErrorKind::usage, "the model has no classes for the layer class");
   return LayerCaster(tracer, scene, camera, wanted, executor).cast();
 }

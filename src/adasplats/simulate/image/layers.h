@@ -16,7 +16,7 @@
 namespace adasplats {
 
 /// A quantity of the surface that each pixel shows.
-enum class Layer : std::uint8_t {
+enum class ImageLayer : std::uint8_t {
   depth,      ///< distance along the axis of the camera, m
   range,      ///< distance along the ray, m
   class_id,   ///< class of the label scheme
@@ -24,11 +24,12 @@ enum class Layer : std::uint8_t {
   primitive,  ///< index of the splat in the model, or of the triangle
 };
 
-inline constexpr std::pair<std::string_view, Layer> kLayers[] = {{"depth", Layer::depth},
-                                                                 {"range", Layer::range},
-                                                                 {"class", Layer::class_id},
-                                                                 {"normal", Layer::normal},
-                                                                 {"splat", Layer::primitive}};
+inline constexpr std::pair<std::string_view, ImageLayer> kImageLayers[] = {
+    {"depth", ImageLayer::depth},
+    {"range", ImageLayer::range},
+    {"class", ImageLayer::class_id},
+    {"normal", ImageLayer::normal},
+    {"splat", ImageLayer::primitive}};
 
 /// Layers of one picture, rows from the top; those that were not wanted are empty. Pixels without a
 /// hit are NaN or -1.
@@ -43,7 +44,7 @@ struct LayerImages {
 /// Casts one ray through the centre of every pixel. The values do not depend on the number of
 /// threads. Errors: usage (classes of a scene without classes), those of check_image().
 LayerImages cast_layers(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
-                        std::span<const Layer> wanted, const Executor& executor);
+                        std::span<const ImageLayer> wanted, const Executor& executor);
 
 /// Metres as whole millimetres of a 16-bit PNG; 0 without a hit.
 struct Millimetres {

@@ -15,8 +15,8 @@ namespace adasplats {
 namespace {
 
 constexpr Vec3d kOrigin = {1000, 2000, 30};
-constexpr Layer kAll[] = {Layer::depth, Layer::range, Layer::class_id, Layer::normal,
-                          Layer::primitive};
+constexpr ImageLayer kAll[] = {ImageLayer::depth, ImageLayer::range, ImageLayer::class_id,
+                               ImageLayer::normal, ImageLayer::primitive};
 
 /// Walls in front of a camera at kOrigin that looks along +x: a large one 10 m away, a small one
 /// 4 m away to the left, tilted; nothing on the right.
@@ -145,7 +145,7 @@ TEST(Layers, OnlyThoseWantedAreMade) {
   const Executor executor(1);
   const auto tracer = make_cpu_tracer({walls.disks, nullptr}, executor);
   const Camera camera = camera_with(false, {}, 0);
-  const Layer range[] = {Layer::range};
+  const ImageLayer range[] = {ImageLayer::range};
   const LayerImages layers = cast_layers(*tracer, walls.scene(), camera, range, executor);
   EXPECT_EQ(layers.range_m.size(), 162U * 101U);
   EXPECT_TRUE(layers.depth_m.empty() && layers.classes.empty() && layers.normals.empty() &&
