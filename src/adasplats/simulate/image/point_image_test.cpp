@@ -62,7 +62,7 @@ TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
   Camera parallel = camera_of(40, 30), lens = parallel;
   parallel.orthographic_width_m = 12;
   lens.lens = Lens{.width = 40, .height = 30, .fx = 30, .fy = 31, .cx = 18, .cy = 15.5};
-  lens.lens->k[0] = -0.2;
+  lens.lens->k[0] = -0.1;
   lens.lens->p1 = 0.01;
   lens.lens = complete_lens(*lens.lens, "the test's");
   for (const Camera& camera : {camera_of(40, 30), parallel, lens}) {
