@@ -46,6 +46,20 @@ double growing_radius(const Lens& lens) {
   return before;
 }
 
+/// Whether the determinant of the distortion is clearly positive within max_radius.
+bool is_clearly_regular(const Lens& lens) {
+  constexpr int kTurns = 64, kRings = 64;
+  constexpr double kClear = 0.05;
+  for (int ring = 1; ring <= kRings; ++ring)
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double angle = 2 * std::numbers::pi * turn / kTurns;
+      const double radius = lens.max_radius * ring / kRings;
+      const Lens::Point p = {radius * std::cos(angle), radius * std::sin(angle)};
+      if (!(lens.distort(p).determinant() > kClear)) return false;
+    }
+  return true;
+}
+
 void require_finite(double value, const char* key, const std::string& name) {
   if (!std::isfinite(value))
     throw Error(ErrorKind::config, name + ": " + key + " is not a finite number");
@@ -71,6 +85,7 @@ Lens complete_lens(Lens lens, const std::string& name) {
   require_finite(lens.p1, "p1", name);
   require_finite(lens.p2, "p2", name);
   lens.max_radius = growing_radius(lens);
+  lens.is_regular_throughout = !lens.is_fisheye && is_clearly_regular(lens);
   return lens;
 }
 

@@ -27,13 +27,14 @@ struct Lens {
     double x = 0, y = 0;
   };
 
-  int width = 0, height = 0;         ///< pixels
-  double fx = 0, fy = 0;             ///< focal lengths, pixels
-  double cx = 0, cy = 0;             ///< principal point, pixels
-  bool is_fisheye = false;           ///< equidistant
-  double k[6] = {0, 0, 0, 0, 0, 0};  ///< k1 to k6; fisheye: k1 to k4
-  double p1 = 0, p2 = 0;             ///< not of a fisheye
-  double max_radius = 0;             ///< set by complete_lens()
+  int width = 0, height = 0;           ///< pixels
+  double fx = 0, fy = 0;               ///< focal lengths, pixels
+  double cx = 0, cy = 0;               ///< principal point, pixels
+  bool is_fisheye = false;             ///< equidistant
+  double k[6] = {0, 0, 0, 0, 0, 0};    ///< k1 to k6; fisheye: k1 to k4
+  double p1 = 0, p2 = 0;               ///< not of a fisheye
+  double max_radius = 0;               ///< set by complete_lens()
+  bool is_regular_throughout = false;  ///< the same: is_regular() up to max_radius
 
   /// Direction of the light that reaches a point of the image, of length 1; the zero vector if
   /// there is none.
@@ -71,6 +72,7 @@ struct Lens {
     }
     const double above = 1 + square * (k[0] + square * (k[1] + square * k[2]));
     const double above_slope = k[0] + square * (2 * k[1] + square * 3 * k[2]);
+    if (k[3] == 0 && k[4] == 0 && k[5] == 0) return {above, above_slope};
     const double below = 1 + square * (k[3] + square * (k[4] + square * k[5]));
     const double below_slope = k[3] + square * (2 * k[4] + square * 3 * k[5]);
     return {above / below, (above_slope * below - above * below_slope) / (below * below)};
@@ -105,6 +107,7 @@ struct Lens {
   ADASPLATS_HD bool is_regular(Point p) const {
     constexpr int kSteps = 8;
     if (!(p.x * p.x + p.y * p.y <= max_radius * max_radius)) return false;
+    if (is_regular_throughout) return true;
     for (int i = 1; i <= kSteps; ++i) {
       const double share = static_cast<double>(i) / kSteps;
       if (!(distort({share * p.x, share * p.y}).determinant() > 0)) return false;
@@ -123,12 +126,15 @@ struct Lens {
     for (int step = 0; step < kMaxSteps; ++step) {  // Newton's steps, halving outside the bracket
       const Radial at = distorted_radius(radius);
       const double error = at.value - distorted;
-      if (std::fabs(error) <= 1e-15 * distorted) return radius;
+      if (error == 0) return radius;
       (error > 0 ? high : low) = radius;
       double next = radius - error / at.slope;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      if (std::fabs(next - radius) <= 1e-16 * radius) break;
+      const bool is_inside = next > low && next < high;
+      if (!is_inside) next = 0.5 * (low + high);
+      const double move = std::fabs(next - radius);
       radius = next;
+      // The error after a step of Newton is about the square of the step.
+      if (move <= (is_inside ? 1e-9 : 1e-16) * radius) break;
     }
     const bool found = std::fabs(distorted_radius(radius).value - distorted) <= kTolerance;
     return found ? radius : -1;
@@ -146,15 +152,16 @@ struct Lens {
                           (found.xx * error.y - found.xy * error.x) / determinant};
       point.x -= move.x;
       point.y -= move.y;
-      if (std::fabs(move.x) + std::fabs(move.y) <= 1e-14) break;
+      if (std::fabs(move.x) + std::fabs(move.y) <= 1e-9) break;
     }
     const Point error = {distort(point).at.x - image.x, distort(point).at.y - image.y};
     return std::fabs(error.x) + std::fabs(error.y) <= kTolerance && is_regular(point);
   }
 };
 
-/// Checks the values of a lens and sets max_radius. Errors: config, with `name` of the camera
-/// (sizes outside 1 to 32768, focal lengths that are not positive, numbers that are not finite).
+/// Checks the values of a lens and sets the members for its inversion. Errors: config, with `name`
+/// of the camera (sizes outside 1 to 32768, focal lengths that are not positive, numbers that are
+/// not finite).
 Lens complete_lens(Lens lens, const std::string& name);
 
 /// The pixel that shows a point of the camera's frame (x right, y down, z forward); it may be
