@@ -60,9 +60,11 @@ bool is_clearly_regular(const Lens& lens) {
   return true;
 }
 
-void require_finite(double value, const char* key, const std::string& name) {
-  if (!std::isfinite(value))
-    throw Error(ErrorKind::config, name + ": " + key + " is not a finite number");
+constexpr double kMaxValue = 1e9;
+
+void require_value(double value, const char* key, const std::string& name) {
+  if (!(std::fabs(value) <= kMaxValue))
+    throw Error(ErrorKind::config, name + ": " + key + " is not a number from -1e9 to 1e9");
 }
 
 }  // namespace
@@ -73,17 +75,18 @@ Lens complete_lens(Lens lens, const std::string& name) {
     throw Error(ErrorKind::config, name + ": a picture of " + std::to_string(lens.width) + " x " +
                                        std::to_string(lens.height) +
                                        " pixels; expected 1 to 32768 each");
+  constexpr double kMinFocal_px = 1e-3;
   for (const auto& [value, key] : {std::pair{lens.fx, "fx"}, {lens.fy, "fy"}}) {
-    require_finite(value, key, name);
-    if (!(value > 0 && value <= 1e9))
+    require_value(value, key, name);
+    if (!(value >= kMinFocal_px))
       throw Error(ErrorKind::config, name + ": " + key + " is " + exact_text(value) +
                                          ", expected a focal length above 0, in pixels");
   }
-  require_finite(lens.cx, "cx", name);
-  require_finite(lens.cy, "cy", name);
-  for (const double k : lens.k) require_finite(k, "a distortion coefficient", name);
-  require_finite(lens.p1, "p1", name);
-  require_finite(lens.p2, "p2", name);
+  require_value(lens.cx, "cx", name);
+  require_value(lens.cy, "cy", name);
+  for (const double k : lens.k) require_value(k, "a distortion coefficient", name);
+  require_value(lens.p1, "p1", name);
+  require_value(lens.p2, "p2", name);
   lens.max_radius = growing_radius(lens);
   lens.is_regular_throughout = !lens.is_fisheye && is_clearly_regular(lens);
   return lens;

@@ -160,8 +160,8 @@ struct Lens {
 };
 
 /// Checks the values of a lens and sets the members for its inversion. Errors: config, with `name`
-/// of the camera (sizes outside 1 to 32768, focal lengths that are not positive, numbers that are
-/// not finite).
+/// of the camera (sizes outside 1 to 32768, focal lengths below 0.001, numbers that are not finite
+/// or beyond 1e9).
 Lens complete_lens(Lens lens, const std::string& name);
 
 /// The pixel that shows a point of the camera's frame (x right, y down, z forward); it may be

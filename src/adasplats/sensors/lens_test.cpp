@@ -184,7 +184,7 @@ TEST(Lens, RefusesWrongValues) {
   expect_error(ErrorKind::config, {"32769"}, with([](Lens& lens) { lens.height = 32769; }));
   expect_error(ErrorKind::config, {"fx is -5"}, with([](Lens& lens) { lens.fx = -5; }));
   expect_error(ErrorKind::config, {"fy is 0"}, with([](Lens& lens) { lens.fy = 0; }));
-  expect_error(ErrorKind::config, {"cx is not"}, with([](Lens& lens) { lens.cx = NAN; }));
+  expect_error(ErrorKind::config, {"cx is not a number"}, with([](Lens& lens) { lens.cx = NAN; }));
   expect_error(ErrorKind::config, {"coefficient"}, with([](Lens& lens) { lens.k[4] = INFINITY; }));
   expect_error(ErrorKind::config, {"front", "plum_bob", "did you mean", "plumb_bob"},
                [] { wide_lens("plum_bob", {}); });
