@@ -112,7 +112,8 @@ class RenderCommand final : public Command {
     session.report["unlit_pixels"] = result.unlit_pixels;
     std::string text = "; layers " + fixed(result.seconds_of_layers, 2) + " s";
     if (result.clipped_values > 0)
-      text += ", " + grouped(result.clipped_values) + " values beyond 65.535 m (65535 in the PNG)";
+      text +=
+          ", " + grouped(result.clipped_values) + " values outside the range of the PNG (65.535 m)";
     if (result.unlit_pixels > 0)
       text += ", " + grouped(result.unlit_pixels) + " pixels without a ray of the lens";
     return text;
