@@ -21,8 +21,6 @@ constexpr const char* kRenderExamples =
     "  adasplats render street.ply -o drive.mp4 --drive --trajectory poses.txt\n"
     "  adasplats render basic.ply adaptive.ply -o changes.png --difference\n"
     "  adasplats render street.ply -o pole.png --eye 3,-2,1.7 --target 8,4,2 --color normal\n"
-    "  adasplats render street.ply -o front.png --camera car.toml:front --layers depth,class "
-    "--trajectory poses.txt\n"
     "  adasplats render street.ply street/mapping.ply -o measured.png --labels semantickitti\n";
 
 class RenderCommand final : public Command {

@@ -73,7 +73,7 @@ void visit_settings(RenderJob& job, Visit&& visit) {
           .basic = true},
       job.difference);
   visit(Setting{.name = "camera",
-                .help = "Camera with lens and mount: TOML, CameraInfo of ROS, calibration of KITTI",
+                .help = "Camera file: lens and mount",
                 .value = "FILE[:NAME]",
                 .basic = true},
         job.camera);
