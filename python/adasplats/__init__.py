@@ -18,6 +18,7 @@ adasplats.Error.
 from . import evaluate
 from ._adasplats import (
     NO_PRIMITIVE,
+    Camera,
     ConfigError,
     DataError,
     Error,
@@ -58,6 +59,7 @@ from ._adasplats import (
 
 __all__ = [
     "NO_PRIMITIVE",
+    "Camera",
     "ConfigError",
     "DataError",
     "Error",

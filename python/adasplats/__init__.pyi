@@ -573,6 +573,38 @@ class Firings:
     def times(self) -> NDArray[np.float32]:
         """(N,) float32, s since the start of the scan."""
 
+class Camera:
+    """A camera with a lens, mounted on a vehicle or sensor."""
+
+    def __init__(self, file: Path) -> None: ...
+    @staticmethod
+    def from_matrix(
+        matrix: ArrayLike,
+        width: int,
+        height: int,
+        *,
+        model: str = "none",
+        coefficients: ArrayLike | None = None,
+        mount: ArrayLike | None = None,
+        name: str = "camera",
+    ) -> Camera: ...
+    @property
+    def name(self) -> str:
+        """Name of the camera."""
+    @property
+    def width(self) -> int:
+        """Width of the picture, pixels."""
+    @property
+    def height(self) -> int:
+        """Height of the picture, pixels."""
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(3, 3) float64, new: fx 0 cx; 0 fy cy; 0 0 1, pixels."""
+    @property
+    def mount(self) -> NDArray[np.float64]:
+        """(4, 4) float64, new: vehicle_from_camera; camera: x forward, y left, z up."""
+    def directions(self) -> NDArray[np.float64]: ...
+
 class Sensor:
     """A LiDAR: the rays of one revolution and the properties of its measurements."""
 
@@ -1112,8 +1144,9 @@ class Scene:
         eye: ArrayLike | None = None,
         target: ArrayLike | None = None,
         birds_eye: bool = False,
-        trajectory: Path | None = None,
+        trajectory: Path | Poses | None = None,
         pose: int = 0,
+        camera: Camera | Path | None = None,
         width: int = 2560,
         height: int = 1440,
         fov: float | None = None,
@@ -1123,6 +1156,20 @@ class Scene:
         samples: int = 2,
         relief: bool = True,
     ) -> NDArray[np.uint8]: ...
+    def layers(
+        self,
+        *,
+        layers: Sequence[Literal["depth", "range", "class", "normal", "splat"]] | None = None,
+        eye: ArrayLike | None = None,
+        target: ArrayLike | None = None,
+        birds_eye: bool = False,
+        trajectory: Path | Poses | None = None,
+        pose: int = 0,
+        camera: Camera | Path | None = None,
+        width: int = 2560,
+        height: int = 1440,
+        fov: float | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
     def cast_on_device(
         self,
         sensor: Sensor | Path,

@@ -17,6 +17,7 @@ void bind_labels(py::module_& module);
 void bind_trajectories(py::module_& module);
 void bind_clouds(py::module_& module);
 void bind_sensors(py::module_& module);
+void bind_cameras(py::module_& module);
 void bind_segmentation(py::module_& module);
 void bind_models(py::module_& module);
 void bind_meshes(py::module_& module);

@@ -20,6 +20,7 @@ PYBIND11_MODULE(_adasplats, module) {
   bindings::bind_trajectories(module);
   bindings::bind_clouds(module);
   bindings::bind_sensors(module);
+  bindings::bind_cameras(module);
   bindings::bind_segmentation(module);
   bindings::bind_models(module);
   bindings::bind_meshes(module);

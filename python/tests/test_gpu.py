@@ -55,6 +55,18 @@ def test_the_same_scans(scene, gpu_scene, poses):
     assert len(list(gpu_scene.iter_scans("hdl-64-paper", many))) == len(many)
 
 
+def test_the_same_pictures_and_layers(scene, gpu_scene, poses):
+    camera = adasplats.Camera.from_matrix([[500, 0, 310], [0, 505, 238], [0, 0, 1]], 640, 480,
+                                          model="plumb_bob",
+                                          coefficients=[-0.3, 0.1, 0.001, -0.002, 0])
+    view = {"camera": camera, "trajectory": poses}
+    np.testing.assert_array_equal(scene.render(**view), gpu_scene.render(**view))
+    layers, on_gpu = scene.layers(**view), gpu_scene.layers(**view)
+    assert list(layers) == list(on_gpu)
+    for name in layers:
+        np.testing.assert_array_equal(layers[name], on_gpu[name])
+
+
 @pytest.mark.parametrize("method", ["consistent", "semantic"])
 def test_the_same_model(street, method):
     gpu, cpu = (adasplats.model(street.cloud, labels="semantickitti", method=method, device=device)

@@ -32,6 +32,8 @@ def objects(street, scene, poses):
         "Sensor": adasplats.Sensor("ouster-os1-64"),
         "Sensor of rays": adasplats.Sensor.from_rays([[1.0, 0, 0], [0, 1, 0]], times_s=[0, 0.01]),
         "Sensor with prisms": adasplats.Sensor("livox-mid-40"),
+        "Camera": adasplats.Camera.from_matrix([[50, 0, 30], [0, 51, 20], [0, 0, 1]], 60, 40,
+                                               model="fisheye", coefficients=[0.1, 0, 0, 0]),
         "Trajectory": poses,
         "Scan": scans[0],
         "Scans": scans,

@@ -312,6 +312,100 @@ def test_render(street, scene, tmp_path, options, arguments):
         np.testing.assert_array_equal(ahead, png_pixels(tmp_path / "cli.png"))
 
 
+CAMERA = {"width": 70, "height": 45}
+MATRIX = [[50, 0, 33.1], [0, 51, 22.7], [0, 0, 1]]
+LENSES = [("none", None), ("plumb_bob", [-0.3, 0.1, 0.01, -0.005, 0]),
+          ("rational", [0.4, -0.1, 0.001, -0.002, 0.05, 0.7, -0.05, 0.01]),
+          ("fisheye", [-0.03, 0.01, 0, 0])]
+MOUNT = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.75], [0, 0, 0, 1]], float)
+
+
+@pytest.mark.parametrize("model, coefficients", LENSES)
+def test_layers(scene, poses, model, coefficients):
+    """Oracle: rays cast through the centres of the pixels; OpenCV's formulas for their directions."""
+    camera = adasplats.Camera.from_matrix(MATRIX, **CAMERA, model=model, coefficients=coefficients,
+                                          mount=MOUNT)
+    layers = scene.layers(camera=camera, trajectory=poses, pose=2)
+    directions = camera.directions()
+    x, y = (-directions[..., axis] / directions[..., 0] for axis in (1, 2))
+    k1, k2, p1, p2, k3, k4, k5, k6 = (list(coefficients or []) + 8 * [0])[:8]
+    r = np.hypot(x, y)
+    if model == "fisheye":
+        angle = np.arctan(r)
+        factor = angle * (1 + k1 * angle**2 + k2 * angle**4) / np.where(r > 0, r, 1)
+        u, v = x * factor, y * factor
+    else:
+        factor = (1 + k1 * r**2 + k2 * r**4 + k3 * r**6) / (1 + k4 * r**2 + k5 * r**4 + k6 * r**6)
+        u = x * factor + 2 * p1 * x * y + p2 * (r**2 + 2 * x**2)
+        v = y * factor + p1 * (r**2 + 2 * y**2) + 2 * p2 * x * y
+    np.testing.assert_allclose(50 * u + 33.1, np.broadcast_to(np.arange(70), (45, 70)), atol=1e-6)
+    np.testing.assert_allclose(51 * v + 22.7, np.broadcast_to(np.arange(45)[:, None], (45, 70)),
+                               atol=1e-6)
+    world_from_camera = poses.poses[2] @ MOUNT
+    hits = scene.cast(world_from_camera[:3, 3],
+                      directions.reshape(-1, 3) @ world_from_camera[:3, :3].T)
+    ranges = np.where(np.isfinite(hits.ranges), hits.ranges, np.nan).reshape(45, 70)
+    assert np.isfinite(ranges).sum() > 500
+    same = hits.primitives.astype(np.int64).reshape(45, 70) == layers["splat"]
+    hit = np.isfinite(ranges)
+    assert same[hit].mean() > 0.999
+    np.testing.assert_allclose(layers["range"][same], ranges[same], atol=1e-3)
+    np.testing.assert_allclose(layers["depth"][same], (ranges * directions[..., 0])[same],
+                               atol=1e-3)
+    np.testing.assert_array_equal(np.isnan(layers["depth"]), layers["splat"] < 0)
+    np.testing.assert_array_equal(layers["class"] < 0, layers["splat"] < 0)
+    assert layers["normal"].shape == (45, 70, 3)
+    facing = layers["normal"] @ world_from_camera[:3, :3] * directions
+    assert (facing.sum(axis=-1)[hit & same] <= 0).all()
+
+
+def test_cameras_are_those_of_the_program(street, scene, poses, tmp_path):
+    file = tmp_path / "car.toml"
+    file.write_text('[[camera]]\nname = "left"\nwidth = 70\nheight = 45\nfx = 50\nfy = 51\n'
+                    'cx = 33.1\ncy = 22.7\nmodel = "brown_conrady"\n'
+                    "coefficients = [-0.3, 0.1, 0.01, -0.005, 0]\nmount = [0.5, -0.25, 0.75]\n"
+                    "mount_rotation = [90, 0, 0]\n")
+    run_program("render", street.model, "-o", tmp_path / "cli.png", "--camera", f"{file}:left",
+                "--trajectory", street.sequence, "--pose", 1, "--layers", "depth,class,normal,splat")
+    made = adasplats.Camera.from_matrix(MATRIX, **CAMERA, model="plumb_bob", mount=MOUNT,
+                                        coefficients=[-0.3, 0.1, 0.01, -0.005, 0])
+    read = adasplats.Camera(f"{file}:left")
+    assert (read.name, read.width, read.height) == ("left", 70, 45)
+    np.testing.assert_array_equal(read.matrix, MATRIX)
+    np.testing.assert_allclose(read.mount, MOUNT, atol=1e-12)
+    np.testing.assert_array_equal(read.directions(), made.directions())
+    view = {"trajectory": street.sequence, "pose": 1}
+    for camera in (read, file):
+        np.testing.assert_array_equal(scene.render(camera=camera, **view),
+                                      png_pixels(tmp_path / "cli.png"))
+    layers = scene.layers(layers=["depth", "class", "normal", "splat"], camera=file, **view)
+    assert list(layers) == ["depth", "class", "normal", "splat"]
+    for name, array in layers.items():
+        expected = np.load(tmp_path / f"cli.{name}.npy")
+        assert array.dtype == expected.dtype
+        np.testing.assert_array_equal(array, expected)
+
+
+def test_wrong_cameras_and_layers(scene, poses):
+    camera = adasplats.Camera.from_matrix(MATRIX, **CAMERA)
+    with pytest.raises(ValueError, match="trajectory"):
+        scene.layers(camera=camera)
+    with pytest.raises(ValueError, match="width has no effect"):
+        scene.layers(camera=camera, trajectory=poses, width=9)
+    with pytest.raises(ValueError, match="pose is 99"):
+        scene.render(camera=camera, trajectory=poses, pose=99)
+    with pytest.raises(ValueError, match="did you mean 'depth'"):
+        scene.layers(layers=["dept"], width=8, height=8)
+    with pytest.raises(TypeError, match="expected a list"):
+        scene.layers(layers="depth", width=8, height=8)
+    with pytest.raises(TypeError, match="Camera or a path"):
+        scene.render(camera=5, trajectory=poses)
+    with pytest.raises(ValueError, match="skew"):
+        adasplats.Camera.from_matrix([[1, 1, 0], [0, 1, 0], [0, 0, 1]], **CAMERA)
+    with pytest.raises(ValueError, match="expected 4"):
+        adasplats.Camera.from_matrix(MATRIX, **CAMERA, model="fisheye", coefficients=[1])
+
+
 def test_realism(street, tmp_path):
     folders = [tmp_path / "one", tmp_path / "other"]
     for seed, folder in enumerate(folders):

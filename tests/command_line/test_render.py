@@ -2,13 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and films of 'adasplats render'."""
 
+import ast
+import math
 import re
 import shutil
+import struct
 import unittest
 
+from pictures import png_size
 from support import ProgramTest, write_cloud, tiny_place
 
 SMALL = ["--width", "96", "--height", "54"]
+
+
+def npy(path):
+    """Shape and values of a .npy (numpy.lib.format)."""
+    data = path.read_bytes()
+    size = struct.unpack("<H", data[8:10])[0]
+    header = ast.literal_eval(data[10:10 + size].decode())
+    code = {"<f4": "f", "<i4": "i"}[header["descr"]]
+    values = data[10 + size:]
+    return header["shape"], struct.unpack(f"<{len(values) // 4}{code}", values)
 
 
 class Render(ProgramTest):
@@ -93,6 +107,71 @@ class Render(ProgramTest):
         self.run_bad(64, "render", model, "-o", self.folder / "a.png", "--seconds", "3", *SMALL,
                      says=["--seconds"])
         self.assertEqual([f.name for f in self.folder.glob(".*")], [], "nothing is left over")
+
+    def test_a_camera_with_layers(self):
+        model, picture = self.model(), self.folder / "p.png"
+        camera = self.folder / "car.toml"
+        lens = "width = 64\nheight = 40\nfx = 40\nfy = 40\ncx = 31.5\ncy = 19.5\n"
+        camera.write_text(
+            '[[camera]]\nname = "front"\n' + lens + 'model = "brown_conrady"\n'
+            "coefficients = [-0.9, 0, 0, 0, 0]\nmount = [0.5, 0, -0.2]\n"
+            '[[camera]]\nname = "rear"\n' + lens + "mount_rotation = [180, 0, 0]\n")
+        options = ["--camera", f"{camera}:front", "--trajectory", self.poses]
+        layers = ["--layers", "depth,range,class,normal,splat"]
+        report = self.report("render", model, "-o", picture, *options, *layers)
+        self.assertEqual(png_size(picture), (64, 40))
+        arrays = {name: npy(self.folder / f"p.{name}.npy")
+                  for name in ("depth", "range", "class", "normal", "splat")}
+        self.assertEqual([shape for shape, _ in arrays.values()], [(40, 64)] * 3 +
+                         [(40, 64, 3), (40, 64)])
+        depth, ranges, classes, splats = (arrays[name][1]
+                                          for name in ("depth", "range", "class", "splat"))
+        hits = [i for i, each in enumerate(splats) if each >= 0]
+        self.assertGreater(len(hits), 150)
+        for i in range(64 * 40):
+            self.assertEqual(math.isnan(depth[i]), splats[i] < 0)
+            self.assertEqual(classes[i] < 0, splats[i] < 0)
+        self.assertTrue(all(0 < depth[i] <= ranges[i] * 1.000001 for i in hits))
+        self.assertTrue(math.isnan(depth[0]), "no light reaches the corner")
+        self.assertGreater(report["unlit_pixels"], 100)
+        self.assertEqual(report["clipped_values"], 0)
+        for name in ("depth", "range", "class"):
+            self.assertEqual(png_size(self.folder / f"p.{name}.png"), (64, 40))
+        # All poses; the first is that of the picture above.
+        each = self.folder / "each"
+        self.run_good("render", model, "-o", each, *options, *layers, "--each-pose")
+        self.assertEqual((each / "000000.png").read_bytes(), picture.read_bytes())
+        self.assertEqual((each / "000000.depth.npy").read_bytes(),
+                         (self.folder / "p.depth.npy").read_bytes())
+        numbers = len(list(each.glob("*.splat.npy")))
+        self.assertGreater(numbers, 1)
+        self.assertEqual(len(list(each.glob("[0-9]" * 6 + ".png"))), numbers)
+        self.run_bad(73, "render", model, "-o", each, *options, "--each-pose")
+        self.run_good("render", model, "-o", each, *options, "--each-pose", "--overwrite")
+        self.assertEqual(list(each.glob("*.npy")), [])
+        self.run_good("render", self.cloud, "-o", picture, *options)  # points
+        self.run_good("render", model, "-o", picture, "--layers", "range", *SMALL)  # no camera
+
+    def test_wrong_cameras(self):
+        model, picture = self.model(), self.folder / "p.png"
+        camera = self.folder / "car.toml"
+        camera.write_text('[[camera]]\nname = "a"\nwidth = 8\nheight = 8\nfx = 4\nfy = 4\n'
+                          "cx = 4\ncy = 4\n")
+        at = ["--trajectory", self.poses, "-o", picture]
+        for code, says, options in [
+                (64, "--trajectory", ["-o", picture, "--camera", camera]),
+                (64, "--width", [*at, "--camera", camera, "--width", 9]),
+                (64, "no camera 'b'", [*at, "--camera", f"{camera}:b"]),
+                (66, "none.toml", [*at, "--camera", self.folder / "none.toml"]),
+                (64, "did you mean 'depth'", [*at, "--layers", "dept"]),
+                (64, "--each-pose", ["-o", self.folder / "f", "--each-pose"]),
+                (64, "folder", [*at, "--each-pose"]),
+                (64, "--overwrite", [*at, "--overwrite"])]:
+            self.run_bad(code, "render", model, *options, says=[says])
+        self.run_bad(64, "render", model, self.cloud, *at, "--layers", "depth",
+                     says=["one model"])
+        self.run_bad(64, "render", self.cloud, *at, "--layers", "depth", says=["one model"])
+        self.assertFalse(picture.exists())
 
     def test_an_mp4_needs_ffmpeg(self):
         model, film = self.model(), self.folder / "around.mp4"

@@ -396,6 +396,35 @@ void add_drives(Seeds& seeds) {
                R"([{"name":"noise","index":0}])"})});
 }
 
+void add_cameras(Seeds& seeds) {
+  const std::string lens = "width = 64\nheight = 48\nfx = 50.5\nfy = 51\ncx = 32\ncy = 24\n";
+  seeds.add("camera-toml",
+            {"[[camera]]\nname = \"a\"\n" + lens +
+                 "model = \"brown_conrady\"\ncoefficients = [-0.3, 0.1, 0.001, -0.002, 0]\n"
+                 "mount = [1, 0, 1.5]\nmount_rotation = [90, 0, -5]\n",
+             "[[camera]]\nname = \"a\"\n" + lens +
+                 "model = \"fisheye\"\ncoefficients = [0.1, -0.02, 0.003, 0]\n"
+                 "mount_quaternion = [0.5, -0.5, 0.5, -0.5]\n",
+             "[[camera]]\nname = \"a\"\nfile = \"b.yaml\"\n"});
+  seeds.add("camera-yaml",
+            {"image_width: 64\nimage_height: 48\ncamera_name: a\ncamera_matrix:\n  rows: 3\n"
+             "  data: [50, 0, 32, 0, 51, 24,\n    0, 0, 1]\ndistortion_model: plumb_bob\n"
+             "distortion_coefficients:\n  data: [-0.3, 0.1, 0.001, 0, 0]  # k\n",
+             "width: 64\nheight: 48\ndistortion_model: rational_polynomial\nd:\n- 0.1\n- -0.2\n"
+             "- 0.001\n- 0\n- 0.3\n- 0.4\n- 0.1\n- 0\nk:\n- 50\n- 0\n- 32\n- 0\n- 50\n- 24\n"
+             "- 0\n- 0\n- 1\n---\n"});
+  seeds.add("camera-json", {R"({"width":64,"height":48,"distortion_model":"equidistant",)"
+                            R"("D":[0.1,0.2,0.3,0.4],"K":[50,0,32,0,50,24,0,0,1]})"});
+  const std::string rotation = "1 0 0 0 1 0 0 0 1";
+  seeds.add("camera-kitti",
+            {joined({"calib_time: 09-Jan-2012\nS_rect_02: 64 48\nR_rect_00: " + rotation +
+                         "\nP_rect_02: 50 0 32 4 0 50 24 0.2 0 0 1 0.003\n",
+                     "R: 0 -1 0 0 0 -1 1 0 0\nT: 0 -0.1 -0.3\n"})});
+  seeds.add("camera-odometry",
+            {joined({"P0: 50 0 32 4 0 50 24 0.2 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n",
+                     std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x40\0\0\0\x30", 24)})});
+}
+
 void add_settings(Seeds& seeds) {
   seeds.add("rig",
             {"trajectory = \"p.csv\"\nbody = [[1, 0, 0.75, 4.5, 1.8, 1.5]]\n[[sensors]]\n"
@@ -441,6 +470,7 @@ void add_settings(Seeds& seeds) {
   }
   seeds.add("sensor-csv", {angles, joined({angles, times}), joined({angles, states}),
                            "azimuth_deg,elevation_deg,time_s,ring\n0,1,0,0\n90,-1,0.01,1\n"});
+  add_cameras(seeds);
   RayDropModel drop;
   drop.fitted_to = "s";
   drop.edge_runs = {0.5, 0.25};

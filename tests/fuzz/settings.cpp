@@ -7,6 +7,7 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/jobs/segment/output_classes.h"
+#include "adasplats/sensors/camera_file.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/ray_drop_model.h"
 #include "fuzz_readers.h"
@@ -23,6 +24,20 @@ void read_lidar_file(const Input& input) {
     require(is_finite(vec_cast<float>(origin)), "origins that a float holds");
   for (const Firing& firing : model.free_pattern)
     require(is_finite(firing.direction) && std::isfinite(firing.time_s), "rays that are finite");
+}
+
+void read_camera_file(const Input& input) {
+  const Camera camera = load_camera(input.file.string()).at({});
+  const Lens& lens = *camera.lens;
+  for (int i = 0; i < 9; ++i) {
+    const double u = 0.5 * (i % 3) * lens.width, v = 0.5 * static_cast<int>(i / 3) * lens.height;
+    const Vec3d direction = lens.direction(u, v);
+    if (direction == Vec3d{}) continue;
+    require(std::fabs(length(direction) - 1) < 1e-9, "directions of length 1");
+    const auto at = project(lens, direction);
+    require(!at || std::fabs(at->x - u) + std::fabs(at->y - v) <= 1e-6 * (lens.fx + lens.fy + 1e3),
+            "rays that return to their pixels");
+  }
 }
 
 void read_ray_drop(const Input& input) {

@@ -32,9 +32,9 @@ class RenderCommand final : public Command {
     OptionSet& app = options();
     require(add_paths(app, "MODEL", job_.models,
                       "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders"));
-    require(writes(
-        add_path(app, "-o,--output", job_.output, "Picture (PNG) or film (WebP, MP4) to write"),
-        {".png", ".webp", ".mp4"}));
+    require(writes(add_path(app, "-o,--output", job_.output,
+                            "Picture (PNG), film (WebP, MP4) or folder (--each-pose) to write"),
+                   {".png", ".webp", ".mp4", ""}));
     add_labels_option(app, job_.labels, "that of the model");
     add_choice<std::optional<ImageColor>>(app, "--color", job_.look.color,
                                           {{"shading", ImageColor::shading},
@@ -70,6 +70,7 @@ class RenderCommand final : public Command {
         app, "--errors", job_.errors,
         "Colour the splats of one model by errors of held-out beams, from 'evaluate resimulate "
         "--errors'");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     add_device_options();
   }
 
@@ -85,16 +86,37 @@ class RenderCommand final : public Command {
       reject({"--seconds", "--frames-per-s"}, "without --turntable or --drive");
     }
     if (job_.view.birds_eye) reject({"--fov"}, "with --birds-eye");
+    if (job_.each_pose)
+      reject({"--pose", "--repeat"}, "with --each-pose");
+    else
+      reject({"--overwrite"}, "without --each-pose");
+    if (!job_.camera.empty())
+      reject({"--width", "--height", "--fov", "--birds-eye"}, "with --camera");
     if (!draws_a_model(job_)) reject({"--samples"}, "on points, only on models and meshes");
     const RenderResult result = run_render(job_, session);
     const double rate = static_cast<double>(result.images) / result.seconds_rendered;
     session.report["images_per_second"] = rate;
     session.report["seconds_rendered"] = result.seconds_rendered;
-    print(job_.output.string() + ": " + fixed(result.seconds_rendered, 2) + " s, " +
-          fixed(rate, 1) + " images/s\n");
+    std::string text = job_.output.string() + ": " + fixed(result.seconds_rendered, 2) + " s, " +
+                       fixed(rate, 1) + " images/s";
+    if (!job_.layers.empty()) text += report_layers(result, session);
+    print(text + "\n");
   }
 
  private:
+  static std::string report_layers(const RenderResult& result, Session& session) {
+    session.report["seconds_of_layers"] = result.seconds_of_layers;
+    session.report["clipped_values"] = result.clipped_values;
+    session.report["unlit_pixels"] = result.unlit_pixels;
+    std::string text = "; layers " + fixed(result.seconds_of_layers, 2) + " s";
+    if (result.clipped_values > 0)
+      text +=
+          ", " + grouped(result.clipped_values) + " values outside the range of the PNG (65.535 m)";
+    if (result.unlit_pixels > 0)
+      text += ", " + grouped(result.unlit_pixels) + " pixels without a ray of the lens";
+    return text;
+  }
+
   RenderJob job_;
   bool turntable_ = false, drive_ = false;
 };

@@ -23,7 +23,11 @@ CameraRays Camera::rays(Vec3d origin) const {
   rays.local_from_camera = {world_from_camera.rotation, world_from_camera.translation - origin};
   rays.center_u = 0.5 * width;
   rays.center_v = 0.5 * height;
-  if (orthographic_width_m > 0) {
+  if (lens) {
+    rays.has_lens = true;
+    rays.lens = *lens;
+    rays.focal_px = std::sqrt(lens->fx * lens->fy);
+  } else if (orthographic_width_m > 0) {
     rays.pixel_m = orthographic_width_m / width;
   } else {
     rays.focal_px = 0.5 * width / std::tan(0.5 * horizontal_fov_rad);

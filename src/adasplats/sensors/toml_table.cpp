@@ -71,16 +71,13 @@ TomlTable TomlTable::table(std::string_view key, const TomlKeys& known) const {
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key, const TomlKeys& known) const {
-  std::vector<TomlTable> list;
-  const toml::node* node = find(key);
-  if (node == nullptr) return list;
-  if (!node->is_array()) throw error(key, "is not a list of tables");
-  for (const toml::node& element : *node->as_array()) {
-    const toml::table* inner = element.as_table();
-    if (inner == nullptr) throw error(key, "is not a list of tables");
-    list.emplace_back(std::shared_ptr<const toml::table>(table_, inner), path_, known);
-  }
-  return list;
+  require(key);
+  if (!find(key)->is_array_of_tables())
+    throw error(key, "is not a list of tables, each headed [[" + std::string(key) + "]]");
+  std::vector<TomlTable> tables;
+  for (const toml::node& each : *find(key)->as_array())
+    tables.push_back({std::shared_ptr<const toml::table>(table_, each.as_table()), path_, known});
+  return tables;
 }
 
 double TomlTable::number(std::string_view key, double otherwise, double low, double high) const {

@@ -41,7 +41,8 @@ class TomlTable {
 
   /// The table under an existing key.
   TomlTable table(std::string_view key, const TomlKeys& known) const;
-  /// The tables of a list, [[key]]; none if the key is missing.
+
+  /// The tables of a list that must be there: [[KEY]].
   std::vector<TomlTable> tables(std::string_view key, const TomlKeys& known) const;
 
   double number(std::string_view key, double otherwise, double low, double high) const;

@@ -16,6 +16,7 @@ namespace gpu {
 /// One picture in progress.
 struct RenderSlot {
   Stream stream;
+  DeviceBuffer<Ray> rays;  ///< of a lens
   DeviceBuffer<Hit> hits;
   DeviceBuffer<Vec3f> frame_colors;
   DeviceBuffer<float> frame_nearness, frame_splat_px;
@@ -89,9 +90,15 @@ GpuRenderer::~GpuRenderer() {
 
 void GpuRenderer::launch(RenderSlot& slot, const Camera& camera) const {
   const cudaStream_t stream = slot.stream.get();
-  const RaySource source = gpu::source_of(camera, options_, origin_);
+  RaySource source = gpu::source_of(camera, options_, origin_);
   const auto rays =
       static_cast<std::uint64_t>(source.columns) * static_cast<std::uint64_t>(source.rows);
+  if (camera.lens) {
+    if (slot.rays.size() < rays) slot.rays = gpu::DeviceBuffer<Ray>(rays, stream);
+    gpu::queue_lens_rays(source, slot.rays.data(), stream);
+    source.kind = RaySource::Kind::given;
+    source.rays = slot.rays.data();
+  }
   part_.scene->cast(source, rays, 1, slot.hits.data(), stream);
   gpu::queue_shading(tables_, Developer(camera, options_), source, slot.hits.data(), camera.width,
                      camera.height,

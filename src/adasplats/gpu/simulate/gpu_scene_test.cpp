@@ -243,6 +243,45 @@ TEST_P(OnGpu, PicturesMatchTheCpu) {
   }
 }
 
+// Oracle: render_image on the CPU.
+TEST_P(OnGpu, PicturesThroughALensMatchTheCpu) {
+  ImageScene scene;
+  scene.view = view();
+  scene.origin = kOrigin;
+  Lens plain;
+  plain.width = 93;
+  plain.height = 61;
+  plain.fx = 50;
+  plain.fy = 51;
+  plain.cx = 45.2;
+  plain.cy = 31.7;
+  Lens strong = plain;  // its corners are empty
+  strong.k[0] = -0.4;
+  strong.p1 = 0.01;
+  strong.p2 = -0.02;
+  Lens rational = plain;
+  rational.k[0] = 0.3;
+  rational.k[3] = 0.5;
+  Lens fisheye = plain;
+  fisheye.is_fisheye = true;
+  fisheye.fx = fisheye.fy = 20;
+  fisheye.k[0] = -0.01;
+  for (const Lens& lens : {plain, strong, rational, fisheye}) {
+    Camera camera = look_at(kOrigin, kOrigin + Vec3d{3, 1, 0.3});
+    camera.lens = complete_lens(lens, "the test's");
+    camera.width = lens.width;
+    camera.height = lens.height;
+    for (const int samples : {1, 3}) {
+      ImageOptions options;
+      options.color = ImageColor::normal;
+      options.samples_per_axis = samples;
+      const Image image = scene_->renderer(scene, options)->render(camera);
+      const Image wanted = render_image(*tracer_, scene, camera, options, executor_);
+      EXPECT_EQ(image.pixels, wanted.pixels) << lens.k[0] << " " << samples;
+    }
+  }
+}
+
 TEST_P(OnGpu, PicturesOfSeveralCamerasArriveInOrder) {
   ImageScene scene;
   scene.view = view();

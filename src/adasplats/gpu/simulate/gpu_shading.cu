@@ -29,7 +29,31 @@ void queue_frame(const ShadingTables& tables, const RaySource& source, const Hit
   });
 }
 
+template <bool kWithLens>
+void queue_developing(const Developer& developer, const FrameView& view, std::uint8_t* out,
+                      cudaStream_t stream) {
+  const auto width = static_cast<std::uint32_t>(view.width);
+  const std::uint64_t count = std::uint64_t{width} * static_cast<std::uint64_t>(view.height);
+  for_each(count, stream, "develop a picture on the GPU", [=] __device__(std::uint64_t i) {
+    const Quotient at = divide(i, width);
+    const Vec3f color = develop_pixel<kWithLens>(
+        developer, view, static_cast<std::int32_t>(at.rest), static_cast<std::int32_t>(at.whole));
+    for (int channel = 0; channel < 3; ++channel)
+      out[3 * i + static_cast<std::uint64_t>(channel)] = to_byte(color[channel]);
+  });
+}
+
 }  // namespace
+
+void queue_lens_rays(const RaySource& source, Ray* rays, cudaStream_t stream) {
+  const std::uint64_t count =
+      static_cast<std::uint64_t>(source.columns) * static_cast<std::uint64_t>(source.rows);
+  for_each(count, stream, "make the rays of a lens on the GPU", [=] __device__(std::uint64_t i) {
+    const SamplePlace at = sample_of(i, source.columns);
+    rays[i] = source.camera.lens_ray((at.x + 0.5) / source.samples_per_axis,
+                                     (at.y + 0.5) / source.samples_per_axis);
+  });
+}
 
 void queue_shading(const ShadingTables& tables, const Developer& developer, const RaySource& source,
                    const Hit* hits, int width, int height, DeviceFrame frame, std::uint8_t* out,
@@ -38,13 +62,10 @@ void queue_shading(const ShadingTables& tables, const Developer& developer, cons
       static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   queue_frame(tables, source, hits, width, count, frame, stream);
   const FrameView view = {frame.colors, frame.nearness, frame.splat_px, frame.hits, width, height};
-  for_each(count, stream, "develop a picture on the GPU", [=] __device__(std::uint64_t i) {
-    const Quotient at = divide(i, static_cast<std::uint32_t>(width));
-    const Vec3f color = develop_pixel(developer, view, static_cast<std::int32_t>(at.rest),
-                                      static_cast<std::int32_t>(at.whole));
-    for (int channel = 0; channel < 3; ++channel)
-      out[3 * i + static_cast<std::uint64_t>(channel)] = to_byte(color[channel]);
-  });
+  if (developer.camera.has_lens)
+    queue_developing<true>(developer, view, out, stream);
+  else
+    queue_developing<false>(developer, view, out, stream);
 }
 
 }  // namespace adasplats::gpu

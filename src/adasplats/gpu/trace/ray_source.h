@@ -17,7 +17,7 @@ struct RaySource {
   enum class Kind : std::uint32_t {
     given,  ///< rays[i]
     scans,  ///< ray i is firing i % firing_count of scan i / firing_count
-    image,  ///< ray i is sample i of a picture, tile by tile (see sample_of)
+    image,  ///< ray i is sample i of a picture without a lens, tile by tile (see sample_of)
   };
   Kind kind = Kind::given;
 
@@ -105,8 +105,8 @@ ADASPLATS_HD inline Ray ray_of(const RaySource& source, std::uint64_t i) {
     }
     case RaySource::Kind::image: {
       const SamplePlace at = sample_of(i, source.columns);
-      return source.camera.ray((at.x + 0.5) / source.samples_per_axis,
-                               (at.y + 0.5) / source.samples_per_axis);
+      return source.camera.plain_ray((at.x + 0.5) / source.samples_per_axis,
+                                     (at.y + 0.5) / source.samples_per_axis);
     }
   }
   return {};

@@ -43,12 +43,20 @@ std::vector<Rgb> error_colors(std::span<const float> errors_m) {
 std::optional<Vec3d> in_picture(const Camera& camera, Vec3d world) {
   const Vec3d p = camera.world_from_camera.inverse() * world;
   if (!(p.x > 0.1)) return std::nullopt;
+  const auto inside = [&](Vec3d at) {
+    return at.x >= 0 && at.y >= 0 && at.x < camera.width && at.y < camera.height;
+  };
+  if (camera.lens) {
+    const auto pixel = project(*camera.lens, {-p.y, -p.z, p.x});
+    if (!pixel || !inside({pixel->x + 0.5, pixel->y + 0.5, p.x})) return std::nullopt;
+    return Vec3d{pixel->x + 0.5, pixel->y + 0.5, p.x};
+  }
   const double px_per_m =
       camera.orthographic_width_m > 0
           ? camera.width / camera.orthographic_width_m
           : 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad) / p.x;
   const Vec3d at = {0.5 * camera.width - px_per_m * p.y, 0.5 * camera.height - px_per_m * p.z, p.x};
-  if (!(at.x >= 0 && at.y >= 0 && at.x < camera.width && at.y < camera.height)) return std::nullopt;
+  if (!inside(at)) return std::nullopt;
   return at;
 }
 

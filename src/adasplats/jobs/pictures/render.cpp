@@ -3,8 +3,11 @@
 #include "adasplats/jobs/pictures/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -16,17 +19,23 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/jobs/output/output_check.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/pictures/difference.h"
 #include "adasplats/jobs/pictures/film_writer.h"
+#include "adasplats/jobs/pictures/layer_files.h"
 #include "adasplats/jobs/pictures/panel.h"
 #include "adasplats/jobs/scene/view_choice.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/settings_json.h"
 
 namespace adasplats {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kMaxRenderPixels = 1 << 28;
+constexpr const char* kRenderCommand = "render";
 
 /// The panels of a picture side by side.
 class Panels {
@@ -45,6 +54,8 @@ class Panels {
   }
 
   const ShownPart& part() const { return part_; }
+  /// The model of the only panel; null if it is of points.
+  const ModelScene* only_model() const { return panels_.front().model(); }
   int columns() const { return job_.difference ? 1 : static_cast<int>(panels_.size()); }
 
   /// One picture of all, with captions.
@@ -53,7 +64,8 @@ class Panels {
     seconds_ = 0;
     for (int k = 0; k < columns(); ++k) {
       Image image = timed(camera, panels_[static_cast<std::size_t>(k)]);
-      if (job_.look.captions) write_captions(image, camera, static_cast<std::size_t>(k));
+      if (job_.look.captions && !job_.view.camera)
+        write_captions(image, camera, static_cast<std::size_t>(k));
       paste(picture, image, job_.view.width * k, 0);
     }
     return picture;
@@ -112,6 +124,17 @@ void check(const RenderJob& job) {
     throw Error(ErrorKind::usage, "`errors` are of one model");
   if (job.difference && !job.errors.empty())
     throw Error(ErrorKind::usage, "give one of `errors` and `difference`");
+  if (!layers_of(job.layers).empty() && (job.models.size() != 1 || !is_model_file(job.models[0])))
+    throw Error(ErrorKind::usage, "`layers` are of one model or mesh");
+  if (job.each_pose && job.view.trajectory.empty())
+    throw Error(ErrorKind::usage, "`each_pose` needs `trajectory`");
+  if (job.film != Film::none && (job.each_pose || !job.layers.empty()))
+    throw Error(ErrorKind::usage, "a film has no `layers` and is not of `each_pose`");
+  if (job.each_pose) {
+    if (lower_case(job.output.extension().string()) == ".png")
+      throw Error(ErrorKind::usage, job.output.string() + ": `each_pose` writes a folder");
+    return;
+  }
   if (job.film == Film::none) {
     if (lower_case(job.output.extension().string()) != ".png")
       throw Error(
@@ -160,21 +183,74 @@ RenderResult draw_film(const RenderJob& job, Panels& panels, Session& session) {
   return result;
 }
 
+/// Draws and writes one picture and its layers, and adds its figures.
+void draw_picture(const RenderJob& job, const Camera& camera, const fs::path& file, Panels& panels,
+                  Session& session, RenderResult& result) {
+  const Image picture = panels.draw(camera);
+  write_png(file, picture.width, picture.height, picture.pixels);
+  result.images += static_cast<std::size_t>(panels.columns());
+  result.seconds_rendered += panels.seconds();
+  const std::vector<ImageLayer> wanted = layers_of(job.layers);
+  if (wanted.empty()) return;
+  const ModelScene& model = *panels.only_model();
+  const Stopwatch watch;
+  const LayerImages layers =
+      cast_layers(model.tracer(), model.image_scene(), camera, wanted, session.executor);
+  result.seconds_of_layers += watch.seconds();
+  result.unlit_pixels += layers.unlit_pixels;
+  result.clipped_values += write_layers(file, layers);
+}
+
+/// The settings that made a folder of pictures.
+nlohmann::ordered_json content_of(const RenderJob& job) {
+  nlohmann::ordered_json content;
+  content["model"] = job.models.front().filename().string();
+  content["trajectory"] = job.view.trajectory.filename().string();
+  put_settings(job, content);
+  return content;
+}
+
+RenderResult draw_each_pose(const RenderJob& job, Panels& panels, Session& session) {
+  const std::vector<Camera> cameras = at_each_pose(job.view);
+  OutputFolder folder(job.output, job.overwrite, kRenderCommand, content_of(job));
+  RenderResult result;
+  session.progress.begin_step("render", cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%06zu.png", i);
+    draw_picture(job, cameras[i], folder.path() / name.data(), panels, session, result);
+    session.progress.advance(i + 1);
+  }
+  session.progress.end_step();
+  folder.commit();
+  return result;
+}
+
 RenderResult draw(const RenderJob& job, std::vector<Panel> parts, Session& session) {
   Panels panels(job, std::move(parts), session);
   if (job.film != Film::none) return draw_film(job, panels, session);
+  if (job.each_pose) return draw_each_pose(job, panels, session);
+  RenderResult result;
   session.progress.begin_step("render", 0);
-  const Image picture = panels.draw(camera_of(job.view, panels.part()));
+  draw_picture(job, camera_of(job.view, panels.part()), job.output, panels, session, result);
   session.progress.end_step();
-  write_png(job.output, picture.width, picture.height, picture.pixels);
-  return {static_cast<std::size_t>(panels.columns()), panels.seconds()};
+  return result;
 }
 
-/// Before anything is loaded.
-void check_before(const RenderJob& job) {
-  check(job);
-  check_output_file(job.output);
+/// The job with its camera, checked before anything else is loaded.
+RenderJob checked(RenderJob job) {
+  if (!job.camera.empty()) job.view.use(load_camera(job.camera));
   check_inputs(job);
+  check(job);
+  if (job.each_pose) {
+    require_folder_apart(job.output, job.models);
+    checked_output_folder(job.output, job.overwrite, kRenderCommand);
+    return job;
+  }
+  check_output_file(job.output);
+  for (const fs::path& file : layer_files(job.output, layers_of(job.layers)))
+    check_output_file(file);
+  return job;
 }
 
 }  // namespace
@@ -184,16 +260,16 @@ bool draws_a_model(const RenderJob& job) {
   return std::any_of(job.models.begin(), job.models.end(), is_model_file);
 }
 
-RenderResult run_render(const RenderJob& job, Session& session) {
-  check_before(job);
+RenderResult run_render(const RenderJob& given, Session& session) {
+  const RenderJob job = checked(given);
   std::vector<Panel> panels;
   for (const auto& input : job.models) panels.emplace_back(input, job.labels, session);
   return draw(job, std::move(panels), session);
 }
 
-RenderResult run_render(const RenderJob& job, std::shared_ptr<const ModelScene> model,
+RenderResult run_render(const RenderJob& given, std::shared_ptr<const ModelScene> model,
                         Session& session) {
-  check_before(job);
+  const RenderJob job = checked(given);
   std::vector<Panel> panels;
   panels.emplace_back(std::move(model));
   return draw(job, std::move(panels), session);

@@ -31,7 +31,12 @@ struct RenderJob {
   std::string labels;  ///< scheme of the classes; empty: what the models say
   /// Errors of held-out beams (evaluate resimulate --errors) to colour the splats of one model by.
   std::filesystem::path errors;
-  ViewChoice view;  ///< width and height are those of one model's part of the picture
+  ViewChoice view;     ///< width and height are those of one model's part of the picture
+  std::string camera;  ///< of load_camera(), chosen for `view`; "": none
+  std::string layers;  ///< of layers_of(); of one model
+  /// One picture a pose of the trajectory: `output` is a folder of 000000.png, 000001.png...
+  bool each_pose = false;
+  bool overwrite = false;  ///< that folder
   PanelLook look;
   /// Instead of two models side by side: how much farther the second is along the view.
   bool difference = false;
@@ -42,8 +47,11 @@ struct RenderJob {
 };
 
 struct RenderResult {
-  std::size_t images = 0;       ///< one a model
-  double seconds_rendered = 0;  ///< sum over the models of the median, rendering alone
+  std::size_t images = 0;            ///< one a model
+  double seconds_rendered = 0;       ///< sum over the models of the median, rendering alone
+  double seconds_of_layers = 0;      ///< casting alone
+  std::uint64_t clipped_values = 0;  ///< depths and ranges that their PNG do not hold
+  std::uint64_t unlit_pixels = 0;    ///< of all pictures with layers: without a ray of the lens
 };
 
 template <class Visit>
@@ -64,6 +72,20 @@ void visit_settings(RenderJob& job, Visit&& visit) {
           .help = "Colour by how much farther away the second of two models is along the view rays",
           .basic = true},
       job.difference);
+  visit(Setting{.name = "camera",
+                .help = "Camera file: lens and mount",
+                .value = "FILE[:NAME]",
+                .basic = true},
+        job.camera);
+  visit(Setting{.name = "layers",
+                .help = "Also write these as arrays: depth, range, class, normal, splat",
+                .value = "LAYER,...",
+                .group = "Camera"},
+        job.layers);
+  visit(Setting{.name = "each_pose",
+                .help = "Write a folder with one picture for each pose of --trajectory",
+                .group = "Camera"},
+        job.each_pose);
   visit(Setting{.name = "seconds",
                 .help = "Length of a film, s",
                 .value = "S",

@@ -20,6 +20,7 @@ constexpr int kMaxPixels = 1 << 28;
 constexpr double kFromAfar_deg = 45, kFromWithin_deg = 70;
 
 RigidTransform pose_of(const ViewChoice& view) {
+  if (view.at) return *view.at;
   const Trajectory trajectory = load_trajectory(view.trajectory);
   if (view.pose >= trajectory.size()) {
     throw Error(ErrorKind::usage, "`pose` " + std::to_string(view.pose) + ": the trajectory has " +
@@ -44,14 +45,20 @@ void check(const ViewChoice& view) {
     throw Error(ErrorKind::usage, "`fov` must be above 0 and below 180 degrees");
   }
   if (view.target && !view.eye) throw Error(ErrorKind::usage, "`target` needs `eye`");
-  const int positions =
-      (view.eye ? 1 : 0) + (view.birds_eye ? 1 : 0) + (view.trajectory.empty() ? 0 : 1);
+  const bool is_at_pose = view.at || !view.trajectory.empty();
+  const int positions = (view.eye ? 1 : 0) + (view.birds_eye ? 1 : 0) + (is_at_pose ? 1 : 0);
   if (positions > 1) {
     throw Error(ErrorKind::usage, "give one of `eye`, `birds_eye` and `trajectory`");
   }
+  if (!view.camera) return;
+  if (view.horizontal_fov_deg)
+    throw Error(ErrorKind::usage, "`fov` has no effect with `camera`, which has its own");
+  if (!view.eye && !is_at_pose)
+    throw Error(ErrorKind::usage, "`camera` needs `trajectory` or `eye`");
 }
 
 Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera) {
+  if (view.camera) return view.camera->at(world_from_camera);
   Camera camera;
   camera.world_from_camera = world_from_camera;
   camera.width = view.width;
@@ -62,12 +69,21 @@ Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera
 
 Camera camera_of(const ViewChoice& view, const ShownPart& part) {
   if (view.birds_eye) return birds_eye(part.low, part.high, view.width, view.height);
-  if (view.trajectory.empty() && !view.eye)
+  if (view.trajectory.empty() && !view.at && !view.eye)
     return overview(part, view.width, view.height,
                     view.horizontal_fov_deg.value_or(kFromAfar_deg) * kRadiansPerDegree);
-  return camera_at(
-      view, view.eye ? look_at(*view.eye, view.target.value_or(part.middle())).world_from_camera
-                     : pose_of(view));
+  if (!view.eye) return camera_at(view, pose_of(view));
+  const Camera looking = look_at(*view.eye, view.target.value_or(part.middle()));
+  Camera camera = camera_at(view, looking.world_from_camera);
+  camera.world_from_camera = looking.world_from_camera;
+  return camera;
+}
+
+std::vector<Camera> at_each_pose(const ViewChoice& view) {
+  std::vector<Camera> cameras;
+  for (const TimedPose& pose : load_trajectory(view.trajectory))
+    cameras.push_back(camera_at(view, pose.world_from_sensor));
+  return cameras;
 }
 
 std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std::size_t frames) {

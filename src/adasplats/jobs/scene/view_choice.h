@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/sensors/camera.h"
+#include "adasplats/sensors/camera_file.h"
 
 namespace adasplats {
 
@@ -24,17 +26,31 @@ struct ViewChoice {
   bool birds_eye = false;
   std::filesystem::path trajectory;  ///< look ahead from a pose of it
   std::size_t pose = 0;
+  std::optional<RigidTransform> at;  ///< look ahead from this pose
+  /// A camera with a lens, mounted on what the trajectory or `at` is of; at `eye`, the camera
+  /// itself is.
+  std::optional<MountedCamera> camera;
+
+  /// Chooses a camera, with its width and height.
+  void use(MountedCamera mounted) {
+    width = mounted.lens.width;
+    height = mounted.lens.height;
+    camera = std::move(mounted);
+  }
 };
 
 /// Errors: usage (sizes and angles out of range, several positions).
 void check(const ViewChoice& view);
 
-/// The camera at a pose, looking ahead.
+/// The camera at a pose of the trajectory, looking ahead, or as it is mounted there.
 Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera);
 
 /// The camera for a part of a scene. Errors: those of the trajectory's file; usage (a pose that it
 /// does not have).
 Camera camera_of(const ViewChoice& view, const ShownPart& part);
+
+/// Cameras at all poses of the view's trajectory. Errors: those of the trajectory's file.
+std::vector<Camera> at_each_pose(const ViewChoice& view);
 
 /// Cameras of a film, one a picture.
 

@@ -23,6 +23,24 @@ void fill_pairs(int scale, double radius_px, std::span<PixelPair> pairs) {
   }
 }
 
+template <bool kWithLens>
+Image developed(const Frame& frame, const Developer& developer, const Executor& executor) {
+  const FrameView view = frame.view();
+  Image image{frame.width, frame.height, std::vector<std::uint8_t>(3 * frame.colors.size())};
+  executor.for_chunks(static_cast<std::size_t>(frame.height), kRowsPerChunk,
+                      [&](std::size_t begin, std::size_t end) {
+                        std::uint8_t* out = &image.pixels[3 * frame.at(0, static_cast<int>(begin))];
+                        for (std::size_t y = begin; y < end; ++y)
+                          for (int x = 0; x < frame.width; ++x) {
+                            const Vec3f color =
+                                develop_pixel<kWithLens>(developer, view, x, static_cast<int>(y));
+                            for (int channel = 0; channel < 3; ++channel)
+                              *out++ = to_byte(color[channel]);
+                          }
+                      });
+  return image;
+}
+
 }  // namespace
 
 Developer::Developer(const Camera& from, const ImageOptions& options)
@@ -46,20 +64,8 @@ Developer::Developer(const Camera& from, const ImageOptions& options)
 }
 
 Image develop(const Frame& frame, const Developer& developer, const Executor& executor) {
-  const FrameView view = frame.view();
-  Image image{frame.width, frame.height, std::vector<std::uint8_t>(3 * frame.colors.size())};
-  executor.for_chunks(static_cast<std::size_t>(frame.height), kRowsPerChunk,
-                      [&](std::size_t begin, std::size_t end) {
-                        std::uint8_t* out = &image.pixels[3 * frame.at(0, static_cast<int>(begin))];
-                        for (std::size_t y = begin; y < end; ++y)
-                          for (int x = 0; x < frame.width; ++x) {
-                            const Vec3f color =
-                                develop_pixel(developer, view, x, static_cast<int>(y));
-                            for (int channel = 0; channel < 3; ++channel)
-                              *out++ = to_byte(color[channel]);
-                          }
-                      });
-  return image;
+  return developer.camera.has_lens ? developed<true>(frame, developer, executor)
+                                   : developed<false>(frame, developer, executor);
 }
 
 }  // namespace adasplats

@@ -158,7 +158,9 @@ ADASPLATS_HD inline float hole_at(const Developer& with, const FrameView& frame,
 
 }  // namespace developing
 
-/// The colour of a pixel, the same on every backend: 0..1, or above.
+/// The colour of a pixel, the same on every backend: 0..1, or above. Pixels that the lens does not
+/// light are black.
+template <bool kWithLens>
 ADASPLATS_HD inline Vec3f develop_pixel(const Developer& with, const FrameView& frame,
                                         std::int32_t x, std::int32_t y) {
   constexpr float kShadow = 2.6F;
@@ -174,8 +176,11 @@ ADASPLATS_HD inline Vec3f develop_pixel(const Developer& with, const FrameView& 
   }
   const int misses = with.samples - hits;
   if (misses > 0) {
-    Vec3f behind = developing::background_color(with, with.camera.ray(x + 0.5, y + 0.5).direction);
-    if (with.relief) {
+    const Vec3f direction = kWithLens ? with.camera.lens_ray(x + 0.5, y + 0.5).direction
+                                      : with.camera.plain_ray(x + 0.5, y + 0.5).direction;
+    const bool is_lit = !(direction == Vec3f{});
+    Vec3f behind = is_lit ? developing::background_color(with, direction) : Vec3f{};
+    if (with.relief && is_lit) {
       const float hole = developing::hole_at(with, frame, x, y);
       behind = (1.0F - hole) * behind + hole * developing::kHole;
     }
@@ -186,6 +191,7 @@ ADASPLATS_HD inline Vec3f develop_pixel(const Developer& with, const FrameView& 
 
 /// The nearness (FramePixel) of a hit.
 ADASPLATS_HD inline float nearness_of(const CameraRays& camera, const Ray& ray, float t) {
+  if (camera.has_lens) return 1.0F / t;
   const Vec3d forward = camera.local_from_camera.rotation * Vec3d{1, 0, 0};
   const float depth_m = t * dot(ray.direction, vec_cast<float>(forward));
   return camera.pixel_m > 0 ? -depth_m : 1.0F / depth_m;

@@ -16,7 +16,8 @@ namespace adasplats {
 struct FramePixel {
   Vec3f color;  ///< sum over the samples that hit something, 0..1 each
   /// Of the nearest hit; kNothingNear if no sample hit. Pinhole: 1 / depth along the view, 1/m;
-  /// parallel rays: -depth, m. Either is linear in the picture over a plane.
+  /// parallel rays: -depth, m. Either is linear in the picture over a plane. Lens: 1 / range, 1/m,
+  /// which nearly is and has a value for every direction.
   float nearness = -std::numeric_limits<float>::infinity();
   float splat_px = 0;  ///< radius of a splat in the picture, otherwise 0
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
 #include "adasplats/core/error.h"
@@ -142,6 +143,11 @@ void check_image(const Camera& camera, const ImageOptions& options) {
   if (options.samples_per_axis < 1 || options.samples_per_axis > 16)
     throw Error(ErrorKind::usage, std::to_string(options.samples_per_axis) +
                                       " samples per axis of a pixel; expected 1 to 16");
+  if (camera.lens) {
+    if (camera.lens->width != camera.width || camera.lens->height != camera.height)
+      throw std::logic_error("a camera and its lens have different sizes");
+    return;
+  }
   const bool parallel = camera.orthographic_width_m > 0;
   if (!parallel && !(camera.horizontal_fov_rad > 0 && camera.horizontal_fov_rad < std::numbers::pi))
     throw Error(ErrorKind::usage, "a camera's field of view must be above 0 and below 180 degrees");

@@ -31,7 +31,7 @@ constexpr PixelKey kNothing = ~PixelKey{0};
 /// A point in the picture.
 struct Projected {
   double u, v;      ///< pixels from the top left corner
-  double depth_m;   ///< along the view
+  double depth_m;   ///< along the view; of a lens: the range
   double px_per_m;  ///< of something at that depth that faces the camera
 };
 
@@ -44,11 +44,13 @@ class Projection {
         height_(camera.height),
         focal_px_(0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad)),
         parallel_px_per_m_(
-            camera.orthographic_width_m > 0 ? camera.width / camera.orthographic_width_m : 0.0) {}
+            camera.orthographic_width_m > 0 ? camera.width / camera.orthographic_width_m : 0.0),
+        lens_(camera.lens) {}
 
-  /// Nothing where the point is not finite, or behind the camera.
+  /// Nothing where the point is not finite, behind the camera, or not shown by its lens.
   std::optional<Projected> operator()(Vec3f position) const {
     const Vec3d p = camera_from_local_ * vec_cast<double>(position);
+    if (lens_) return through_lens(p);
     const bool parallel = parallel_px_per_m_ > 0;
     if (!is_finite(p) || !(p.x > (parallel ? 0.0 : kNearest_m))) return std::nullopt;
     const double px_per_m = parallel ? parallel_px_per_m_ : focal_px_ / p.x;
@@ -56,9 +58,19 @@ class Projection {
   }
 
  private:
+  /// As in pictures of models, the nearest is the one with the smallest range.
+  std::optional<Projected> through_lens(Vec3d p) const {
+    const double range_m = length(p);
+    if (!is_finite(p) || !(range_m > kNearest_m)) return std::nullopt;
+    const std::optional<Lens::Point> at = project(*lens_, {-p.y, -p.z, p.x});
+    if (!at) return std::nullopt;
+    return Projected{at->x + 0.5, at->y + 0.5, range_m, std::sqrt(lens_->fx * lens_->fy) / range_m};
+  }
+
   RigidTransform camera_from_local_;
   double width_, height_, focal_px_;
   double parallel_px_per_m_;  ///< 0: a pinhole
+  std::optional<Lens> lens_;
 };
 
 void put(PixelKey& pixel, PixelKey key) {

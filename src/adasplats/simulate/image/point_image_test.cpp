@@ -59,9 +59,13 @@ Image draw(const std::vector<Vec3f>& points, const std::vector<Rgb>& colors, con
 
 // Oracle: Camera::ray, which goes the other way.
 TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
-  for (const bool parallel : {false, true}) {
-    Camera camera = camera_of(40, 30);
-    if (parallel) camera.orthographic_width_m = 12;
+  Camera parallel = camera_of(40, 30), lens = parallel;
+  parallel.orthographic_width_m = 12;
+  lens.lens = Lens{.width = 40, .height = 30, .fx = 30, .fy = 31, .cx = 18, .cy = 15.5};
+  lens.lens->k[0] = -0.1;
+  lens.lens->p1 = 0.01;
+  lens.lens = complete_lens(*lens.lens, "the test's");
+  for (const Camera& camera : {camera_of(40, 30), parallel, lens}) {
     for (int y = 0; y < camera.height; y += 7) {
       for (int x = 0; x < camera.width; x += 3) {
         const Ray ray = camera.ray(x + 0.5, y + 0.5, kOrigin);

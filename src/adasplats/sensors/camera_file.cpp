@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/sensors/camera_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/words.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/sensors/camera_files.h"
+#include "adasplats/sensors/toml_table.h"
+
+namespace adasplats {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Distortion : std::uint8_t { none, brown_conrady, rational, fisheye };
+
+constexpr std::pair<std::string_view, Distortion> kDistortions[] = {
+    {"none", Distortion::none},
+    {"brown_conrady", Distortion::brown_conrady},
+    {"plumb_bob", Distortion::brown_conrady},
+    {"rational", Distortion::rational},
+    {"rational_polynomial", Distortion::rational},
+    {"fisheye", Distortion::fisheye},
+    {"equidistant", Distortion::fisheye}};
+
+const TomlKeys& camera_keys() {
+  static const TomlKeys keys = {
+      "name",         "file",  "width",          "height",          "fx", "fy", "cx", "cy", "model",
+      "coefficients", "mount", "mount_rotation", "mount_quaternion"};
+  return keys;
+}
+
+constexpr double kMaxPixels = 1e9;
+
+/// vehicle_from_camera
+RigidTransform read_mount(const TomlTable& table) {
+  RigidTransform mount;
+  if (const std::vector<Vec3d> at = table.points("mount", 1); !at.empty())
+    mount.translation = at.front();
+  if (table.has("mount_rotation") && table.has("mount_quaternion"))
+    throw table.error("mount_rotation", "and mount_quaternion are given, expected one of them");
+  if (table.has("mount_rotation")) {
+    const std::vector<double> angles_rad = table.angles_rad("mount_rotation", -360, 360);
+    if (angles_rad.size() != 3)
+      throw table.error("mount_rotation", "is not a list of yaw, pitch and roll, degrees");
+    mount.rotation = rotation_from_yaw_pitch_roll(angles_rad[0], angles_rad[1], angles_rad[2]);
+  }
+  if (table.has("mount_quaternion")) {
+    constexpr double kMaxError = 1e-3;
+    const std::vector<double> q = table.numbers("mount_quaternion", -2, 2);
+    double square = 0;
+    for (const double part : q) square += part * part;
+    const double norm = std::sqrt(square);
+    if (q.size() != 4 || !(std::fabs(norm - 1) < kMaxError))
+      throw table.error("mount_quaternion", "is not a list of w, x, y and z with length 1");
+    const Mat3d vehicle_from_optical =
+        rotation_from_quaternion(q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm);
+    mount.rotation = vehicle_from_optical * kCameraFromOptical.transposed();
+  }
+  return mount;
+}
+
+FileCamera read_camera(const fs::path& file, const std::string& wanted);
+
+/// Splits "FILE:NAME"; a file may have colons in its name.
+std::pair<fs::path, std::string> split(const std::string& file_and_name) {
+  std::error_code ignored;  // of names that are too long for a file
+  const std::size_t colon = file_and_name.rfind(':');
+  if (colon == std::string::npos || colon == 0 || fs::exists(file_and_name, ignored))
+    return {file_and_name, ""};
+  return {file_and_name.substr(0, colon), file_and_name.substr(colon + 1)};
+}
+
+/// The lens that the keys of a table give.
+void read_lens(const TomlTable& table, FileCamera& result) {
+  Lens& lens = result.camera.lens;
+  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) table.require(key);
+  lens.fx = table.number("fx", 0, -kMaxPixels, kMaxPixels);
+  lens.fy = table.number("fy", 0, -kMaxPixels, kMaxPixels);
+  lens.cx = table.number("cx", 0, -kMaxPixels, kMaxPixels);
+  lens.cy = table.number("cy", 0, -kMaxPixels, kMaxPixels);
+  result.model = table.text("model", "none");
+  result.coefficients = table.numbers("coefficients", -kMaxPixels, kMaxPixels);
+}
+
+FileCamera read_toml_camera(std::string_view text, const fs::path& file,
+                            const std::string& wanted) {
+  const std::vector<TomlTable> tables =
+      parse_toml(text, file, {"camera"}, "camera").tables("camera", camera_keys());
+  std::vector<std::string> names;
+  for (const TomlTable& table : tables) {
+    table.require("name");
+    names.push_back(table.text("name", ""));
+    if (std::ranges::count(names, names.back()) > 1)
+      throw table.error("name", "is that of another camera, too");
+  }
+  const std::size_t chosen = choose_camera(names, wanted, file);
+  const TomlTable& table = tables[chosen];
+  FileCamera result;
+  if (table.has("file")) {
+    for (const char* key : {"fx", "fy", "cx", "cy", "model", "coefficients"})
+      if (table.has(key)) throw table.error(key, "is given, and file, which has it");
+    const auto [other, name] = split((file.parent_path() / table.text("file", "")).string());
+    if (other.extension() == ".toml") throw table.error("file", "is another TOML file");
+    result = read_camera(other, name);
+  } else {
+    read_lens(table, result);
+  }
+  Lens& lens = result.camera.lens;
+  constexpr std::int64_t kMaxSide = 1 << 15;
+  for (const auto& [key, side] : {std::pair{"width", &lens.width}, {"height", &lens.height}}) {
+    if (!table.has(key)) continue;
+    if (*side != 0) throw table.error(key, "is given, and file, which has it");
+    *side = static_cast<int>(table.whole_number(key, 1, kMaxSide));
+  }
+  result.camera.name = names[chosen];
+  if (!table.has("file") || table.has("mount") || table.has("mount_rotation") ||
+      table.has("mount_quaternion"))
+    result.camera.vehicle_from_camera = read_mount(table);
+  return result;
+}
+
+FileCamera read_camera(const fs::path& file, const std::string& wanted) {
+  const std::string text = read_file(file);
+  const std::string extension = lower_case(file.extension().string());
+  if (extension == ".toml") return read_toml_camera(text, file, wanted);
+  if (is_kitti_calibration(text)) return read_kitti_camera(text, file, wanted);
+  if (extension == ".yaml" || extension == ".yml" || extension == ".json")
+    return read_ros_camera(text, file, wanted);
+  throw camera_fault(file,
+                     "is no camera: expected .toml, .yaml or .json (CameraInfo of ROS), calib.txt "
+                     "or calib_cam_to_cam.txt of KITTI");
+}
+
+}  // namespace
+
+Camera MountedCamera::at(const RigidTransform& world_from_vehicle) const {
+  Camera camera;
+  camera.world_from_camera = world_from_vehicle * vehicle_from_camera;
+  camera.width = lens.width;
+  camera.height = lens.height;
+  camera.lens = lens;
+  return camera;
+}
+
+std::size_t choose_camera(const std::vector<std::string>& names, const std::string& wanted,
+                          const fs::path& file) {
+  if (wanted.empty() && names.size() == 1) return 0;
+  const auto found = std::ranges::find(names, wanted);
+  if (found != names.end() && !wanted.empty())
+    return static_cast<std::size_t>(found - names.begin());
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  if (wanted.empty())
+    throw Error(ErrorKind::usage, file.string() + ": has the cameras " + list + "; choose one as " +
+                                      file.string() + ":NAME");
+  throw Error(ErrorKind::usage, file.string() + ": no camera '" + wanted + "': expected " + list);
+}
+
+Lens pinhole_lens(const std::vector<double>& matrix, const std::string& name) {
+  if (matrix.size() != 9)
+    throw Error(ErrorKind::config, name + " has " + std::to_string(matrix.size()) +
+                                       " numbers, expected 9: fx 0 cx 0 fy cy 0 0 1");
+  const bool is_upper = matrix[1] == 0 && matrix[3] == 0 && matrix[6] == 0 && matrix[7] == 0;
+  if (!is_upper || matrix[8] != 1)
+    throw Error(ErrorKind::config, name +
+                                       " is not fx 0 cx 0 fy cy 0 0 1: cameras with skew are "
+                                       "not supported");
+  Lens lens;
+  lens.fx = matrix[0];
+  lens.cx = matrix[2];
+  lens.fy = matrix[4];
+  lens.cy = matrix[5];
+  return lens;
+}
+
+Lens distorted_lens(Lens lens, const std::string& model, const std::vector<double>& coefficients,
+                    const std::string& name) {
+  const auto* const found =
+      std::ranges::find(kDistortions, model, [](const auto& entry) { return entry.first; });
+  if (found == std::end(kDistortions))
+    throw Error(
+        ErrorKind::config,
+        name + ": " + unknown_word("distortion model", model, list_of<Distortion>(kDistortions)));
+  const Distortion distortion = found->second;
+  const std::size_t count = coefficients.size();
+  const auto require_count = [&](bool is_right, const char* expected) {
+    if (!is_right)
+      throw Error(ErrorKind::config, name + ": " + std::to_string(count) + " coefficients of " +
+                                         model + ", expected " + expected);
+  };
+  const auto at = [&](std::size_t i) { return i < count ? coefficients[i] : 0.0; };
+  switch (distortion) {
+    case Distortion::none: require_count(count == 0, "none"); break;
+    case Distortion::fisheye:
+      require_count(count == 4, "4: k1, k2, k3, k4");
+      lens.is_fisheye = true;
+      for (std::size_t i = 0; i < 4; ++i) lens.k[i] = at(i);
+      break;
+    case Distortion::brown_conrady:
+    case Distortion::rational:
+      if (distortion == Distortion::rational)
+        require_count(count == 8, "8: k1, k2, p1, p2, k3, k4, k5, k6");
+      else
+        require_count(count == 4 || count == 5, "5: k1, k2, p1, p2, k3 (or 4 without k3)");
+      lens.p1 = at(2);
+      lens.p2 = at(3);
+      lens.k[0] = at(0);
+      lens.k[1] = at(1);
+      for (std::size_t i = 2; i < 6; ++i) lens.k[i] = at(i + 2);
+  }
+  return complete_lens(lens, name);
+}
+
+MountedCamera load_camera(const std::string& file_and_name) {
+  const auto [file, name] = split(file_and_name);
+  FileCamera read = read_camera(file, name);
+  const std::string where = file.string() + ": camera " + read.camera.name;
+  if (read.camera.lens.width == 0 || read.camera.lens.height == 0)
+    throw Error(ErrorKind::config,
+                where +
+                    ": the file states no size of the picture; name it in a TOML camera: "
+                    "[[camera]], name, file, width, height");
+  read.camera.lens = distorted_lens(read.camera.lens, read.model, read.coefficients, where);
+  return read.camera;
+}
+
+}  // namespace adasplats

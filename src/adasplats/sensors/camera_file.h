@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/sensors/camera.h"
+
+namespace adasplats {
+
+/// A camera on a vehicle.
+struct MountedCamera {
+  std::string name;
+  Lens lens;
+  RigidTransform vehicle_from_camera;  ///< camera: x forward, y left, z up
+
+  /// The camera with the vehicle (or sensor) at a pose.
+  Camera at(const RigidTransform& world_from_vehicle) const;
+};
+
+/// Reads a camera from "FILE" or, if the file has several, "FILE:NAME". The formats, told apart by
+/// their content (docs/pictures.md describes them):
+/// - TOML of [[camera]] tables;
+/// - CameraInfo of ROS as YAML or JSON, and the YAML of OpenCV;
+/// - KITTI's calib.txt of odometry sequences (P0 to P3), mounted on the LiDAR by its line Tr; the
+///   size is that of the pictures next to it;
+/// - KITTI's calib_cam_to_cam.txt of raw data (P_rect_00 to P_rect_03), mounted by
+///   calib_velo_to_cam.txt in the same folder.
+/// Errors: no_input, io, config (content that is invalid or inconsistent), usage (a name that the
+/// file does not have, or none of several).
+MountedCamera load_camera(const std::string& file_and_name);
+
+/// A lens with the focal lengths and the principal point of a matrix fx 0 cx, 0 fy cy, 0 0 1 by
+/// rows. Errors: config, with `name` of the matrix (another matrix).
+Lens pinhole_lens(const std::vector<double>& matrix, const std::string& name);
+
+/// The lens for a distortion model by name (none, brown_conrady or plumb_bob, rational or
+/// rational_polynomial, fisheye or equidistant) and its coefficients in the order of OpenCV. `lens`
+/// has the other values. Errors: config, with `name` of the camera (an unknown model, another
+/// number of coefficients, those of complete_lens()).
+Lens distorted_lens(Lens lens, const std::string& model, const std::vector<double>& coefficients,
+                    const std::string& name);
+
+}  // namespace adasplats
