@@ -33,7 +33,7 @@ class RenderCommand final : public Command {
     require(add_paths(app, "MODEL", job_.models,
                       "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders"));
     require(writes(add_path(app, "-o,--output", job_.output,
-                            "Picture (PNG), film (WebP, MP4) or folder (--each-pose) to write"),
+                            "PNG, film (WebP, MP4) or folder (--each-pose) to write"),
                    {".png", ".webp", ".mp4", ""}));
     add_labels_option(app, job_.labels, "that of the model");
     add_choice<std::optional<ImageColor>>(app, "--color", job_.look.color,
