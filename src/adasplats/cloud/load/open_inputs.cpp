@@ -26,7 +26,6 @@ namespace adasplats {
 namespace {
 
 std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths) {
-  if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
   std::vector<CloudInput> inputs, sequences;
   for (const std::filesystem::path& path : paths) {
     const std::vector<CloudInput> found = cloud_inputs(path);
@@ -97,7 +96,7 @@ std::vector<OpenInput> opened(std::span<const std::filesystem::path> paths,
     else
       others.push_back(path);
   }
-  if (!others.empty() || paths.empty())
+  if (!others.empty())
     for (const CloudInput& input : list_inputs(others)) inputs.push_back({input, {}, false});
   return inputs;
 }
@@ -199,6 +198,7 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
                        const Executor& executor, ProgressSink& progress)
     : options_(options) {
   require_sound(options);
+  if (inputs.empty()) throw usage("no inputs to load");
   name_ = name_of(inputs);
   const auto file = std::ranges::find_if(inputs, is_rig);
   if (file != inputs.end() && inputs.size() > 1)

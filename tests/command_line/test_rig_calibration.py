@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""calibrate and model with rigs: mounts and clocks that were put in are found, wrong rigs are errors."""
+import json
+import math
+import tomllib
+import unittest
+
+from support import ProgramTest, run
+from test_calibrate import hall, winding_line
+
+POSES = 16
+# Name: sensor, mount, yaw, pitch and roll in degrees.
+SENSORS = {"top": ("velodyne-vlp-32c", [0.5, 0.0, 0.2], [0, 0, 0]),
+           "left": ("velodyne-vlp-16", [1.4, 0.8, 0.0], [70, 10, 0])}
+
+
+def rig_text(sensors):
+    return "".join("\n[[sensors]]\n" + "".join(f"{key} = {json.dumps(value)}\n"
+                                               for key, value in sensor.items())
+                   for sensor in sensors)
+
+
+class RigCalibration(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "hall.obj").write_text(hall())
+        (self.folder / "drive.csv").write_text(
+            "\n".join(["time,x,y,z,qw,qx,qy,qz"] + [winding_line(k) for k in range(POSES)]))
+        (self.folder / "rig.toml").write_text(rig_text(
+            {"name": name, "sensor": sensor, "mount": at, "mount_rotation_deg": turn}
+            for name, (sensor, at, turn) in SENSORS.items()))
+
+    def go(self, *words):
+        """Runs the program, which must succeed; drives are reported on stderr."""
+        result = run(*words)
+        self.assertEqual(result.returncode, 0, (words, result.stderr))
+
+    def fail_with(self, code, *words, says):
+        """The last line on stderr is the error."""
+        result = run(*words)
+        self.assertEqual(result.returncode, code, (words, result.stderr))
+        last = result.stderr.splitlines()[-1]
+        self.assertTrue(last.startswith("adasplats: error: "), result.stderr)
+        self.assertNotIn("`", last)  # a setting that is not shown as an option
+        for text in says:
+            self.assertIn(text, last)
+
+    def simulated(self, form):
+        """Simulates the rig; its folder and the sensors of the rig file in it."""
+        out = self.folder / form
+        self.go("simulate", self.folder / "hall.obj", "--rig", self.folder / "rig.toml",
+                      "--trajectory", self.folder / "drive.csv", "--rolling-shutter", "--format",
+                      form, "-o", out)
+        return out, tomllib.loads((out / "rig.toml").read_text())["sensors"]
+
+    def test_finds_mount_and_clock(self):
+        out, sensors = self.simulated("ply")
+        true_at, left = sensors[1]["mount"], sensors[1]
+        left["mount"] = [a + b for a, b in zip(true_at, (0.2, -0.2, 0.15))]
+        left["mount_rotation_deg"] = [73, 8, 2]
+        left["time_offset_s"] = left.get("time_offset_s", 0) + 0.03
+        (out / "wrong.toml").write_text(rig_text(sensors))
+        found = self.folder / "found"
+        self.go("calibrate", out / "wrong.toml", "-o", found)
+        calibrated = tomllib.loads((found / "rig.toml").read_text())["sensors"][1]
+        difference = [a - b for a, b in zip(SENSORS["left"][1], SENSORS["top"][1])]
+        self.assertLess(math.dist(calibrated["mount"], difference), 0.02)
+        for angle, expected in zip(calibrated["mount_rotation_deg"], SENSORS["left"][2]):
+            self.assertAlmostEqual(angle, expected, delta=0.1)
+        self.assertAlmostEqual(calibrated["time_offset_s"], 0, delta=0.002)
+        report = json.loads((found / "report.json").read_text())
+        self.assertEqual([sensor["name"] for sensor in report["sensors"]], ["top", "left"])
+        # The calibrated rig is read again, and nothing is left to correct.
+        self.go("calibrate", found / "rig.toml", "-o", self.folder / "again")
+        again = tomllib.loads((self.folder / "again" / "rig.toml").read_text())["sensors"][1]
+        self.assertLess(math.dist(again["mount"], calibrated["mount"]), 0.01)
+
+    def test_recording_to_evaluated_model(self):
+        out, _ = self.simulated("mcap")
+        model = self.folder / "hall.ply"
+        self.go("model", out / "scans.mcap", "-o", model)
+        for name in SENSORS:
+            report = self.folder / f"{name}.json"
+            self.go("evaluate", "resimulate", model, out / "scans.mcap", "--topic",
+                          f"/{name}/points", "--report", report)
+            result = json.loads(report.read_text())
+            self.assertEqual(result["poses"], "calibration interpolated")
+            self.assertGreater(result["within"]["0.10"], 0.9)
+
+    def test_capture_to_evaluated_model(self):
+        out, _ = self.simulated("pcap")
+        model = self.folder / "hall.ply"
+        self.go("model", out / "rig.toml", "-o", model)
+        for name in SENSORS:
+            report = self.folder / f"{name}.json"
+            self.go("evaluate", "resimulate", model, out / "rig.toml", "--topic", name,
+                          "--report", report)
+            self.assertGreater(json.loads(report.read_text())["within"]["0.10"], 0.9)
+
+    def test_wrong_rigs(self):
+        out, sensors = self.simulated("ply")
+        top, left = sensors
+        swapped = [{**top, "input": left["input"]}, {**left, "input": top["input"]}]
+        radians = {**left, "mount_rotation_deg": [math.radians(angle)
+                                                  for angle in left["mount_rotation_deg"]]}
+        epoch = {**left, "time_offset_s": 1.7e9}
+        for wrong, code, says in (
+                (swapped, 65, ["'left'", "do not fit those of 'top'"]),
+                ([top, radians], 65, ["'left'", "degrees, not radians"]),
+                ([top, {**left, "input": "absent"}], 66, ["'left'", "absent is missing"]),
+                ([top, epoch], 65, ["'left'"]),
+                ([top, {**left, "mount": [1, 2]}], 78, ["mount", "three numbers"])):
+            with self.subTest(says=says):
+                (out / "wrong.toml").write_text(rig_text(wrong))
+                self.fail_with(code, "model", out / "wrong.toml", "-o", self.folder / "m.ply", says=says)
+        self.fail_with(64, "model", out / "rig.toml", "--topic", "rear", "-o", self.folder / "m.ply",
+                     says=["rear", "top, left"])
+        self.fail_with(64, "model", out / "rig.toml", "--mount", "1,0,0", "-o", self.folder / "m.ply",
+                     says=["belong in the rig file"])
+        self.assertFalse((self.folder / "m.ply").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
