@@ -104,7 +104,7 @@ TEST(Rig, WrongFilesGiveOneClearError) {
     expect_error(ErrorKind::config, parts, [&] { parsed(text); });
   };
   expect_bad("", {"sensors is missing"});
-  expect_bad("sensors = []", {"has no sensor"});
+  expect_bad("sensors = []", {"is not a list of tables"});
   expect_bad("sensors = 3", {"sensors is not a list of tables"});
   expect_bad("sensor = 1", {":1:", "unknown key 'sensor'", "did you mean 'sensors'?"});
   expect_bad(with("mout = [0, 0, 1]"), {":3:", "unknown key 'mout'", "did you mean 'mount'?"});
@@ -119,7 +119,7 @@ TEST(Rig, WrongFilesGiveOneClearError) {
   expect_bad(with("mount_rotation_deg = [400, 0, 0]"), {":3:", "mount_rotation_deg", "360"});
   expect_bad(with("time_offset_s = \"now\""), {":3:", "time_offset_s"});
   expect_bad(with("points_in = \"word\""), {":3:", "'word'", "auto, sensor, world"});
-  expect_bad(with("in_model = false"), {"has no sensor with"});
+  expect_bad(with("in_model = false"), {"has no sensor that is part of models"});
   expect_bad(with("input = \"\""), {":3:", "input is empty"});
   expect_bad(with("body = 3"), {":3:", "body is not a list"});
   expect_bad(with("body = [[1, 2, 3]]"), {":3:", "list of 3 numbers, expected 6"});
