@@ -13,12 +13,20 @@
 namespace adasplats {
 
 template <class Archive>
+void fields(Archive& archive, CloudSensor& sensor) {
+  archive("name", sensor.name);
+  archive("scans", sensor.scans);
+  archive("is_in_model", sensor.is_in_model);
+}
+
+template <class Archive>
 void fields(Archive& archive, PointCloud& cloud) {
   archive("origin", cloud.origin);
   archive("crs", cloud.crs);
   archive("positions", cloud.positions);
   for_each_attribute([&](const auto& attribute) { archive(attribute.name, attribute.of(cloud)); });
   archive("scan_poses", cloud.scan_poses);
+  archive("sensors", cloud.sensors);
 }
 
 }  // namespace adasplats

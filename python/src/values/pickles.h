@@ -32,6 +32,14 @@ struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
 template <class T>
+struct ElementOf {
+  using Type = char;
+};
+template <class T>
+struct ElementOf<std::vector<T>> {
+  using Type = T;
+};
+template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
@@ -52,9 +60,14 @@ class FieldWriter {
     } else if constexpr (std::is_same_v<T, std::string>) {
       return py::bytes(value);  // paths need not be UTF-8
     } else if constexpr (IsVector<T>::value) {
-      static_assert(std::is_trivially_copyable_v<typename T::value_type>);
-      return py::bytes(reinterpret_cast<const char*>(value.data()),
-                       value.size() * sizeof(typename T::value_type));
+      if constexpr (std::is_trivially_copyable_v<typename T::value_type>) {
+        return py::bytes(reinterpret_cast<const char*>(value.data()),
+                         value.size() * sizeof(typename T::value_type));
+      } else {
+        py::list list;
+        for (auto& element : value) list.append(packed(element));
+        return list;
+      }
     } else if constexpr (IsOptional<T>::value) {
       return value ? packed(*value) : py::none();
     } else if constexpr (std::is_trivially_copyable_v<T>) {
@@ -92,6 +105,13 @@ class FieldReader {
       value = packed;
     } else if constexpr (std::is_same_v<T, std::string>) {
       value = bytes_of(name, packed);
+    } else if constexpr (IsVector<T>::value &&
+                         !std::is_trivially_copyable_v<typename ElementOf<T>::Type>) {
+      if (!py::isinstance<py::list>(packed))
+        wrong_pickle(type_, std::string("has a field '") + name + "' of another type");
+      value.clear();
+      for (const py::handle element : py::reinterpret_borrow<py::list>(packed))
+        unpack(name, py::reinterpret_borrow<py::object>(element), value.emplace_back());
     } else if constexpr (IsVector<T>::value) {
       constexpr std::size_t kSize = sizeof(typename T::value_type);
       const std::string bytes = bytes_of(name, packed);

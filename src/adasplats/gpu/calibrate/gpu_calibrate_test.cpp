@@ -65,6 +65,7 @@ struct Drive {
       few.scans.push_back(cloud.scan_indices[i]);
     }
     all.left_out_every = 8;
+    all.left_out_end = static_cast<std::uint32_t>(all.indices.size() / 2);
     const RigidTransform correction = {rotation_from_yaw_pitch_roll(0.01, -0.02, 0.005),
                                        {0.02, 0.01, -0.03}};
     for (const TimedPose& pose : cloud.scan_poses) {
@@ -76,6 +77,7 @@ struct Drive {
     for (std::size_t laser = 0; laser < lasers; ++laser) {
       corrections.offsets.range_m.push_back(0.002 * static_cast<double>(laser));
       corrections.offsets.elevation_rad.push_back(1e-4 * static_cast<double>(laser));
+      corrections.offsets.azimuth_rad.push_back(-2e-4 * static_cast<double>(laser));
     }
   }
 };
@@ -105,7 +107,7 @@ std::size_t compare_steps(const Drive& drive, PointSet set, const RowOptions& op
     PlaneStep x;
     for (std::size_t i = 0; i < 6 * blocks.poses.size(); ++i)
       x.poses.push_back(std::sqrt(static_cast<double>(i)));
-    for (std::size_t i = 0; i < 2 * blocks.lasers.size(); ++i)
+    for (std::size_t i = 0; i < kLaserUnknowns * blocks.lasers.size(); ++i)
       x.lasers.push_back(1 / (1 + static_cast<double>(i)));
     expect_same(cpu->coupled(x), gpu->coupled(x));
   }
@@ -117,6 +119,7 @@ RowOptions row_options() {
   options.max_points = 60;
   options.max_weight = 30;
   options.width_m = 0.1;
+  options.azimuths = true;
   return options;
 }
 
