@@ -36,6 +36,7 @@ struct Drive {
       }
     }
     all.left_out_every = 8;
+    all.left_out_end = static_cast<std::uint32_t>(all.indices.size());
     for (std::size_t scan = 0; scan < recording.cloud.scan_poses.size(); ++scan) {
       Random random(9, 0, scan);
       const auto number = [&] { return 0.01 * random.uniform(-1, 1); };
@@ -49,11 +50,12 @@ struct Drive {
     for (std::size_t laser = 0; laser < kHallLasers; ++laser) {
       corrections.offsets.range_m.push_back(0.001 * static_cast<double>(laser));
       corrections.offsets.elevation_rad.push_back(-0.0001 * static_cast<double>(laser));
+      corrections.offsets.azimuth_rad.push_back(0.0002 * static_cast<double>(laser));
     }
   }
 
   std::size_t scans() const { return axes.size(); }
-  std::size_t unknowns() const { return 6 * scans() + 2 * kHallLasers; }
+  std::size_t unknowns() const { return 6 * scans() + kLaserUnknowns * kHallLasers; }
   Vec3d corrected(std::uint32_t i) const {
     const std::uint32_t scan = recording.cloud.scan_indices[i];
     return corrections.corrected_from_given[scan] *
@@ -141,8 +143,9 @@ class DenseSystem {
     LaserOffsets offsets = drive_.corrections.offsets;
     const std::size_t of_lasers = 6 * drive_.scans();
     if (unknown >= of_lasers) {
-      auto& values = unknown % 2 == 0 ? offsets.range_m : offsets.elevation_rad;
-      values[(unknown - of_lasers) / 2] += step;
+      const std::array values = {&offsets.range_m, &offsets.elevation_rad, &offsets.azimuth_rad};
+      const std::size_t of_laser = unknown - of_lasers;
+      (*values[of_laser % kLaserUnknowns])[of_laser / kLaserUnknowns] += step;
     }
     Vec3d p =
         drive_.corrections.corrected_from_given[scan] *
@@ -166,8 +169,8 @@ class DenseSystem {
           (2 * kStep);
     };
     for (std::size_t a = 0; a < 6; ++a) set(6 * scan + a);
-    for (std::size_t b = 0; b < 2; ++b)
-      set(6 * drive_.scans() + std::size_t{2} * drive_.recording.cloud.lasers[i] + b);
+    for (std::size_t b = 0; b < kLaserUnknowns; ++b)
+      set(6 * drive_.scans() + kLaserUnknowns * drive_.recording.cloud.lasers[i] + b);
     return result;
   }
 
@@ -194,6 +197,7 @@ TEST(PlaneSums, MatchTheDenseNormalEquations) {
   options.max_points = 50;
   options.max_weight = 20;
   options.width_m = 0.1;
+  options.azimuths = true;
   steps->choose_rows(options);
   PlaneBlocks blocks = steps->sum_rows(drive.corrections, options);
 
@@ -228,9 +232,10 @@ TEST(PlaneSums, MatchTheDenseNormalEquations) {
       for (std::size_t b = 0; b < 6; ++b)
         y.poses[6 * scan + a] += blocks.poses[scan].full[a * 6 + b] * x.poses[6 * scan + b];
   for (std::size_t laser = 0; laser < kHallLasers; ++laser)
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b)
-        y.lasers[2 * laser + a] += blocks.lasers[laser].full[a * 2 + b] * x.lasers[2 * laser + b];
+    for (std::size_t a = 0; a < kLaserUnknowns; ++a)
+      for (std::size_t b = 0; b < kLaserUnknowns; ++b)
+        y.lasers[kLaserUnknowns * laser + a] += blocks.lasers[laser].full[a * kLaserUnknowns + b] *
+                                                x.lasers[kLaserUnknowns * laser + b];
   const std::vector<double> found_y = joined(y), expected = dense.times(joined(x));
   for (std::size_t i = 0; i < drive.unknowns(); ++i)
     EXPECT_NEAR(found_y[i], expected[i], 1e-7 * largest) << i;
@@ -240,7 +245,7 @@ TEST(PlaneSums, MatchTheDenseNormalEquations) {
   for (std::size_t scan = 0; scan < drive.scans(); ++scan)
     for (std::size_t a = 0; a < 6; ++a) system.add_pose_prior(scan, a, 1, 0);
   for (std::size_t laser = 0; laser < kHallLasers; ++laser)
-    for (std::size_t a = 0; a < 2; ++a) system.add_laser_prior(laser, a, 1, 0, 0);
+    for (std::size_t a = 0; a < kLaserUnknowns; ++a) system.add_laser_prior(laser, a, 1, 0, 0);
   const std::vector<double> solution = joined(
       system.solve(1e-10, 1000, [&](const PlaneStep& step) { return steps->coupled(step); }));
   std::vector<double> back = dense.times(solution);
