@@ -193,8 +193,11 @@ class ProgramTest(unittest.TestCase):
                                    stderr=subprocess.PIPE)
         try:
             while process.poll() is None:
-                if journal.exists() and journal.read_bytes().count(b"\n") >= lines:
-                    break
+                try:
+                    if journal.read_bytes().count(b"\n") >= lines:
+                        break
+                except FileNotFoundError:  # not yet, or the folder is complete
+                    pass
                 time.sleep(0.0005)
             process.send_signal(signal.SIGKILL)
             process.communicate(timeout=100)
