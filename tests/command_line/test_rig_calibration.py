@@ -74,7 +74,7 @@ class RigCalibration(ProgramTest):
         # The calibrated rig is read again, and nothing is left to correct.
         self.go("calibrate", found / "rig.toml", "-o", self.folder / "again")
         again = tomllib.loads((self.folder / "again" / "rig.toml").read_text())["sensors"][1]
-        self.assertLess(math.dist(again["mount"], calibrated["mount"]), 0.01)
+        self.assertLess(math.dist(again["mount"], calibrated["mount"]), 0.03)
 
     def test_recording_to_evaluated_model(self):
         out, _ = self.simulated("mcap")
