@@ -109,8 +109,8 @@ def make_wrong(rig):
         if sensor["name"] not in FAULTS:
             continue
         shift, turn, clock = FAULTS[sensor["name"]]
-        sensor["mount"] = [a + b for a, b in zip(sensor["mount"], shift)]
-        wrong = product(rotation_of(sensor["mount_rotation_deg"]), rotation_by(turn))
+        sensor["mount"] = [a + b for a, b in zip(sensor.get("mount", (0, 0, 0)), shift)]
+        wrong = product(rotation_of(sensor.get("mount_rotation_deg", (0, 0, 0))), rotation_by(turn))
         sensor["mount_rotation_deg"] = angles_of(wrong)
         sensor["time_offset_s"] = sensor.get("time_offset_s", 0) + clock
 
@@ -125,7 +125,7 @@ def errors_of(found):
             continue
         true_at = applied(back, [a - b for a, b in zip(at, first_at)])
         true_turn = product(back, rotation_of(turn))
-        miss = product(transposed(true_turn), rotation_of(sensor["mount_rotation_deg"]))
+        miss = product(transposed(true_turn), rotation_of(sensor.get("mount_rotation_deg", (0, 0, 0))))
         cosine = (miss[0][0] + miss[1][1] + miss[2][2] - 1) / 2
         shift, turned, clock = FAULTS[name]
         errors.append({"name": name, "sensor": model,
