@@ -49,6 +49,12 @@ RigidTransform moved_pose(const RigidTransform& given, const Twist& twist,
   return then * mount.given_from_mounted();
 }
 
+/// The cells around one, itself included: -1, 0 or 1 along each axis, for k from 0 to 26.
+Vec3d neighbor_of(int k) {
+  const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
 /// A surface in a cell of the map.
 struct MapPlane {
   Vec3d center, normal;
@@ -93,8 +99,7 @@ class MapPlanes {
     const MapPlane* nearest = nullptr;
     double smallest = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 27; ++k) {
-      const Vec3d at =
-          p + cell_m_ * Vec3d{double(k % 3 - 1), double(k / 3 % 3 - 1), double(k / 9 - 1)};
+      const Vec3d at = p + cell_m_ * neighbor_of(k);
       const auto found = planes_.find(key_of(at));
       if (found == planes_.end()) continue;
       const Vec3d away = p - found->second.center;
@@ -287,8 +292,7 @@ MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
   for (int start = 0; start < 27; ++start) {
     const double turn_rad = 0.8 * options.rotation_rad;
     Aligner::Estimate estimate;
-    estimate.mount.rotation_rad =
-        turn_rad * Vec3d{double(start % 3 - 1), double(start / 3 % 3 - 1), double(start / 9 - 1)};
+    estimate.mount.rotation_rad = turn_rad * neighbor_of(start);
     aligner.refine(coarse, 1.0, 6, kCoarseStride, estimate);
     aligner.refine(medium, 0.4, 4, kCoarseStride, estimate);
     if (estimate.share > best.share) best = estimate;
