@@ -5,7 +5,8 @@
 
 usage: rig_calibration.py PROGRAM [--json FILE] [--length M]
 
-Makes a street (`synth street --turns`), simulates the sensors of SENSORS in it, changes mounts by up to
+Makes a street (`synth street --turns`), simulates the sensors of SENSORS in it while the car drives
+(MCAP, which keeps the times of the points), changes mounts by up to
 5 degrees and 0.5 m and clocks by up to 50 ms (FAULTS), calibrates, and prints the errors of the mounts
 against the first sensor and of the clocks as JSON. Needs only the standard library.
 """
@@ -155,7 +156,7 @@ def main():
         (folder / "vehicle.csv").write_text(
             driven_path(street / "true_driving_trajectory.csv"), encoding="utf-8")
         run(arguments.program, "simulate", street / "mesh.ply", "--rig", rig_file, "--trajectory",
-            folder / "vehicle.csv", "--rolling-shutter", "-o", folder / "scans")
+            folder / "vehicle.csv", "--rolling-shutter", "--format", "mcap", "-o", folder / "scans")
         written = folder / "scans" / "rig.toml"
         rig = tomllib.loads(written.read_text(encoding="utf-8"))
         make_wrong(rig)

@@ -96,15 +96,6 @@ void move_scans(PointCloud& cloud, const std::vector<RigidTransform>& world_corr
   }
 }
 
-/// Adds an offset to all ranges.
-void lengthen_rays(PointCloud& cloud, double range_m) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3d ray = vec_cast<double>(cloud.positions[i] - cloud.sensor_positions[i]);
-    if (length(ray) > 0)
-      cloud.positions[i] = cloud.positions[i] + vec_cast<float>(range_m * normalized(ray));
-  }
-}
-
 /// The correction of the car at a time, from those of its first sensor; the nearest one beyond its
 /// ends.
 RigidTransform car_correction(const std::vector<PoseCorrection>& poses, double time_s) {
@@ -189,9 +180,10 @@ class RigCalibrator {
     for (const TimedPose& pose : given)
       by_car.push_back(car_correction(calibration_.poses, pose.time_s));
     move_scans(part, by_car);
-    const Trajectory by_first = part.scan_poses;
+    PointCloud with_given_lasers = part;
     const MapAlignment start = align(sensor, part);
     const BeamCells cells = assign_cells(part);
+    with_given_lasers.lasers = part.lasers;
     CalibrateOptions own = options_;
     own.mount_correction = false;
     own.free_scans = part.scan_poses.size();
@@ -211,13 +203,10 @@ class RigCalibrator {
     fine.lasers.cells = cells;
     const Calibration relative = fine;
     apply(relative, part, executor_);
-    MapAlignment aligned = mount_of_poses(by_first, part.scan_poses);
-    aligned.given_share = start.given_share;
-    aligned.share = start.share;
-    aligned.range_m = start.range_m;
     fine.lasers.range_m.resize(number_of_lasers(part));
     fine.lasers.elevation_rad.resize(fine.lasers.range_m.size());
     for (double& range_m : fine.lasers.range_m) range_m += start.range_m;
+    const MapAlignment aligned = refined(fine.lasers, start, std::move(with_given_lasers));
     fine.mount = aligned.mount;
     fine.poses = corrections_between(given, part.scan_poses, aligned.mount);
     fine.smooth_s = best_smoothing(fine);
@@ -236,13 +225,20 @@ class RigCalibrator {
     const MapAlignment found = align_with_map(part, map_, expected, executor_);
     progress_.end_step();
     if (!found.fits(expected)) throw misfit(sensor, found);
-    const Trajectory given = part.scan_poses;
-    const Trajectory moved = moved_poses(given, found.mount, found.clock_s);
-    std::vector<RigidTransform> corrections;
-    for (std::size_t k = 0; k < given.size(); ++k)
-      corrections.push_back(moved[k].world_from_sensor * given[k].world_from_sensor.inverse());
-    move_scans(part, corrections);
-    lengthen_rays(part, found.range_m);
+    apply(found, part);
+    return found;
+  }
+
+  /// Mount and clock of a sensor with calibrated lasers; its scans move with the car.
+  MapAlignment refined(const LaserOffsets& lasers, MapAlignment start, PointCloud part) const {
+    Calibration of_lasers;
+    of_lasers.lasers = lasers;
+    apply(of_lasers, part, executor_);
+    MapAlignmentOptions expected;
+    expected.range_m = 0;
+    const double range_m = std::exchange(start.range_m, 0);  // part of the offsets
+    MapAlignment found = refine_alignment(part, map_, start, expected, executor_);
+    found.range_m = range_m;
     return found;
   }
 

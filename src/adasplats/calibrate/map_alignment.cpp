@@ -19,7 +19,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kUnknowns = 8;  // rotation, shift, clock, range
+constexpr double kCoarse_m = 2, kMedium_m = 1, kFine_m = 0.5;  // cells of the map
+constexpr std::size_t kUnknowns = 8;                           // rotation, shift, clock, range
 using Matrix = std::array<double, kUnknowns * kUnknowns>;
 using Unknowns = std::array<double, kUnknowns>;
 
@@ -40,6 +41,17 @@ std::vector<Twist> twists_of(const Trajectory& poses) {
                  (1 / seconds) * rotation_vector(b.rotation * a.rotation.transposed())};
   }
   return twists;
+}
+
+/// The pose of the sensor when it fired from `position`, by its motion around the scan's pose.
+RigidTransform pose_at_firing(const RigidTransform& of_scan, const Twist& twist, Vec3d position) {
+  constexpr double kMinSpeed_m_s = 0.5, kMaxTime_s = 0.2;
+  const double square = dot(twist.velocity, twist.velocity);
+  double time_s = 0;
+  if (square > kMinSpeed_m_s * kMinSpeed_m_s)
+    time_s = std::clamp(dot(position - of_scan.translation, twist.velocity) / square, -kMaxTime_s,
+                        kMaxTime_s);
+  return {rotation_by(time_s * twist.rotation) * of_scan.rotation, position};
 }
 
 RigidTransform moved_pose(const RigidTransform& given, const Twist& twist,
@@ -152,13 +164,13 @@ class Aligner {
       pose.world_from_sensor.translation = pose.world_from_sensor.translation - sensor.origin;
     twists_ = twists_of(poses_);
     const std::size_t stride = std::max<std::size_t>(1, sensor.size() / options.points) | 1;
-    std::vector<RigidTransform> sensor_from_local;
-    for (const TimedPose& pose : poses_)
-      sensor_from_local.push_back(pose.world_from_sensor.inverse());
     for (std::size_t i = 0; i < sensor.size(); i += stride) {
       scans_.push_back(sensor.scan_indices[i]);
-      in_sensor_.push_back(sensor_from_local[scans_.back()] *
-                           vec_cast<double>(sensor.positions[i]));
+      firings_.push_back(pose_at_firing(poses_[scans_.back()].world_from_sensor,
+                                        twists_[scans_.back()],
+                                        vec_cast<double>(sensor.sensor_positions[i])));
+      in_sensor_.push_back(firings_.back().rotation.transposed() *
+                           vec_cast<double>(sensor.positions[i] - sensor.sensor_positions[i]));
     }
   }
 
@@ -189,26 +201,24 @@ class Aligner {
 
   AlignmentSums sums_of(const MapPlanes& planes, double width_m, std::size_t stride,
                         const Estimate& estimate) const {
-    std::vector<RigidTransform> moved;
-    for (std::size_t k = 0; k < poses_.size(); ++k)
-      moved.push_back(
-          moved_pose(poses_[k].world_from_sensor, twists_[k], estimate.mount, estimate.clock_s));
     const std::size_t count = (in_sensor_.size() + stride - 1) / stride;
     return executor_.sum_chunks(count, kCoarseGrain, AlignmentSums{},
                                 [&](std::size_t begin, std::size_t end) {
                                   AlignmentSums sums;
                                   for (std::size_t k = begin; k < end; ++k)
-                                    add(planes, width_m, k * stride, moved, estimate.range_m, sums);
+                                    add(planes, width_m, k * stride, estimate, sums);
                                   return sums;
                                 });
   }
 
  private:
-  void add(const MapPlanes& planes, double width_m, std::size_t i,
-           const std::vector<RigidTransform>& moved, double range_m, AlignmentSums& sums) const {
-    const RigidTransform& world_from_sensor = moved[scans_[i]];
+  void add(const MapPlanes& planes, double width_m, std::size_t i, const Estimate& estimate,
+           AlignmentSums& sums) const {
+    const Twist& twist = twists_[scans_[i]];
+    const RigidTransform world_from_sensor =
+        moved_pose(firings_[i], twist, estimate.mount, estimate.clock_s);
     const Vec3d direction = normalized(in_sensor_[i]);
-    const Vec3d in_sensor = in_sensor_[i] + range_m * direction;
+    const Vec3d in_sensor = in_sensor_[i] + estimate.range_m * direction;
     const Vec3d p = world_from_sensor * in_sensor;
     const MapPlane* plane = planes.nearest(p);
     if (plane == nullptr) return;
@@ -218,9 +228,8 @@ class Aligner {
     const double weight = robust_weight(residual_m, width_m);
     const Vec3d normal_in_sensor = world_from_sensor.rotation.transposed() * plane->normal;
     const Vec3d turning = cross(in_sensor, normal_in_sensor);
-    const RigidTransform& given = poses_[scans_[i]].world_from_sensor;
+    const RigidTransform& given = firings_[i];
     const Vec3d shifting = given.rotation.transposed() * plane->normal;
-    const Twist& twist = twists_[scans_[i]];
     const Vec3d moving = twist.velocity + cross(twist.rotation, p - given.translation);
     const Unknowns row = {turning.x,
                           turning.y,
@@ -258,6 +267,7 @@ class Aligner {
   const Executor& executor_;
   Trajectory poses_;  ///< relative to the cloud's origin
   std::vector<Twist> twists_;
+  std::vector<RigidTransform> firings_;  ///< given poses of the sensor
   std::vector<Vec3d> in_sensor_;
   std::vector<std::uint32_t> scans_;
 };
@@ -272,17 +282,33 @@ bool MapAlignment::fits(const MapAlignmentOptions& expected) const {
          std::fabs(range_m) <= kFactor * expected.range_m + 1e-3;
 }
 
-Trajectory moved_poses(const Trajectory& given, const MountCorrection& mount, double clock_s) {
-  const std::vector<Twist> twists = twists_of(given);
-  Trajectory moved = given;
-  for (std::size_t k = 0; k < given.size(); ++k)
-    moved[k].world_from_sensor = moved_pose(given[k].world_from_sensor, twists[k], mount, clock_s);
-  return moved;
+void apply(const MapAlignment& alignment, PointCloud& sensor) {
+  const std::vector<Twist> twists = twists_of(sensor.scan_poses);
+  const auto moved = [&](const RigidTransform& given, std::uint32_t scan) {
+    return moved_pose(given, twists[scan], alignment.mount, alignment.clock_s);
+  };
+  for (std::size_t i = 0; i < sensor.size(); ++i) {
+    const std::uint32_t scan = sensor.scan_indices[i];
+    RigidTransform of_scan = sensor.scan_poses[scan].world_from_sensor;
+    of_scan.translation = of_scan.translation - sensor.origin;
+    const RigidTransform firing =
+        pose_at_firing(of_scan, twists[scan], vec_cast<double>(sensor.sensor_positions[i]));
+    const RigidTransform corrected = moved(firing, scan);
+    const Vec3d ray = vec_cast<double>(sensor.positions[i] - sensor.sensor_positions[i]);
+    const double range_m = length(ray);
+    const double factor = range_m > 0 ? 1 + alignment.range_m / range_m : 1;
+    sensor.positions[i] =
+        vec_cast<float>(corrected * (factor * (firing.rotation.transposed() * ray)));
+    sensor.sensor_positions[i] = vec_cast<float>(corrected.translation);
+  }
+  for (std::uint32_t scan = 0; scan < sensor.scan_poses.size(); ++scan) {
+    RigidTransform& pose = sensor.scan_poses[scan].world_from_sensor;
+    pose = moved(pose, scan);
+  }
 }
 
 MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
                             const MapAlignmentOptions& options, const Executor& executor) {
-  constexpr double kCoarse_m = 2, kMedium_m = 1, kFine_m = 0.5;
   constexpr std::size_t kCoarseStride = 5;
   const Aligner aligner(sensor, options, executor);
   const MapPlanes coarse(map, sensor.origin, kCoarse_m), medium(map, sensor.origin, kMedium_m),
@@ -304,64 +330,45 @@ MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
   return {best.mount, best.clock_s, best.range_m, given_share, best.share};
 }
 
-RigidTransform mount_between(const Trajectory& first, const Trajectory& second) {
-  const std::size_t middle = first.size() / 2;
-  const RigidTransform guess =
-      first[middle].world_from_sensor.inverse() * second[middle].world_from_sensor;
-  Trajectory guessed;  // of one time: without motion, so without a clock
-  for (const TimedPose& pose : first) guessed.push_back({0, pose.world_from_sensor * guess});
-  return guess * mount_of_poses(guessed, second).mount.given_from_mounted();
+MapAlignment refine_alignment(const PointCloud& sensor, const PointCloud& map,
+                              const MapAlignment& start, const MapAlignmentOptions& options,
+                              const Executor& executor) {
+  constexpr std::size_t kMorePoints = 10;
+  MapAlignmentOptions more = options;
+  more.points *= kMorePoints;
+  const Aligner aligner(sensor, more, executor);
+  const MapPlanes fine(map, sensor.origin, kFine_m);
+  Aligner::Estimate estimate{start.mount, start.clock_s, start.range_m};
+  aligner.refine(fine, 0.06, 6, 1, estimate);
+  aligner.refine(fine, 0.03, 6, 1, estimate);
+  return {estimate.mount, estimate.clock_s, estimate.range_m, start.given_share, estimate.share};
 }
 
-MapAlignment mount_of_poses(const Trajectory& given, const Trajectory& corrected) {
+RigidTransform mount_between(const Trajectory& first, const Trajectory& second) {
   constexpr double kArm_m = 10;  // rotations count as the displacement at this distance
-  const std::vector<Twist> twists = twists_of(given);
-  MapAlignment result;
+  constexpr int kIterations = 20;
+  const std::size_t middle = first.size() / 2;
+  RigidTransform mount =
+      first[middle].world_from_sensor.inverse() * second[middle].world_from_sensor;
   double width_m = 1;
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    Matrix matrix{};
-    Unknowns right{};
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    double total = 0;
+    Vec3d turn, shift;
     std::vector<double> misses_m;
-    for (std::size_t k = 0; k < given.size(); ++k) {
-      const RigidTransform now =
-          moved_pose(given[k].world_from_sensor, twists[k], result.mount, result.clock_s);
-      const RigidTransform miss = now.inverse() * corrected[k].world_from_sensor;
-      const Vec3d turned = rotation_vector(miss.rotation), shifted = miss.translation;
-      const Mat3d sensor_from_world = now.rotation.transposed();
-      const Vec3d speed = sensor_from_world * twists[k].velocity;
-      const Vec3d turning = sensor_from_world * twists[k].rotation;
-      const double miss_m = length(shifted) + kArm_m * length(turned);
-      misses_m.push_back(miss_m);
-      const double weight = robust_weight(miss_m, width_m);
-      const Mat3d shift_in_now = rotation_by(result.mount.rotation_rad).transposed();
-      for (int axis = 0; axis < 3; ++axis) {
-        Unknowns turn{}, shift{};
-        turn[static_cast<std::size_t>(axis)] = 1;
-        turn[6] = turning[axis];
-        for (int other = 0; other < 3; ++other)
-          shift[3 + static_cast<std::size_t>(other)] = shift_in_now.rows[axis][other];
-        shift[6] = speed[axis];
-        for (std::size_t a = 0; a < kUnknowns; ++a) {
-          for (std::size_t b = 0; b < kUnknowns; ++b)
-            matrix[a * kUnknowns + b] +=
-                weight * (kArm_m * kArm_m * turn[a] * turn[b] + shift[a] * shift[b]);
-          right[a] +=
-              weight * (kArm_m * kArm_m * turn[a] * turned[axis] + shift[a] * shifted[axis]);
-        }
-      }
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      const RigidTransform miss =
+          (first[k].world_from_sensor * mount).inverse() * second[k].world_from_sensor;
+      const Vec3d turned = rotation_vector(miss.rotation);
+      misses_m.push_back(length(miss.translation) + kArm_m * length(turned));
+      const double weight = robust_weight(misses_m.back(), width_m);
+      total += weight;
+      turn = turn + weight * turned;
+      shift = shift + weight * miss.translation;
     }
-    // A clock that the motion does not show stays: 1 s has the weight of a millimetre in one scan.
-    matrix[6 * (kUnknowns + 1)] += 1e-6;
-    matrix[7 * (kUnknowns + 1)] = 1;  // ranges are not part of poses
-    factor<kUnknowns>(matrix);
-    const Unknowns x = solved<kUnknowns>(matrix, right);
-    result.mount.rotation_rad =
-        rotation_vector(rotation_by(result.mount.rotation_rad) * rotation_by({x[0], x[1], x[2]}));
-    result.mount.shift_m = result.mount.shift_m + Vec3d{x[3], x[4], x[5]};
-    result.clock_s += x[6];
+    mount = mount * RigidTransform{rotation_by((1 / total) * turn), (1 / total) * shift};
     width_m = std::max(1e-3, 3 * upper_median_of(std::move(misses_m)));
   }
-  return result;
+  return mount;
 }
 
 }  // namespace adasplats

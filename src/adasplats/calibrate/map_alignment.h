@@ -37,15 +37,17 @@ struct MapAlignment {
 MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
                             const MapAlignmentOptions& options, const Executor& executor);
 
-/// The pose of each scan with another mount and clock: the sensor moves on as between its scans.
-Trajectory moved_poses(const Trajectory& given, const MountCorrection& mount, double clock_s);
+/// The same from a good estimate, with more points: for a sensor whose lasers are calibrated.
+MapAlignment refine_alignment(const PointCloud& sensor, const PointCloud& map,
+                              const MapAlignment& start, const MapAlignmentOptions& options,
+                              const Executor& executor);
+
+/// Moves the points and poses of a sensor to another mount and clock, and changes its ranges. Each
+/// point has the pose of its own firing: the sensor moves on as between its scans.
+void apply(const MapAlignment& alignment, PointCloud& sensor);
 
 /// The mount of a sensor in the frame of another one, from their poses (at least one) at the same
 /// times: robust over all of them.
 RigidTransform mount_between(const Trajectory& first, const Trajectory& second);
-
-/// Mount and clock that explain corrected poses best, over all scans: robust least squares. The
-/// rest is in the corrections of single scans.
-MapAlignment mount_of_poses(const Trajectory& given, const Trajectory& corrected);
 
 }  // namespace adasplats

@@ -280,15 +280,28 @@ bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& ex
     pose.translation = pose.translation - cloud.origin;
     return pose;
   };
-  std::vector<RigidTransform> corrections;
+  std::vector<RigidTransform> corrections, mounts;
   std::vector<Vec3d> axes;
   std::vector<Mat3d> frames;  // sensor_from_world
   for (std::size_t scan = 0; scan < given.size(); ++scan) {
     const RigidTransform before = local(given[scan].world_from_sensor);
-    corrections.push_back(local(cloud.scan_poses[scan].world_from_sensor) * before.inverse());
+    RigidTransform mounted = before, mount;
+    if (!of_scans[scan]->mount.empty()) {
+      const RigidTransform in_sensor = of_scans[scan]->mount.given_from_mounted();
+      mounted = before * in_sensor;
+      mount = {before.rotation * in_sensor.rotation * before.rotation.transposed(),
+               before.rotation * in_sensor.translation};
+    }
+    corrections.push_back(local(cloud.scan_poses[scan].world_from_sensor) * mounted.inverse());
+    mounts.push_back(mount);
     axes.push_back(before.rotation * Vec3d{0, 0, 1});
     frames.push_back(before.rotation.transposed());
   }
+  // Each beam turns about the sensor where it fired: the sensor's way during a scan is not turned.
+  const auto mounted = [&](std::size_t scan, Vec3d sensor, Vec3d point) {
+    if (of_scans[scan]->mount.empty()) return point;
+    return sensor + mounts[scan].translation + mounts[scan].rotation * (point - sensor);
+  };
   executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t scan = cloud.scan_indices[i];
@@ -299,14 +312,17 @@ bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& ex
       const std::uint16_t laser =
           lasers.laser_of(direction, cloud.lasers.empty() ? kNoLaser : cloud.lasers[i]);
       const Vec3d point = lasers.corrected(sensor, measured, axes[scan], laser);
-      cloud.positions[i] = vec_cast<float>(corrections[scan] * point);
-      cloud.sensor_positions[i] = vec_cast<float>(corrections[scan] * sensor);
+      cloud.positions[i] = vec_cast<float>(corrections[scan] * mounted(scan, sensor, point));
+      cloud.sensor_positions[i] =
+          vec_cast<float>(corrections[scan] * (sensor + mounts[scan].translation));
     }
   });
   for (EmptyBeam& beam : cloud.empty_beams) {
     const RigidTransform& correction = corrections[beam.scan];
-    beam.origin = vec_cast<float>(correction * vec_cast<double>(beam.origin));
-    beam.direction = vec_cast<float>(correction.rotation * vec_cast<double>(beam.direction));
+    const Vec3d origin = vec_cast<double>(beam.origin);
+    beam.origin = vec_cast<float>(correction * (origin + mounts[beam.scan].translation));
+    beam.direction = vec_cast<float>(
+        correction.rotation * (mounts[beam.scan].rotation * vec_cast<double>(beam.direction)));
   }
   return true;
 }
