@@ -8,11 +8,12 @@ if(PROJECT_IS_TOP_LEVEL)
   mark_as_advanced(ADASPLATS_CCACHE)
   if(ADASPLATS_CCACHE)
     # Unless the environment sets CCACHE_BASEDIR, make paths below the sources relative, so that clones
-    # share objects. Objects with debug information contain the folder and are shared only within it.
+    # share objects. Debug information then names the folder that compiled first, so only builds for
+    # debuggers keep objects to their folder.
     set(launcher ${ADASPLATS_CCACHE})
     if(NOT DEFINED ENV{CCACHE_BASEDIR})
       set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR})
-      if(CMAKE_BUILD_TYPE STREQUAL "Release")
+      if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
         list(APPEND launcher CCACHE_NOHASHDIR=1)
       endif()
       list(APPEND launcher ${ADASPLATS_CCACHE})

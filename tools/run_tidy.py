@@ -32,6 +32,9 @@ KEPT_S = 30 * 24 * 3600
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHECKED = (ROOT / "src", ROOT / "apps", ROOT / "python" / "src")
 DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
+# The analyzer follows up to 225,000 states of a function by default, which takes three quarters of the time.
+ANALYZER = [f"--extra-arg={word}"
+            for word in ("-Xclang", "-analyzer-config", "-Xclang", "max-nodes=20000")]
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 UNITY_INCLUDE = re.compile(r'^#include "(.+)"$', re.MULTILINE)
 
@@ -143,7 +146,7 @@ class Tidy:
 
     def run(self, *words):
         """(whether it passed, its output)"""
-        result = subprocess.run([self.program, "--quiet", *words], text=True, check=False,
+        result = subprocess.run([self.program, "--quiet", *ANALYZER, *words], text=True, check=False,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         # stderr also counts suppressed warnings; it is of interest only if stdout is empty.
         return result.returncode == 0, result.stdout or result.stderr

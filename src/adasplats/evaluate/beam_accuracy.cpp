@@ -80,10 +80,4 @@ BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
   return result;
 }
 
-Vec3f unit_normal(const SceneView& scene, std::uint32_t primitive) {
-  if (primitive < scene.disk_count()) return scene.disks[primitive].normal;
-  const Triangle triangle = scene.mesh->triangle(primitive - scene.disk_count());
-  return normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
-}
-
 }  // namespace adasplats

@@ -26,9 +26,6 @@ double median_of(std::vector<float>& values);
 /// The smallest value that `percent` of one or more values do not exceed. Reorders them.
 double percentile_of(std::vector<float>& values, std::size_t percent);
 
-/// Unit normal of a primitive, either side.
-Vec3f unit_normal(const SceneView& scene, std::uint32_t primitive);
-
 /// Whether a beam on an object of this mobility counts.
 inline bool is_counted(Mobility mobility, bool drop_moving, bool drop_movable) {
   switch (mobility) {

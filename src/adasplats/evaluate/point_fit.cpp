@@ -69,7 +69,7 @@ void for_fit_hits(const FitScene& scene, const FitRays& given, const RigidTransf
     const Vec3d hit = vec_cast<double>(rays[k].origin) +
                       static_cast<double>(hits[k].t) * vec_cast<double>(rays[k].direction);
     const Vec3d measured = motion * vec_cast<double>(given.ends[k]);
-    const Vec3d normal = vec_cast<double>(unit_normal(scene.view(), hits[k].primitive));
+    const Vec3d normal = vec_cast<double>(scene.view().unit_normal(hits[k].primitive));
     take(measured, normal, dot(normal, hit - measured));
   }
 }

@@ -22,7 +22,7 @@ constexpr double kFirstWidth_m = 0.15, kLastWidth_m = 0.03;
 constexpr double kMatrixPrior = 1e-3;
 
 Vec3d normal_at(const SceneView& scene, std::uint32_t primitive) {
-  return vec_cast<double>(unit_normal(scene, primitive));
+  return vec_cast<double>(scene.unit_normal(primitive));
 }
 
 /// The beams of a scan that are used, in its frame.

@@ -69,7 +69,7 @@ Bins incidence_bins() { return {{kIncidenceEdges_deg.begin(), kIncidenceEdges_de
 
 double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
   const double cosine =
-      std::fabs(static_cast<double>(dot(ray.direction, unit_normal(scene, primitive))));
+      std::fabs(static_cast<double>(dot(ray.direction, scene.unit_normal(primitive))));
   return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
 }
 

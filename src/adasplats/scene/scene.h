@@ -33,6 +33,16 @@ struct SceneView {
   std::size_t disk_count() const { return disks.size(); }
   std::size_t triangle_count() const { return mesh == nullptr ? 0 : mesh->triangles.size(); }
   std::size_t primitive_count() const { return disk_count() + triangle_count(); }
+
+  /// A disk's normal, or the unit normal of a triangle: 0 if it has no area.
+  Vec3f unit_normal(std::size_t primitive) const {
+    if (primitive < disk_count()) return disks[primitive].normal;
+    if (mesh == nullptr) return {};
+    const Triangle t = mesh->triangle(primitive - disk_count());
+    const Vec3f normal = cross(t.b - t.a, t.c - t.a);
+    const float doubled_area = length(normal);
+    return doubled_area > 0 ? normal / doubled_area : Vec3f{};
+  }
 };
 
 }  // namespace adasplats

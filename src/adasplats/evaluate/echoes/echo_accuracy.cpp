@@ -36,7 +36,7 @@ std::vector<double> ranks_of(std::span<const float> values) {
 
 /// Of the beam to a disk or triangle, 0..1.
 float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
-  return std::min(std::fabs(dot(direction, unit_normal(view, primitive))), 1.0F);
+  return std::min(std::fabs(dot(direction, view.unit_normal(primitive))), 1.0F);
 }
 
 /// Pairs of intensities of one scan.

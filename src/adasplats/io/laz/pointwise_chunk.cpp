@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "adasplats/io/laz/packed_chunk.h"
@@ -16,7 +18,8 @@ class PointwiseChunk final : public PackedChunk {
       : bytes_(bytes), record_bytes_(packing.record_bytes) {
     std::size_t at = 0;
     for (const LazItem& item : packing.items) {
-      items_.push_back({at, make_pointwise_item(item)});
+      std::unique_ptr<PointwiseItem> decoder = make_pointwise_item(item);
+      items_.push_back({at, std::move(decoder)});
       at += item.bytes;
     }
   }

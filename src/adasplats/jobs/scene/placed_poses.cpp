@@ -30,13 +30,7 @@ constexpr double kMaxPoses = 1e7;
 
 /// Whether a primitive is as level as ground can be.
 bool is_level(const SceneView& view, std::uint32_t primitive) {
-  Vec3f normal;
-  if (primitive < view.disk_count()) {
-    normal = view.disks[primitive].normal;
-  } else {
-    const Triangle t = view.mesh->triangle(primitive - view.disk_count());
-    normal = cross(t.b - t.a, t.c - t.a);
-  }
+  const Vec3f normal = view.unit_normal(primitive);
   return std::abs(normal.z) >= kMinLevel * length(normal);
 }
 

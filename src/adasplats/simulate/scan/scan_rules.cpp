@@ -18,14 +18,6 @@ bool is_there(std::span<const T> values, std::size_t count) {
   return !values.empty();
 }
 
-Vec3f normal_of_primitive(const SceneView& view, std::size_t primitive) {
-  if (primitive < view.disk_count()) return view.disks[primitive].normal;
-  const Triangle triangle = view.mesh->triangle(primitive - view.disk_count());
-  const Vec3f normal = cross(triangle.b - triangle.a, triangle.c - triangle.a);
-  const float doubled_area = length(normal);
-  return doubled_area > 0 ? normal / doubled_area : Vec3f{};
-}
-
 GainTable gain_table(std::span<const float> nodes, std::span<const float> gains) {
   if (gains.size() != nodes.size()) return {};
   return {nodes.data(), gains.data(), static_cast<std::uint32_t>(gains.size())};
@@ -49,7 +41,7 @@ PrimitiveTable primitive_table(const PrimitiveAttributes& attributes, const Exec
     for (std::size_t i = begin; i < end; ++i) {
       PrimitiveValues& values = (*memory)[i];
       if (i < attributes.view.primitive_count())
-        values.normal = normal_of_primitive(attributes.view, i);
+        values.normal = attributes.view.unit_normal(i);
       values.reflectance = table.has_intensities ? attributes.intensities[i]
                                                  : std::numeric_limits<float>::quiet_NaN();
       if (table.has_classes) values.class_id = attributes.classes[i];
