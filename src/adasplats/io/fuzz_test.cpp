@@ -25,7 +25,6 @@ namespace {
 using io_test::Mutator;
 using io_test::Seed;
 using io_test::small_seeds;
-using io_test::TemporaryFolder;
 
 std::vector<Seed> real_seeds(const std::filesystem::path& folder) {
   std::vector<Seed> seeds;

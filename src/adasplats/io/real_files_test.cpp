@@ -22,7 +22,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
 using io_test::values_of;
 
 class RealFiles : public testing::Test {

@@ -9,8 +9,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-
 const std::string kDatum =
     R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
     R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]])";

@@ -50,8 +50,8 @@ class CopcFile {
     io_test::put(file_, 100, records + 1);
     std::memcpy(&table_at, &file_[points_at], 8);
     io_test::put(file_, points_at, table_at + record.size());
-    const io_test::TemporaryFolder folder;
-    chunks_ = read_laz_layout(folder.file("a.laz", file_), false).chunks;
+    const TemporaryFolder folder;
+    chunks_ = read_laz_layout(folder.write("a.laz", file_), false).chunks;
     add_pages();
   }
 

@@ -15,8 +15,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 template <class T>

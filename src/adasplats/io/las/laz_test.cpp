@@ -13,16 +13,14 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
 using io_test::put;
-using io_test::TemporaryFolder;
 using laz_test::kLazSamples;
 using laz_test::laz_file;
 using laz_test::LazSample;
 
 Table read_bytes(const std::string& content, const LasReadOptions& options = {}) {
   const TemporaryFolder folder;
-  return read_las(folder.file("file.laz", content), options);
+  return read_las(folder.write("file.laz", content), options);
 }
 
 void expect_broken(const std::string& content, const std::vector<std::string>& parts) {

@@ -11,7 +11,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 // Oracle: our reader, whose tests have files that PCL wrote.

@@ -10,8 +10,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-
 std::string noise(std::size_t bytes) {
   Random random(3, 0, bytes);
   std::string text;

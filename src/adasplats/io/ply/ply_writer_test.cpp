@@ -16,7 +16,6 @@ namespace adasplats {
 namespace {
 
 using io_test::bytes_of;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 template <class T>
