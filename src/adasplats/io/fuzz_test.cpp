@@ -9,9 +9,9 @@
 
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/small_files_test.h"

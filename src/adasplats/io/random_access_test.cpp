@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/ply/ply.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "adasplats/io/arrays/npy.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "adasplats/core/recordings_test.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/ply/ply.h"
 
 // Small files of other projects' tests, with a catalogue of what they hold that was made with other

@@ -10,8 +10,8 @@
 #include "adasplats/io/arrays/npy.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {

@@ -15,7 +15,7 @@
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {

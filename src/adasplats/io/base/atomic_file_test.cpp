@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "adasplats/io/arrays/npy.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

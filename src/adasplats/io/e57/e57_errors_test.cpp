@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 
 // Damaged and inconsistent files, all but the first case with valid checksums.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 
 // Files that are composed here by the standard's layout; what they hold is computed here, too.

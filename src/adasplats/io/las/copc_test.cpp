@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/copc_file_test.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 

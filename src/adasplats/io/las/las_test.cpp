@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "adasplats/core/constants.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {

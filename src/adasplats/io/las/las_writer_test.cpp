@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_header.h"
 
 namespace adasplats {

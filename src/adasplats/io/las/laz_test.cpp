@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 
 namespace adasplats {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/layered_writer.h"

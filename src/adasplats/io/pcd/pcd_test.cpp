@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/pcd/lzf.h"
 
 namespace adasplats {

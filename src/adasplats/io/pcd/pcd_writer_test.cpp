@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/io/pickle/pickle_samples_test.h"
 

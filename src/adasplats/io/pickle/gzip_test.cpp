@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/core/maths/random.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {
