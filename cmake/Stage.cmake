@@ -161,8 +161,8 @@ function(adasplats_test name)
   set(target adasplats_${name}_test)
   add_executable(${target} ${ARGN})
   adasplats_cold(${target})
-  # Helpers of different tests may have the same name.
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+  # For presets with CMAKE_UNITY_BUILD. Smaller batches than the libraries': tests compile slower.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
   target_link_libraries(${target} PRIVATE adasplats_options GTest::gtest_main
                                           nlohmann_json::nlohmann_json
                                           tomlplusplus::tomlplusplus Threads::Threads)

@@ -13,12 +13,12 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kScans = 24;
+constexpr std::size_t kRigScans = 24;
 constexpr double kStep_s = 0.1;
 
 /// The car in the hall of recorded_hall_test.h.
 RigidTransform car_at(double time_s) {
-  const double along = time_s / (kStep_s * (kScans - 1));
+  const double along = time_s / (kStep_s * (kRigScans - 1));
   return {rotation_from_yaw_pitch_roll(1.6 * along, 0.03 * std::sin(5 * along), 0.02 * along),
           {-6 + 12 * along, 2 * std::sin(3 * along), 1.8}};
 }
@@ -34,8 +34,8 @@ struct RigSensorFaults {
 /// Adds the scans of a sensor to a cloud.
 void add_sensor(const std::string& name, const RigSensorFaults& faults, PointCloud& cloud) {
   const auto first = static_cast<std::uint32_t>(cloud.scan_poses.size());
-  cloud.sensors.push_back({name, kScans, true});
-  for (std::uint32_t scan = 0; scan < kScans; ++scan) {
+  cloud.sensors.push_back({name, kRigScans, true});
+  for (std::uint32_t scan = 0; scan < kRigScans; ++scan) {
     const double time_s = kStep_s * scan;
     const RigidTransform pose = car_at(time_s + faults.clock_s) * faults.mount;
     const RigidTransform given = car_at(time_s) * faults.given_mount;
@@ -116,7 +116,7 @@ TEST(CalibrateRig, FindsTheRangeOffsetOfASensorWithoutLasers) {
   ASSERT_FALSE(lasers.cells.empty());
   double sum_m = 0, count = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.scan_indices[i] < kScans) continue;
+    if (cloud.scan_indices[i] < kRigScans) continue;
     const RigidTransform& pose = cloud.scan_poses[cloud.scan_indices[i]].world_from_sensor;
     const Vec3d direction = pose.rotation.transposed() *
                             vec_cast<double>(cloud.positions[i] - cloud.sensor_positions[i]);

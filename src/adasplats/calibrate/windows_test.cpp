@@ -14,6 +14,7 @@
 #include "adasplats/calibrate/common_errors.h"
 #include "adasplats/calibrate/trajectory_fit.h"
 #include "adasplats/calibrate/window_gauges.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/recorded_progress_test.h"
@@ -26,7 +27,6 @@ std::pair<Calibration, CalibrationReport> on_cpu(const PointCloud& cloud,
   return calibrate(cloud, options, Executor(2));
 }
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStep_m = 1.5;
 constexpr std::uint32_t kPoints = 2000;  // of a scan
 constexpr std::size_t kLasers = 7;       // not 8: every eighth point is held out

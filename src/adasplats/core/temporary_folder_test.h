@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +40,8 @@ class TemporaryFolder {
   std::filesystem::path write(const std::string& name, std::string_view content) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
+    // ext4 flushes a file to disk that is truncated and written again, which takes milliseconds.
+    std::filesystem::remove(file);
     std::ofstream(file, std::ios::binary) << content;
     return file;
   }
@@ -46,6 +50,12 @@ class TemporaryFolder {
   std::filesystem::path write(const std::string& name, const std::vector<T>& values) const {
     return write(name, std::string_view(reinterpret_cast<const char*>(values.data()),
                                         values.size() * sizeof(T)));
+  }
+
+  std::size_t file_count() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++count;
+    return count;
   }
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kScans = 23;
+constexpr std::size_t kDriveScans = 23;
 
 std::size_t points_of(std::size_t index) { return index % 5 == 3 ? 0 : 64 + 7 * index; }
 
@@ -47,7 +47,7 @@ std::map<std::string, std::string> written_by(ScanFormat format, int threads) {
   options.threads = threads;
   options.writes = FileWrites::in_place;
   ParallelScanWriter parallel(*writer, options);
-  for (std::size_t i = 0; i < kScans; ++i)
+  for (std::size_t i = 0; i < kDriveScans; ++i)
     parallel.write(i, held_scan(scan_number(i, points_of(i))));
   parallel.finish();
   return files_in(folder.path());
@@ -58,7 +58,7 @@ TEST(ParallelScanWriter, SameBytesForAnyNumberOfThreads) {
   for (const auto& [word, format] : kScanFormats) {
     const TemporaryFolder folder;
     const auto writer = make_scan_writer(folder.path(), format, writing_options());
-    for (std::size_t i = 0; i < kScans; ++i) writer->write(i, scan_number(i, points_of(i)));
+    for (std::size_t i = 0; i < kDriveScans; ++i) writer->write(i, scan_number(i, points_of(i)));
     writer->finish();
     const auto expected = files_in(folder.path());
     for (const int threads : {1, 2, 7}) EXPECT_EQ(written_by(format, threads), expected) << word;
@@ -75,7 +75,7 @@ TEST(ParallelScanWriter, ReportsCompleteScansInOrder) {
   options.hashed = true;
   options.more_files = [](std::size_t index, const ScanView& scan) {
     // The later ones are ready first.
-    std::this_thread::sleep_for(std::chrono::microseconds(100 * (kScans - index)));
+    std::this_thread::sleep_for(std::chrono::microseconds(100 * (kDriveScans - index)));
     return std::vector<EncodedFile>{
         {"more/" + std::to_string(index) + ".txt", std::to_string(scan.size())}};
   };
@@ -89,11 +89,11 @@ TEST(ParallelScanWriter, ReportsCompleteScansInOrder) {
       EXPECT_EQ(file.sha256, sha256_of_file(folder.path() / file.name));
   };
   ParallelScanWriter parallel(*writer, options);
-  for (std::size_t i = 0; i < kScans; ++i)
+  for (std::size_t i = 0; i < kDriveScans; ++i)
     parallel.write(i, held_scan(scan_number(i, points_of(i))));
   parallel.finish();
-  ASSERT_EQ(reported.size(), kScans);
-  for (std::size_t i = 0; i < kScans; ++i) EXPECT_EQ(reported[i], i);
+  ASSERT_EQ(reported.size(), kDriveScans);
+  for (std::size_t i = 0; i < kDriveScans; ++i) EXPECT_EQ(reported[i], i);
 }
 
 TEST(ParallelScanWriter, FewScansArePending) {
@@ -109,7 +109,7 @@ TEST(ParallelScanWriter, FewScansArePending) {
   };
   ParallelScanWriter parallel(*writer, options);
   std::thread caller([&] {
-    for (std::size_t i = 0; i < kScans; ++i) {
+    for (std::size_t i = 0; i < kDriveScans; ++i) {
       parallel.write(i, held_scan(scan_number(i, 1)));
       ++begun;
     }
@@ -119,7 +119,7 @@ TEST(ParallelScanWriter, FewScansArePending) {
   go = true;
   caller.join();
   parallel.finish();
-  EXPECT_EQ(files_in(folder.path()).size(), kScans + 1);
+  EXPECT_EQ(files_in(folder.path()).size(), kDriveScans + 1);
 }
 
 TEST(ParallelScanWriter, FailuresReachTheCaller) {

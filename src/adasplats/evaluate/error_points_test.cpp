@@ -5,17 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 PointCloud three_points(Vec3d origin) {
   PointCloud cloud;

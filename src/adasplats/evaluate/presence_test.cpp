@@ -11,11 +11,11 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/evaluate/kitti_classes_test.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::uint16_t kRoad = 40, kPole = 80, kCar = 10, kMovingCar = 252, kMovingPerson = 254;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The tests' own numbers: the defaults may be tuned.

@@ -8,14 +8,13 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/kitti_classes_test.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// A sequence folder of one scan with its sensor at `position`, turned by 90 degrees to the
 /// left: its +x is +y in the world.
@@ -136,7 +135,6 @@ TEST_F(Resimulate, RangesOutsideAndPointsNotFiniteAreLeftOut) {
 }
 
 TEST_F(Resimulate, ClassesAreKeptApartAndDropped) {
-  constexpr std::uint32_t kCar = 10, kRoad = 40, kMovingCar = 252;
   const std::vector<Vec3f> points = {{10, 0, 0}, {10, 1, 0}, {11, 0, 0}, {12, 0, 0}};
   // The high 16 bits are the instance and must not matter.
   const std::vector<std::uint32_t> labels = {kRoad, kRoad, kCar | (7U << 16), kMovingCar};

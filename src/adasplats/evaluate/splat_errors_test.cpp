@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/evaluate/error_points.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 ErrorPoints beams(std::vector<float> errors_m, std::vector<std::uint32_t> splats,
                   std::size_t count) {

@@ -9,11 +9,11 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/kitti_classes_test.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::uint16_t kCar = 10, kRoad = 40, kBuilding = 50, kPole = 80, kMovingCar = 252;
 /// Position of the sensor; the tests' coordinates are relative to it.
 constexpr Vec3d kSensor = {7000, 100, 2};
 

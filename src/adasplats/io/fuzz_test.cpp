@@ -9,9 +9,9 @@
 
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/small_files_test.h"
@@ -25,7 +25,6 @@ namespace {
 using io_test::Mutator;
 using io_test::Seed;
 using io_test::small_seeds;
-using io_test::TemporaryFolder;
 
 std::vector<Seed> real_seeds(const std::filesystem::path& folder) {
   std::vector<Seed> seeds;

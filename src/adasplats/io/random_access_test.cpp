@@ -13,16 +13,13 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 
 constexpr std::size_t kRows = 120'007;  // chunks of 50,000 points, and a rest
 
@@ -45,7 +42,8 @@ struct Line {
   }
 };
 
-Table read(const std::filesystem::path& file, RecordSpan span, const Executor* executor = nullptr) {
+Table read_span(const std::filesystem::path& file, RecordSpan span,
+                const Executor* executor = nullptr) {
   LasReadOptions options;
   options.selection.records = span;
   options.executor = executor;
@@ -59,7 +57,7 @@ void expect_pieces(const std::filesystem::path& file, std::uint64_t piece) {
   const Executor executor(2);
   Table all;
   for (std::uint64_t first = 0; first < whole.rows; first += piece) {
-    const Table part = read(file, {first, piece}, piece % 2 == 0 ? &executor : nullptr);
+    const Table part = read_span(file, {first, piece}, piece % 2 == 0 ? &executor : nullptr);
     for (const ReaderNote& note : part.notes) EXPECT_NE(note.kind, NoteKind::salvaged) << note.text;
     if (first == 0) {
       all = part;
@@ -91,12 +89,12 @@ TEST(RandomAccess, SpansThatCoverAFileGiveEachPointOnce) {
     EXPECT_EQ(random_access_records(file), std::optional<std::uint64_t>(kRows)) << name;
     for (const std::uint64_t piece : {30'000U, 49'999U, 50'000U, 100'001U, 1'000'000U})
       expect_pieces(file, piece);
-    EXPECT_EQ(read(file, {kRows, 5}).rows, 0U) << name;
+    EXPECT_EQ(read_span(file, {kRows, 5}).rows, 0U) << name;
   }
-  EXPECT_EQ(read(folder.path() / "a.las", {10, 5}).rows, 5U);
-  EXPECT_EQ(read(folder.path() / "a.ply", {kRows - 2, 5}).rows, 2U);
-  EXPECT_EQ(read(folder.path() / "a.laz", {1, 60'000}).rows, 60'000U);
-  EXPECT_EQ(read(folder.path() / "a.laz", {1, 5}).rows, 5U);
+  EXPECT_EQ(read_span(folder.path() / "a.las", {10, 5}).rows, 5U);
+  EXPECT_EQ(read_span(folder.path() / "a.ply", {kRows - 2, 5}).rows, 2U);
+  EXPECT_EQ(read_span(folder.path() / "a.laz", {1, 60'000}).rows, 60'000U);
+  EXPECT_EQ(read_span(folder.path() / "a.laz", {1, 5}).rows, 5U);
 }
 
 TEST(RandomAccess, AnExtentSelectsWithinASpan) {
@@ -121,14 +119,14 @@ TEST(RandomAccess, SomeFilesAreReadAtOnce) {
   const TemporaryFolder folder;
   const std::string head = "element vertex 2\nproperty float x\nproperty float y\n";
   const std::vector<std::filesystem::path> files = {
-      folder.file("a.xyz", "1 2 3\n4 5 6\n"),
-      folder.file("a.ply", "ply\nformat ascii 1.0\n" + head + "end_header\n1 2\n3 4\n"),
-      folder.file("b.ply", "ply\nformat binary_little_endian 1.0\n" + head +
-                               "property list uchar int k\nend_header\n" + std::string(18, '\0'))};
+      folder.write("a.xyz", "1 2 3\n4 5 6\n"),
+      folder.write("a.ply", "ply\nformat ascii 1.0\n" + head + "end_header\n1 2\n3 4\n"),
+      folder.write("b.ply", "ply\nformat binary_little_endian 1.0\n" + head +
+                                "property list uchar int k\nend_header\n" + std::string(18, '\0'))};
   for (const std::filesystem::path& file : files) {
     EXPECT_EQ(random_access_records(file), std::nullopt) << file;
     EXPECT_EQ(read_points(file).rows, 2U) << file;
-    EXPECT_THROW(read(file, {0, 1}), std::logic_error) << file;
+    EXPECT_THROW(read_span(file, {0, 1}), std::logic_error) << file;
   }
 }
 
@@ -142,7 +140,7 @@ TEST(RandomAccess, FilesThatEndEarlyAreErrorsInEveryPiece) {
     else
       write_las(file, 1000, line.columns(), {});
     std::filesystem::resize_file(file, std::filesystem::file_size(file) - 100);
-    expect_error(ErrorKind::data, {name}, [&] { read(file, {0, 10}); });
+    expect_error(ErrorKind::data, {name}, [&] { read_span(file, {0, 10}); });
   }
   EXPECT_LT(random_access_records(folder.path() / "a.las", true),
             std::optional<std::uint64_t>(1000));

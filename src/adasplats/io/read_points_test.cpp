@@ -8,15 +8,13 @@
 #include <string>
 
 #include "adasplats/io/arrays/npy.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 const std::string kPly =
@@ -26,11 +24,11 @@ const std::string kPcd = "# .PCD v0.7\nFIELDS x\nSIZE 4\nTYPE F\nPOINTS 1\nDATA 
 
 TEST(ReadPoints, ByExtensionInAnyCase) {
   const TemporaryFolder folder;
-  EXPECT_EQ(read_points(folder.file("a.PLY", kPly)).rows, 1U);
-  EXPECT_EQ(read_points(folder.file("a.Pcd", kPcd)).rows, 1U);
-  EXPECT_EQ(read_points(folder.file("a.BIN", std::string(32, '\0'))).rows, 2U);
+  EXPECT_EQ(read_points(folder.write("a.PLY", kPly)).rows, 1U);
+  EXPECT_EQ(read_points(folder.write("a.Pcd", kPcd)).rows, 1U);
+  EXPECT_EQ(read_points(folder.write("a.BIN", std::string(32, '\0'))).rows, 2U);
   for (const char* name : {"a.xyz", "a.TXT", "a.asc", "a.csv", "a.pts"})
-    EXPECT_EQ(read_points(folder.file(name, "1 2 3\n")).rows, 1U);
+    EXPECT_EQ(read_points(folder.write(name, "1 2 3\n")).rows, 1U);
 }
 
 TEST(ReadPoints, WithheldPointsAreLeftOutInEveryFormat) {
@@ -44,7 +42,7 @@ TEST(ReadPoints, WithheldPointsAreLeftOutInEveryFormat) {
   for (const auto& [name, content] : {std::pair("a.ply", ply), std::pair("a.pcd", pcd),
                                       std::pair("a.csv", std::string("x,y,z,Withheld\n1,2,3,1\n"
                                                                      "4,5,6,0\n"))}) {
-    const Table table = read_points(folder.file(name, content));
+    const Table table = read_points(folder.write(name, content));
     EXPECT_EQ(values_of(table, "x"), std::vector<double>{4}) << name;
     EXPECT_EQ(table.columns.size(), 3U) << name;
     ASSERT_EQ(table.notes.size(), 1U) << name;
@@ -54,24 +52,24 @@ TEST(ReadPoints, WithheldPointsAreLeftOutInEveryFormat) {
 
 TEST(ReadPoints, ByFirstBytesWithoutAKnownExtension) {
   const TemporaryFolder folder;
-  EXPECT_EQ(read_points(folder.file("a.model", kPly)).rows, 1U);
-  EXPECT_EQ(read_points(folder.file("cloud", kPcd)).rows, 1U);
+  EXPECT_EQ(read_points(folder.write("a.model", kPly)).rows, 1U);
+  EXPECT_EQ(read_points(folder.write("cloud", kPcd)).rows, 1U);
   expect_error(ErrorKind::data, {"unknown format '.obj'", ".ply, .pcd, .las"},
-               [&] { read_points(folder.file("a.obj", "v 1 2 3\n")); });
+               [&] { read_points(folder.write("a.obj", "v 1 2 3\n")); });
   expect_error(ErrorKind::data, {"unknown format '.osf'", "ouster-cli source a.osf save a.pcap"},
-               [&] { read_points(folder.file("a.osf", "OSF")); });
+               [&] { read_points(folder.write("a.osf", "OSF")); });
 }
 
 TEST(ReadPoints, ExtensionAndFirstBytesMustAgree) {
   const TemporaryFolder folder;
   expect_error(ErrorKind::data, {"begins like PLY", "extension of LAS"},
-               [&] { read_points(folder.file("a.las", kPly)); });
+               [&] { read_points(folder.write("a.las", kPly)); });
   expect_error(ErrorKind::data, {"begins like LAS", "extension of KITTI"},
-               [&] { read_points(folder.file("a.bin", "LASF" + std::string(28, 'x'))); });
+               [&] { read_points(folder.write("a.bin", "LASF" + std::string(28, 'x'))); });
   expect_error(ErrorKind::data, {"'1 2 3'", "'ply'"},
-               [&] { read_points(folder.file("a.ply", "1 2 3\n")); });
+               [&] { read_points(folder.write("a.ply", "1 2 3\n")); });
   expect_error(ErrorKind::data, {"begins like E57", "extension of PLY"},
-               [&] { read_points(folder.file("a.ply", "ASTM-E57")); });
+               [&] { read_points(folder.write("a.ply", "ASTM-E57")); });
 }
 
 TEST(ReadPoints, MissingAndEmptyFiles) {
@@ -79,7 +77,7 @@ TEST(ReadPoints, MissingAndEmptyFiles) {
   for (const std::string name :
        {"a.ply", "a.pcd", "a.las", "a.laz", "a.e57", "a.bin", "a.xyz", "a.ptx", "a"}) {
     expect_error(ErrorKind::no_input, {name}, [&] { read_points(folder.path() / name); });
-    expect_error(ErrorKind::data, {"empty"}, [&] { read_points(folder.file(name, "")); });
+    expect_error(ErrorKind::data, {"empty"}, [&] { read_points(folder.write(name, "")); });
     std::filesystem::remove(folder.path() / name);
     std::filesystem::create_directory(folder.path() / name);
     expect_error(ErrorKind::no_input, {"folder"}, [&] { read_points(folder.path() / name); });
@@ -107,9 +105,9 @@ TEST(ReadPoints, LocaleWithADecimalComma) {
   const std::vector<ColumnView> columns = {{"x", ColumnType::f32, &value, 0}};
   write_ply(folder.path() / "written.ply", 1234567, columns);
   const std::size_t written = read_points(folder.path() / "written.ply").rows;
-  const double ply = values_of(read_points(folder.file("a.ply", kPly)), "x")[0];
-  const double pcd = values_of(read_points(folder.file("a.pcd", kPcd)), "x")[0];
-  const double xyz = values_of(read_points(folder.file("a.xyz", "1.5 2 3\n")), "x")[0];
+  const double ply = values_of(read_points(folder.write("a.ply", kPly)), "x")[0];
+  const double pcd = values_of(read_points(folder.write("a.pcd", kPcd)), "x")[0];
+  const double xyz = values_of(read_points(folder.write("a.xyz", "1.5 2 3\n")), "x")[0];
   write_npy(folder.path() / "a.npy", std::vector<float>(1234), 1234, 1);
   const std::size_t npy = std::filesystem::file_size(folder.path() / "a.npy");
   std::locale::global(before);

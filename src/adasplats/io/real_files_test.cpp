@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "adasplats/core/recordings_test.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/ply/ply.h"
 
 // Small files of other projects' tests, with a catalogue of what they hold that was made with other
@@ -22,7 +22,6 @@
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
 using io_test::values_of;
 
 class RealFiles : public testing::Test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/e57/e57_file_test.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 

@@ -11,12 +11,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr LevelOptions kSmall = {.leaf_size = 200, .cells_per_side = 16};
 
 /// An element decoded by the formulas of docs/viewer_protocol.md.
@@ -159,7 +159,8 @@ TEST(LevelTree, EveryElementIsInOneLeaf) {
   std::vector<float> intensities, errors_m;
   for (std::size_t i = 0; i < disks.size(); ++i) {
     intensities.push_back(static_cast<float>(i) / 10'000);
-    errors_m.push_back(i % 7 == 0 ? kNaN : -0.5F * static_cast<float>(i) / 20'000);
+    errors_m.push_back(i % 7 == 0 ? static_cast<float>(kNaN)
+                                  : -0.5F * static_cast<float>(i) / 20'000);
   }
   const LevelTree tree({disks, {}, ids, intensities, errors_m}, kSmall, Executor(2));
   expect_well_formed(tree, kSmall.leaf_size);

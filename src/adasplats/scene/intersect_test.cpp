@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Ray ray_from(Vec3f origin, Vec3f direction) {

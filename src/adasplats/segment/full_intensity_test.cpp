@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
@@ -46,7 +47,6 @@ TEST(FullIntensity, DoesNotDependOnTheParts) {
 }
 
 TEST(FullIntensity, UnknownIntensitiesAreIgnored) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const std::vector<float>& values : {std::vector<float>{}, {kNaN, kInfinity, -kInfinity}}) {
     EXPECT_EQ(full_intensity(values), 1);

@@ -3,16 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class HesaiCsv : public testing::Test {
  protected:

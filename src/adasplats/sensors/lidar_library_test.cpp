@@ -7,15 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class EveryLidar : public testing::TestWithParam<std::string> {};
 

@@ -8,16 +8,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/words.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double elevation_deg(Vec3f d) {
   return std::atan2(static_cast<double>(d.z),

@@ -6,15 +6,13 @@
 #include <numbers>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/packet_sensor.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
 
 class OusterJson : public testing::Test {
  protected:
@@ -37,7 +35,7 @@ const std::string kFlat =
 // Oracle: Ouster Sensor Documentation, "Lidar Range to XYZ" and "Sensor Coordinate Frame": with the
 // encoder's angle theta (counter-clockwise), range r from the axis, n to the beam's origin.
 Vec3d sdk_point(double column, double r_m, double n_m, double altitude_rad, double azimuth_rad) {
-  const double encoder = 2 * kPi * (1.0 - column / 512);
+  const double encoder = 2 * std::numbers::pi * (1.0 - column / 512);
   const double along = encoder - azimuth_rad;
   const double x = (r_m - n_m) * std::cos(along) * std::cos(altitude_rad) + n_m * std::cos(encoder);
   const double y = (r_m - n_m) * std::sin(along) * std::cos(altitude_rad) + n_m * std::sin(encoder);

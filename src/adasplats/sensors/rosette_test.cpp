@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 LidarModel rosette_of(double deflection_1_deg, double deflection_2_deg) {
   LidarModel model;

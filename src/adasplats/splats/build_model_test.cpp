@@ -16,6 +16,7 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/splats/model/same_bytes_test.h"
 #include "adasplats/splats/paper/grow.h"
 
 namespace adasplats {
@@ -53,17 +54,6 @@ std::pair<SplatModel, BuildReport> build(PointCloud cloud, const PaperOptions& o
   ProgressSink quiet;
   return build_model(std::move(cloud), &semantickitti_labels(), {options, removal},
                      Executor(threads), quiet);
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  if (a.size() != b.size()) return false;
-  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-bool same_bytes(const SplatModel& a, const SplatModel& b) {
-  return same_bytes(a.disks, b.disks) && same_bytes(a.classes, b.classes) &&
-         same_bytes(a.groups, b.groups) && same_bytes(a.intensities, b.intensities);
 }
 
 class EveryMethod : public testing::TestWithParam<PaperVariant> {

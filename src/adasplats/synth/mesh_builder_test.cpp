@@ -6,8 +6,9 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "adasplats/core/constants.h"
 
 namespace adasplats {
 namespace {
@@ -75,11 +76,10 @@ TEST(MeshBuilder, FineEllipsoidIsASphere) {
 }
 
 TEST(MeshBuilder, DropsDegenerateTriangles) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   MeshBuilder builder;
   builder.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {});
   builder.triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {});
-  builder.triangle({0, 0, 0}, {1, 0, 0}, {0, kNan, 0}, {});
+  builder.triangle({0, 0, 0}, {1, 0, 0}, {0, kNaN, 0}, {});
   builder.beam({1, 1, 1}, {1, 1, 1}, 0.1, 0.1, {});
   EXPECT_EQ(builder.triangle_count(), 0U);
   builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {});  // one half has no area

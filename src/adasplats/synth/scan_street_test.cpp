@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/synth/street.h"
 #include "adasplats/synth/street_plan.h"
@@ -303,14 +304,13 @@ TEST(ScanStreet, RejectsOptionsOutOfRange) {
     change(options);
     expect_error(ErrorKind::usage, {}, [&] { scan(street, options); });
   };
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expect_usage([](StreetScanOptions& o) { o.points = 999; });
   expect_usage([](StreetScanOptions& o) { o.passes = 0; });
   expect_usage([](StreetScanOptions& o) { o.speed_m_per_s = 0; });
   expect_usage([](StreetScanOptions& o) { o.range_noise_m = -1; });
-  expect_usage([](StreetScanOptions& o) { o.pose_error_m = kNan; });
+  expect_usage([](StreetScanOptions& o) { o.pose_error_m = kNaN; });
   expect_usage([](StreetScanOptions& o) { o.pose_error_rad = -1e-9; });
-  expect_usage([](StreetScanOptions& o) { o.driving_spacing_m = kNan; });
+  expect_usage([](StreetScanOptions& o) { o.driving_spacing_m = kNaN; });
 }
 
 }  // namespace

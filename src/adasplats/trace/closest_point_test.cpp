@@ -7,13 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Vec3f random_point(Random& random, double half_m, Vec3d center = {}) {
   const double x = random.uniform(-half_m, half_m);
@@ -54,7 +52,7 @@ TriangleMesh grid(std::uint32_t side) {
 
 /// The oracle: all triangles, the first of the nearest.
 SurfaceDistance brute_force(const TriangleMesh& mesh, Vec3f point) {
-  float best = kInfinity;
+  float best = HUGE_VALF;
   SurfaceDistance result;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const float squared = squared_distance(point, mesh.triangle(i));
@@ -105,7 +103,7 @@ TEST(SquaredDistance, EqualsSampling) {
     Random random(5, 0, i);
     const Triangle t = {random_point(random, 2), random_point(random, 2), random_point(random, 2)};
     const Vec3f p = random_point(random, 3);
-    double nearest_m = static_cast<double>(kInfinity);
+    double nearest_m = static_cast<double>(HUGE_VALF);
     for (int u = 0; u <= kSteps; ++u) {
       for (int v = 0; u + v <= kSteps; ++v) {
         const Vec3d a = vec_cast<double>(t.a);
@@ -154,11 +152,11 @@ TEST(ClosestPoint, MeshesWithoutTrianglesAndPointsOutOfRange) {
   const SurfaceDistance none =
       ClosestPoint(empty, executor).of(std::vector<Vec3f>{{1, 2, 3}}, executor)[0];
   EXPECT_EQ(none.triangle, SurfaceDistance::kNone);
-  EXPECT_EQ(none.distance_m, kInfinity);
+  EXPECT_EQ(none.distance_m, HUGE_VALF);
   const TriangleMesh mesh = grid(1);
   const ClosestPoint closest(mesh, executor);
   EXPECT_TRUE(closest.of({}, executor).empty());
-  for (const Vec3f bad : {Vec3f{kNaN, 0, 0}, Vec3f{0, kInfinity, 0}, Vec3f{0, 0, -2e18F}})
+  for (const Vec3f bad : {Vec3f{kNaN, 0, 0}, Vec3f{0, HUGE_VALF, 0}, Vec3f{0, 0, -2e18F}})
     EXPECT_EQ(closest.of(std::vector<Vec3f>{bad}, executor)[0].triangle, SurfaceDistance::kNone);
 }
 

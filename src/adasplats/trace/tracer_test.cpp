@@ -12,13 +12,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/trace/wide_kernel.h"
 
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Vec3d random_unit(Random& random) {
@@ -391,7 +391,7 @@ TEST_P(AnyTracer, RaysThatAreNotFiniteHitNothing) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}};
   const Ray good = {{0, 0, 0}, 0, {1, 0, 0}};
   std::vector<Ray> rays;
-  for (const float bad : {kNaN, kInfinity, -kInfinity, 2e18F}) {
+  for (const float bad : {static_cast<float>(kNaN), kInfinity, -kInfinity, 2e18F}) {
     for (int axis = 0; axis < 3; ++axis) {
       Ray ray = good;
       ray.origin[axis] = bad;

@@ -4,14 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "adasplats/core/constants.h"
+
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 PointCloud line(std::size_t count) {
   PointCloud cloud;

@@ -6,13 +6,13 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
+
+#include "adasplats/core/constants.h"
 
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kPi = 3.14159265358979323846;
 
 /// Reads a packet by the layout of docs/viewer_protocol.md.

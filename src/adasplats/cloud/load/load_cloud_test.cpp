@@ -11,7 +11,9 @@
 #include <stdexcept>
 
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -19,15 +21,6 @@
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-/// Keeps the warnings.
-class Listener : public ProgressSink {
- public:
-  void warn(std::string_view message) override { warnings.emplace_back(message); }
-  std::vector<std::string> warnings;
-};
 
 std::pair<PointCloud, LoadReport> load(const std::vector<std::filesystem::path>& inputs,
                                        const LoadOptions& options = {}, int threads = 2) {
@@ -52,7 +45,7 @@ void expect_same(const PointCloud& a, const PointCloud& b) {
 }
 
 /// Poses are the LiDAR's own.
-constexpr const char* kIdentity = "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
+constexpr const char* kSensorPoses = "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
 
 /// A sequence whose scan k has k + 1 points, turned by 90 degrees to the left and moved along x.
 void write_sequence(const TemporaryFolder& folder, int scans, double x0_m = 0,
@@ -71,7 +64,7 @@ void write_sequence(const TemporaryFolder& folder, int scans, double x0_m = 0,
     poses += "0 -1 0 " + std::to_string(x0_m + 10 * k) + " 1 0 0 0 0 0 1 0\n";
   }
   folder.write(name + "poses.txt", poses);
-  folder.write(name + "calib.txt", kIdentity);
+  folder.write(name + "calib.txt", kSensorPoses);
 }
 
 // Oracle: analytic. A point (i, 0.5, 2) seen from (10 k, 0, 0) facing +y is at (10 k - 0.5, i, 2).
@@ -173,7 +166,7 @@ TEST(LoadCloud, SameForEveryNumberOfThreads) {
   for (std::uint64_t i = 0; i < 4 * 200'000; ++i)
     values.push_back(static_cast<float>(i % 4 == 3 ? 0.5 : Random(1, 0, i).uniform(-3000, 3000)));
   folder.write("velodyne/000000.bin", values);
-  folder.write("calib.txt", kIdentity);
+  folder.write("calib.txt", kSensorPoses);
   folder.write("velodyne/000001.bin", std::vector<float>(values.begin(), values.begin() + 40));
   folder.write("poses.txt", "0 -1 0 1000 1 0 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
   LoadOptions options;
@@ -231,7 +224,7 @@ TEST(LoadCloud, NothingLeft) {
 TEST(LoadCloud, NoReturnsAreSaid) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.xyz", "nan nan nan\n1 2 3\nnan nan nan\n");
-  Listener listener;
+  RecordedProgress listener;
   const auto [cloud, report] = load_cloud(std::span(&file, 1), {}, Executor(1), listener);
   EXPECT_EQ(cloud.size(), 1U);
   EXPECT_EQ(report.no_returns, 2U);
@@ -282,7 +275,7 @@ TEST(LoadCloud, TwoPlacesAreAnError) {
   options.max_distance_m = 1e6;
   EXPECT_EQ(load({half}, options).first.size(), 100U);
   const auto few = folder.write("few.xyz", two_places(198, 2));
-  Listener listener;
+  RecordedProgress listener;
   EXPECT_EQ(load_cloud(std::span(&few, 1), {}, Executor(1), listener).first.size(), 198U);
   ASSERT_EQ(listener.warnings.size(), 1U);
   EXPECT_NE(listener.warnings[0].find("2 of 200 points (1 %) are farther"), std::string::npos);
@@ -301,7 +294,7 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
   // A kilometre with 3 m of height could be a pole, too: taken, and said.
   const auto warnings_of = [&](const std::string& text) {
-    Listener listener;
+    RecordedProgress listener;
     load_cloud(std::vector{folder.write("doubtful.xyz", text)}, {}, Executor(1), listener);
     return listener.warnings;
   };
@@ -333,7 +326,7 @@ TEST(LoadCloud, CoordinateSystemsAreKeptAndNotMixed) {
   expect_error(ErrorKind::data, {"b.ply", "EPSG:32633", "a.ply", "EPSG:32632"}, [&] {
     load({a, none, b});
   });
-  Listener listener;
+  RecordedProgress listener;
   const std::vector both = {none, a};
   const PointCloud cloud = load_cloud(both, {}, Executor(1), listener).first;
   EXPECT_EQ(cloud.crs.name(), "EPSG:32632");
@@ -371,7 +364,7 @@ TEST(LoadCloud, LasInFeetAndWithheldPoints) {
   EXPECT_EQ(load({folder.write("metres.las", content)}).first.size(), 1U);
   put(281 + 16 + 15, std::uint8_t{0x80});
   const auto withheld = folder.write("withheld.las", content);
-  Listener listener;
+  RecordedProgress listener;
   EXPECT_TRUE(load_cloud(std::span(&withheld, 1), {}, Executor(1), listener).first.empty());
   EXPECT_NE(listener.warnings.at(0).find("1 of 1 points are flagged as withheld"),
             std::string::npos);
@@ -432,7 +425,7 @@ TEST(LoadCloud, ColumnsOfFiles) {
 TEST(LoadCloud, MisspeltColumnsAreWarnedAbout) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.csv", "x,y,z,intensty,other\n1,2,3,4,5\n");
-  Listener listener;
+  RecordedProgress listener;
   EXPECT_TRUE(load_cloud(std::span(&file, 1), {}, Executor(1), listener).first.intensities.empty());
   ASSERT_EQ(listener.warnings.size(), 1U);
   EXPECT_NE(listener.warnings[0].find("a.csv: column 'intensty' is not read, did you mean "
@@ -522,7 +515,7 @@ TEST(LoadCloud, AttributesThatSomeInputsLackAreLostWithAWarning) {
   write_sequence(folder, 2, 0, "s/");
   const auto bare = folder.write("bare.xyz", "1 2 3\n");
   const auto none = folder.write("none.bin", std::vector<float>{kNaN, 0, 0, 0});
-  Listener listener;
+  RecordedProgress listener;
   const std::filesystem::path inputs[] = {folder.path() / "s", bare, none};
   LoadOptions options;
   options.max_dropped = 1;
@@ -724,7 +717,7 @@ TEST(OtherColumns, OfSeveralInputs) {
   const TemporaryFolder folder;
   const auto a = folder.write("a.csv", "x,y,z,rgb,echo\n1,2,3,255,5\nnan,1,1,7,6\n4,5,6,65536,7\n");
   const auto b = folder.write("b.csv", "x,y,z,R,G,B\n1,2,9,1,2,3\n");
-  Listener listener;
+  RecordedProgress listener;
   const std::vector<std::filesystem::path> both = {a, b};
   LoadOptions options = all_columns();
   options.max_dropped = 1;
@@ -769,7 +762,7 @@ TEST(LoadCloud, OneFrameOfKittisObjectBenchmarkFromItsSensor) {
 TEST(LoadCloud, DecibelsAreNoIntensities) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.csv", "x,y,z,Reflectance\n1,2,3,-12.5\n4,5,6,0.75\n");
-  Listener listener;
+  RecordedProgress listener;
   const PointCloud cloud =
       load_cloud(std::span(&file, 1), all_columns(), Executor(1), listener).first;
   EXPECT_TRUE(cloud.intensities.empty());
@@ -798,7 +791,7 @@ TEST(LoadCloud, LasWithoutIntensitiesHasUnknownOnes) {
     return folder.path() / name;
   };
   const std::vector<std::filesystem::path> both = {las("a.las", {0, 0}), las("b.laz", {0, 9})};
-  Listener listener;
+  RecordedProgress listener;
   const PointCloud cloud = load_cloud(both, {}, Executor(1), listener).first;
   ASSERT_EQ(cloud.intensities.size(), 4U);
   EXPECT_EQ(std::ranges::count_if(cloud.intensities, [](float v) { return std::isnan(v); }), 2);
@@ -806,7 +799,7 @@ TEST(LoadCloud, LasWithoutIntensitiesHasUnknownOnes) {
   EXPECT_NE(listener.warnings[0].find("a.las: the intensities of all 2 points are 0"),
             std::string::npos)
       << listener.warnings[0];
-  Listener alone;
+  RecordedProgress alone;
   EXPECT_TRUE(
       load_cloud(std::span(both).first(1), {}, Executor(1), alone).first.intensities.empty());
   EXPECT_TRUE(alone.warnings.empty());
@@ -835,11 +828,11 @@ TEST(LoadCloud, ZerosOfAnOrganisedCloudAreMissingReturns) {
 // CloudCompare writes its shift into VIEWPOINT, other programs the pose of the sensor.
 TEST(LoadCloud, ViewpointsOfPcdAreNotIgnored) {
   const TemporaryFolder folder;
-  const auto load_one = [&](const char* viewpoint, Listener& listener) {
+  const auto load_one = [&](const char* viewpoint, RecordedProgress& listener) {
     const auto file = folder.write("a.pcd", pcd_header("1", viewpoint) + "1 2 3\n4 5 6\n");
     return load_cloud(std::span(&file, 1), {}, Executor(1), listener).first;
   };
-  Listener shifted, posed, none;
+  RecordedProgress shifted, posed, none;
   EXPECT_TRUE(load_one("600000 6.339e+06 -0 1 0 0 0", shifted).world(1) ==
               (Vec3d{600004, 6339005, 6}));
   ASSERT_EQ(shifted.warnings.size(), 1U);
@@ -867,7 +860,7 @@ TEST(LoadCloud, FilesShareAWarning) {
   std::vector<std::filesystem::path> files;
   for (const char* const name : {"a.csv", "b.csv", "c.csv"})
     files.push_back(folder.write(name, "x,y,z,intensty\n1,2,3,4\n"));
-  Listener listener;
+  RecordedProgress listener;
   load_cloud(files, {}, Executor(1), listener);
   ASSERT_EQ(listener.warnings.size(), 1U);
   EXPECT_NE(listener.warnings[0].find("a.csv and 2 more files: column 'intensty'"),

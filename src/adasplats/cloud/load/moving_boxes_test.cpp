@@ -10,12 +10,12 @@
 namespace adasplats {
 namespace {
 
-constexpr const char* kHeader = "frame,time,id,label,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
+constexpr const char* kBoxNames = "frame,time,id,label,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
 
 // A car of 4 x 2 x 1.5 m that goes 1 m in 0.1 s along x, and a parked one.
 TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
   const TemporaryFolder folder;
-  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kBoxNames) +
                                                         "0,1.0,7,Car,0,0,0,1,4,2,1.5,0\n"
                                                         "0,1.0,8,Car,1,0,20,1,4,2,1.5,0\n"
                                                         "1,1.1,7,Car,0,1,0,1,4,2,1.5,0\n"));
@@ -31,7 +31,7 @@ TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
 
 TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
   const TemporaryFolder folder;
-  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kBoxNames) +
                                                         "0,-2,8,Car,1,0,20,1,4,2,1.5,0\n"
                                                         "0,-1.5,7,Car,0,0,0,1,4,2,1.5,0\n"));
   EXPECT_TRUE(boxes.overlaps(-3, -2));
@@ -43,7 +43,7 @@ TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
 
 TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
   const TemporaryFolder folder;
-  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kBoxNames) +
                                                         "0,0,1,Car,0,0,0,0,4,1,1,3.1\n"
                                                         "1,1,1,Car,0,0,0,0,4,1,1,-3.1\n"));
   EXPECT_TRUE(boxes.contains(0.5, {1.9, 0, 0}));  // at pi, not at 0 turned the long way round
@@ -56,8 +56,8 @@ TEST(MovingBoxes, WhatIsWrongIsNamed) {
     MovingBoxes(folder.write("a.csv", std::string("time,id,x,y,z\n0,1,0,0,0\n")));
   });
   expect_error(ErrorKind::data, {"b.csv:3", "'yaw' is not a finite number"}, [&] {
-    MovingBoxes(folder.write("b.csv", std::string(kHeader) + "0,0,1,Car,0,0,0,0,4,1,1,0\n"
-                                                             "0,0,1,Car,0,0,0,0,4,1,1,left\n"));
+    MovingBoxes(folder.write("b.csv", std::string(kBoxNames) + "0,0,1,Car,0,0,0,0,4,1,1,0\n"
+                                                               "0,0,1,Car,0,0,0,0,4,1,1,left\n"));
   });
   expect_error(ErrorKind::no_input, {"cannot be read"},
                [&] { MovingBoxes(folder.path() / "none.csv"); });

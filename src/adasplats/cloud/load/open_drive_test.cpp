@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
@@ -19,8 +19,6 @@
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// How far a ray goes in a hall of 30 x 20 x 6 m around the origin, its floor at z = 0.
 double range_in_hall(Vec3d origin, Vec3d direction) {
@@ -42,10 +40,10 @@ RigidTransform vehicle_at(double time_s) {
 const RigidTransform kMount = {{}, {0, 0, 0}};
 
 /// Frames of a Pandar64 that drives through the hall, 10 a second, and the vehicle's poses.
-class Drive {
+class HallDrive {
  public:
   /// `crs_of_last`: what the last file says, the others say EPSG:32632; empty: none says any.
-  explicit Drive(const std::string& crs_of_last = "") {
+  explicit HallDrive(const std::string& crs_of_last = "") {
     const LidarModel sensor = load_lidar_model("hesai-pandar64");
     for (int scan = 0; scan < kScans; ++scan) {
       const bool is_last = scan + 1 == kScans;
@@ -98,7 +96,7 @@ class Drive {
   TemporaryFolder folder_;
 };
 
-class Listener : public ProgressSink {
+class WarningText : public ProgressSink {
  public:
   void warn(std::string_view message) override { text += message; }
   std::string text;
@@ -106,8 +104,8 @@ class Listener : public ProgressSink {
 
 // Oracle: where the sensor was when each point was made.
 TEST(DriveInput, BeamsBeginWhereTheSensorWasAtTheirTime) {
-  const Drive drive;
-  Listener listener;
+  const HallDrive drive;
+  WarningText listener;
   LoadOptions options;
   options.trajectory = drive.poses();
   options.own_body_m = 0;
@@ -138,19 +136,19 @@ TEST(DriveInput, BeamsBeginWhereTheSensorWasAtTheirTime) {
 
 TEST(DriveInput, TheCoordinateSystemIsThatOfItsFiles) {
   ProgressSink quiet;
-  const auto load = [&quiet](const Drive& drive) {
+  const auto load = [&quiet](const HallDrive& drive) {
     LoadOptions options;
     options.trajectory = drive.poses();
     const std::filesystem::path frames = drive.frames();
     return load_cloud(std::span(&frames, 1), options, Executor(2), quiet).first;
   };
-  EXPECT_EQ(load(Drive("EPSG:32632")).crs.name(), "EPSG:32632");
+  EXPECT_EQ(load(HallDrive("EPSG:32632")).crs.name(), "EPSG:32632");
   expect_error(ErrorKind::data, {"5.ply", "EPSG:32633", "0.ply", "EPSG:32632"},
-               [&] { load(Drive("EPSG:32633")); });
+               [&] { load(HallDrive("EPSG:32633")); });
 }
 
 TEST(DriveInput, AnotherClockIsAnError) {
-  const Drive drive;
+  const HallDrive drive;
   ProgressSink quiet;
   const auto late = drive.folder().write(
       "late.csv",
@@ -163,7 +161,7 @@ TEST(DriveInput, AnotherClockIsAnError) {
 }
 
 TEST(DriveInput, AnotherClockCanBeStated) {
-  const Drive drive;
+  const HallDrive drive;
   ProgressSink quiet;
   Trajectory late = read_trajectory(drive.poses());
   for (TimedPose& pose : late) pose.time_s += 1000;
@@ -179,7 +177,7 @@ TEST(DriveInput, AnotherClockCanBeStated) {
 }
 
 TEST(DriveInput, AStatedMountTakesThePlaceOfRecognition) {
-  const Drive drive;
+  const HallDrive drive;
   ProgressSink quiet;
   LoadOptions options;
   options.trajectory = drive.poses();
@@ -214,7 +212,7 @@ std::filesystem::path frames_of_nothing(const TemporaryFolder& folder) {
 TEST(DriveInput, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   const TemporaryFolder folder;
   const std::filesystem::path frames = frames_of_nothing(folder);
-  Listener listener;
+  WarningText listener;
   LoadOptions options;
   options.trajectory = folder.path() / "poses.csv";
   // The frame is undetermined, and it is not guessed.
@@ -238,7 +236,7 @@ TEST(DriveInput, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
 }
 
 TEST(DriveInput, BoxesOfAnotherClockAreAnError) {
-  const Drive drive;
+  const HallDrive drive;
   ProgressSink quiet;
   const auto boxes = drive.folder().write(
       "boxes.csv", std::string("time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
@@ -298,10 +296,10 @@ TEST(DriveInput, AnotherNumberOfPosesThanScansIsAnError) {
 }
 
 TEST(DriveInput, PointsWithTimesNeedPosesWithTimes) {
-  const Drive drive;
+  const HallDrive drive;
   ProgressSink quiet;
   std::string rows;
-  for (int k = 0; k < Drive::kScans; ++k) rows += "1 0 0 5 0 1 0 0 0 0 1 0\n";
+  for (int k = 0; k < HallDrive::kScans; ++k) rows += "1 0 0 5 0 1 0 0 0 0 1 0\n";
   DriveSettings settings;
   settings.trajectory = drive.folder().write("rows.txt", rows);
   settings.points_in = PointsIn::world;

@@ -20,8 +20,8 @@ using enum OriginKind;
 
 const std::string kPoseNames = "time,x,y,z,qw,qx,qy,qz\n";
 
-std::pair<PointCloud, LoadReport> load(const std::vector<std::filesystem::path>& inputs,
-                                       const LoadOptions& options = {}) {
+std::pair<PointCloud, LoadReport> load_quietly(const std::vector<std::filesystem::path>& inputs,
+                                               const LoadOptions& options = {}) {
   ProgressSink quiet;
   return load_cloud(inputs, options, Executor(2), quiet);
 }
@@ -64,19 +64,19 @@ TEST(PointOrigins, KindsByWhereTheyComeFrom) {
   const TemporaryFolder folder;
   const auto bare = folder.write("bare.xyz", "1 0 0\n9 5 0\n");
   const auto own = folder.write("own.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,7,8,9\n");
-  EXPECT_TRUE(load({bare}).first.sensor_positions.empty());
-  EXPECT_TRUE(load({own}).first.origin_kinds.empty());  // all measured
+  EXPECT_TRUE(load_quietly({bare}).first.sensor_positions.empty());
+  EXPECT_TRUE(load_quietly({own}).first.origin_kinds.empty());  // all measured
 
   LoadOptions options;
   options.viewpoint = Vec3d{1, 2, 30};
-  const auto [stated_cloud, report] = load({bare, own}, options);
+  const auto [stated_cloud, report] = load_quietly({bare, own}, options);
   EXPECT_EQ(stated_cloud.origin_kinds, (std::vector<OriginKind>{stated, stated, measured}));
   EXPECT_EQ(report.origins, (OriginCounts{0, 0, 2, 1}));
   EXPECT_TRUE(stated_cloud.has_beams() && stated_cloud.has_all_origins());
 
   options.viewpoint.reset();
   options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
-  const PointCloud driven = load({bare}, options).first;
+  const PointCloud driven = load_quietly({bare}, options).first;
   EXPECT_EQ(driven.origin_kinds, (std::vector<OriginKind>{guessed, guessed}));
   EXPECT_FALSE(driven.has_beams());
   EXPECT_TRUE(driven.has_all_origins());
@@ -89,7 +89,7 @@ TEST(PointOrigins, NormalsOfTheFileOrientPoints) {
        {"x,y,z,nx,ny,nz", "X,Y,Z,normal_x,normal_y,normal_z", "x,y,z,NormalX,NormalY,NormalZ"}) {
     const auto file = folder.write(
         "a.csv", std::string(names) + "\n1,2,3,0,0,2\n4,5,6,0,-1,0\n7,8,9,0,0,0\n1,1,1,nan,0,1\n");
-    const PointCloud cloud = load({file}).first;
+    const PointCloud cloud = load_quietly({file}).first;
     EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{guessed, guessed, none, none})) << names;
     EXPECT_GT(cloud.sensor_positions[0].z, cloud.positions[0].z);
     EXPECT_LT(cloud.sensor_positions[1].y, cloud.positions[1].y);
@@ -97,10 +97,11 @@ TEST(PointOrigins, NormalsOfTheFileOrientPoints) {
     EXPECT_FALSE(cloud.has_beams());
     LoadOptions options;
     options.viewpoint = Vec3d{0, 0, 30};
-    EXPECT_EQ(load({file}, options).first.origin_kinds, (std::vector<OriginKind>(4, stated)));
+    EXPECT_EQ(load_quietly({file}, options).first.origin_kinds,
+              (std::vector<OriginKind>(4, stated)));
     options = {};
     options.other_columns = KeptColumns::all;
-    const PointCloud kept = load({file}, options).first;
+    const PointCloud kept = load_quietly({file}, options).first;
     EXPECT_TRUE(kept.sensor_positions.empty());
     EXPECT_EQ(kept.others.columns.size(), 3U);
   }
@@ -110,14 +111,15 @@ TEST(PointOrigins, OnesThatAreNotFiniteAreNotKnownAndLoseNoPoint) {
   const TemporaryFolder folder;
   const auto file =
       folder.write("a.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,7,8,9\n4,5,6,nan,8,9\n");
-  const auto [cloud, report] = load({file});
+  const auto [cloud, report] = load_quietly({file});
   ASSERT_EQ(cloud.size(), 2U);
   EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{measured, none}));
   EXPECT_TRUE(cloud.sensor_positions[1] == cloud.positions[1]);
   EXPECT_EQ(report.dropped_not_finite, 0U);
   LoadOptions options;
   options.viewpoint = Vec3d{0, 0, 1};
-  EXPECT_EQ(load({file}, options).first.origin_kinds, (std::vector<OriginKind>{measured, stated}));
+  EXPECT_EQ(load_quietly({file}, options).first.origin_kinds,
+            (std::vector<OriginKind>{measured, stated}));
 }
 
 // One scan with a pose, one cloud without; the colours of one are said to be left out.
@@ -152,10 +154,11 @@ TEST(PointOrigins, KindsSurviveSavingAndAreCheckedWhenRead) {
   cloud.sensor_positions = {{0, 0, 1}, {0, 0, 2}, {7, 8, 9}};
   cloud.origin_kinds = {measured, guessed, none};
   save_cloud_ply(folder.path() / "a.ply", cloud);
-  EXPECT_EQ(load({folder.path() / "a.ply"}).first.origin_kinds, cloud.origin_kinds);
+  EXPECT_EQ(load_quietly({folder.path() / "a.ply"}).first.origin_kinds, cloud.origin_kinds);
   const auto wrong =
       folder.write("b.csv", "x,y,z,sensor_x,sensor_y,sensor_z,origin_kind\n1,2,3,7,8,9,4\n");
-  expect_error(ErrorKind::data, {"b.csv", "'origin_kind'", "3 (measured)"}, [&] { load({wrong}); });
+  expect_error(ErrorKind::data, {"b.csv", "'origin_kind'", "3 (measured)"},
+               [&] { load_quietly({wrong}); });
 }
 
 TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
@@ -164,12 +167,13 @@ TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
   LoadOptions options;
   options.viewpoint = Vec3d{5e6, 0, 0};  // 5,000 km
   expect_error(ErrorKind::usage, {"`viewpoint` 5000000.00,0.00,0.00", "bare.xyz", "5000 km"},
-               [&] { load({bare}, options); });
+               [&] { load_quietly({bare}, options); });
   options.viewpoint.reset();
   options.trajectory = folder.write("t.csv", kPoseNames + "0,400000,5500000,2,1,0,0,0\n");
-  expect_error(ErrorKind::usage, {"trajectory", "bare.xyz", "km"}, [&] { load({bare}, options); });
+  expect_error(ErrorKind::usage, {"trajectory", "bare.xyz", "km"},
+               [&] { load_quietly({bare}, options); });
   const auto own = folder.write("own.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,20000,0\n");
-  expect_error(ErrorKind::data, {"own.csv", "point 0", "20 km"}, [&] { load({own}); });
+  expect_error(ErrorKind::data, {"own.csv", "point 0", "20 km"}, [&] { load_quietly({own}); });
 }
 
 // The file says that it was stated or guessed: --viewpoint and --trajectory were never given.
@@ -179,7 +183,7 @@ TEST(PointOrigins, ImpossibleOnesOfAFileAreTheFiles) {
     const auto file = folder.write(
         "a.csv", std::string("x,y,z,sensor_x,sensor_y,sensor_z,origin_kind\n1,2,3,0,20000,0,") +
                      kind + "\n");
-    expect_error(ErrorKind::data, {"a.csv", "point 0", "20 km"}, [&] { load({file}); });
+    expect_error(ErrorKind::data, {"a.csv", "point 0", "20 km"}, [&] { load_quietly({file}); });
   }
 }
 
@@ -188,15 +192,16 @@ TEST(PointOrigins, BeyondEveryPlaceIsAnErrorOfItsOwn) {
   const std::string names = "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,0,0\n";
   for (const char* sensor : {"0,1e13,0", "0,0,-1e300"}) {
     const auto file = folder.write("a.csv", names + "1,2,3," + sensor + "\n");
-    expect_error(ErrorKind::data, {"a.csv", "point 1", "beyond 1e12 m"}, [&] { load({file}); });
+    expect_error(ErrorKind::data, {"a.csv", "point 1", "beyond 1e12 m"},
+                 [&] { load_quietly({file}); });
   }
   LoadOptions options;
   options.viewpoint = Vec3d{0, 0, 1e300};
   const auto bare = folder.write("bare.xyz", "1 0 0\n");
-  expect_error(ErrorKind::usage, {"viewpoint", "1e12"}, [&] { load({bare}, options); });
+  expect_error(ErrorKind::usage, {"viewpoint", "1e12"}, [&] { load_quietly({bare}, options); });
   options.viewpoint.reset();
   options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,1e300,1,0,0,0\n");
-  expect_error(ErrorKind::data, {"t.csv", "1e12"}, [&] { load({bare}, options); });
+  expect_error(ErrorKind::data, {"t.csv", "1e12"}, [&] { load_quietly({bare}, options); });
 }
 
 TEST(PointOrigins, AStationMustSeeItsPoints) {
@@ -214,13 +219,13 @@ TEST(PointOrigins, AStationMustSeeItsPoints) {
   const auto file = folder.write("wall.csv", csv_of(wall));
   LoadOptions options;
   options.viewpoint = Vec3d{3, 0, 0};
-  EXPECT_EQ(load({file}, options).first.origin_kinds.at(0), stated);
+  EXPECT_EQ(load_quietly({file}, options).first.origin_kinds.at(0), stated);
   options.viewpoint = Vec3d{40, 0, 0};
   expect_error(ErrorKind::usage, {"`viewpoint` 40.00,0.00,0.00", "wall.csv", "%", "trajectory"},
-               [&] { load({file}, options); });
+               [&] { load_quietly({file}, options); });
   const auto wrong = folder.write("wrong.csv", csv_of(wall, "40,0,0"));
-  expect_error(ErrorKind::data, {"wrong.csv", "40.00,0.00,0.00"}, [&] { load({wrong}); });
-  EXPECT_EQ(load({folder.write("right.csv", csv_of(wall, "3,0,0"))}).second.origins[3],
+  expect_error(ErrorKind::data, {"wrong.csv", "40.00,0.00,0.00"}, [&] { load_quietly({wrong}); });
+  EXPECT_EQ(load_quietly({folder.write("right.csv", csv_of(wall, "3,0,0"))}).second.origins[3],
             wall.size());
 }
 
@@ -261,12 +266,14 @@ TEST(PointOrigins, FilesWithThePathOfAnotherPlaceAreRefused) {
     return text;
   };
   const TemporaryFolder folder;
-  EXPECT_EQ(load({folder.write("right.csv", csv_from(0))}).second.origins[3], points.size());
+  EXPECT_EQ(load_quietly({folder.write("right.csv", csv_from(0))}).second.origins[3],
+            points.size());
   const auto wrong = folder.write("wrong.csv", csv_from(30));
-  expect_error(ErrorKind::data, {"wrong.csv", "sensor positions", "%"}, [&] { load({wrong}); });
+  expect_error(ErrorKind::data, {"wrong.csv", "sensor positions", "%"},
+               [&] { load_quietly({wrong}); });
   LoadOptions trusting;
   trusting.trust_origins = true;
-  EXPECT_EQ(load({wrong}, trusting).second.origins[3], points.size());
+  EXPECT_EQ(load_quietly({wrong}, trusting).second.origins[3], points.size());
 }
 
 TEST(PointOrigins, SmallViewsAreNotJudged) {

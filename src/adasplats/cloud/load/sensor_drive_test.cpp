@@ -52,9 +52,9 @@ constexpr double kStraight_m = 0.0002;
 constexpr double kHalfStep_m = 0.0036;
 
 /// How the same measurements are put down.
-enum class Dress { world, measured, compensated };
+enum class PointFrame { world, measured, compensated };
 struct Words {
-  Dress dress = Dress::measured;
+  PointFrame dress = PointFrame::measured;
   bool has_times = true, offsets = false, stamped_names = false, has_truck = false;
   double unit_s = 1;
   double clock_s = 0;  ///< at the begin of the drive
@@ -112,9 +112,9 @@ class Court {
       if (!range_m) continue;
       world.push_back(pose.translation + *range_m * way);
       origins.push_back(pose.translation);
-      const Vec3d given = words_.dress == Dress::world      ? world.back()
-                          : words_.dress == Dress::measured ? pose.inverse() * world.back()
-                                                            : frame.inverse() * world.back();
+      const Vec3d given = words_.dress == PointFrame::world      ? world.back()
+                          : words_.dress == PointFrame::measured ? pose.inverse() * world.back()
+                                                                 : frame.inverse() * world.back();
       x.push_back(given.x);
       y.push_back(given.y);
       z.push_back(given.z);
@@ -157,7 +157,7 @@ void expect_as_cast(const Court& court, const PointCloud& cloud, double max_m) {
 const DriveFacts& facts_of(const LoadReport& report) { return report.drives.at(0).facts; }
 
 TEST(SensorFrames, PointsAsMeasuredAreBroughtToTheirScan) {
-  const Court court({.dress = Dress::measured});
+  const Court court({.dress = PointFrame::measured});
   const auto [cloud, report] = court.load();
   EXPECT_NE(facts_of(report).points_in.find("sensor's frame"), std::string::npos);
   EXPECT_NE(facts_of(report).motion.find("as measured"), std::string::npos)
@@ -167,7 +167,7 @@ TEST(SensorFrames, PointsAsMeasuredAreBroughtToTheirScan) {
 }
 
 TEST(SensorFrames, CompensatedPointsKeepTheirPlacesAndGetTheOriginsOfTheirTimes) {
-  const Court court({.dress = Dress::compensated});
+  const Court court({.dress = PointFrame::compensated});
   const auto [cloud, report] = court.load();
   EXPECT_NE(facts_of(report).motion.find("already compensated"), std::string::npos)
       << facts_of(report).motion;
@@ -175,7 +175,7 @@ TEST(SensorFrames, CompensatedPointsKeepTheirPlacesAndGetTheOriginsOfTheirTimes)
 }
 
 TEST(SensorFrames, PointsInTheWorldAreToldFromThem) {
-  const Court court({.dress = Dress::world});
+  const Court court({.dress = PointFrame::world});
   const auto [cloud, report] = court.load();
   EXPECT_NE(facts_of(report).points_in.find("world"), std::string::npos);
   EXPECT_NE(facts_of(report).clock.find("share a clock"), std::string::npos)
@@ -194,7 +194,7 @@ TEST(SensorFrames, OffsetsFromTheStampsInTheNamesAreUnderstoodInTheirUnits) {
 }
 
 TEST(SensorFrames, WithoutTimesOfThePointsEachScanStandsStill) {
-  const Court court({.dress = Dress::compensated, .has_times = false, .stamped_names = true});
+  const Court court({.dress = PointFrame::compensated, .has_times = false, .stamped_names = true});
   const auto [cloud, report] = court.load();
   EXPECT_NE(facts_of(report).motion.find("assumed to be at rest"), std::string::npos);
   ASSERT_EQ(cloud.size(), court.world.size());
@@ -203,7 +203,7 @@ TEST(SensorFrames, WithoutTimesOfThePointsEachScanStandsStill) {
 }
 
 TEST(SensorFrames, ShiftedClocksOfPointsInTheWorldAreRefused) {
-  const Court court({.dress = Dress::world});
+  const Court court({.dress = PointFrame::world});
   LoadOptions options;
   options.time_offset_s = 0.1;  // what the sensor's poses would be without
   options.points_in = PointsIn::world;
@@ -217,7 +217,7 @@ TEST(SensorFrames, ShiftedClocksOfPointsInTheWorldAreRefused) {
 }
 
 TEST(SensorFrames, PointsInBoxesAreLeftOutAndCounted) {
-  const Court court({.dress = Dress::world});
+  const Court court({.dress = PointFrame::world});
   LoadOptions options;
   const PointCloud all = court.load(options).first;
   options.empty_beams = true;
@@ -232,7 +232,7 @@ TEST(SensorFrames, PointsInBoxesAreLeftOutAndCounted) {
 // Points in boxes go, but what their beams saw stays: the sky is not seen through a truck. Oracles:
 // the beams as they were cast, and the same drive without boxes.
 TEST(SensorFrames, BeamsThatEndedInABoxAreNotEmpty) {
-  const Court court({.dress = Dress::world, .has_truck = true});
+  const Court court({.dress = PointFrame::world, .has_truck = true});
   ASSERT_GT(court.steep_on_truck, 1000U);
   LoadOptions options;
   options.empty_beams = true;

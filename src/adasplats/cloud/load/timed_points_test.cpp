@@ -15,9 +15,9 @@
 namespace adasplats {
 namespace {
 
-constexpr double kGps_s = 1311000000;  // 2021-07-22
-constexpr double kUtc_s = kGps_s + 315964800 - 18;
-constexpr double kWeek_s = kGps_s - 2167 * 604800.0;
+constexpr double kGpsDrive_s = 1311000000;  // 2021-07-22
+constexpr double kUtcDrive_s = kGpsDrive_s + 315964800 - 18;
+constexpr double kWeekDrive_s = kGpsDrive_s - 2167 * 604800.0;
 constexpr double kDrive_s = 4;
 const Vec3d kArm = {0.8, -0.3, 1.9};
 
@@ -157,7 +157,7 @@ class TimedPoints : public testing::Test {
 };
 
 TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
-  const auto [cloud, report] = load(las(kGps_s - 1e9, true), with(poses(kWeek_s, -1, 5)));
+  const auto [cloud, report] = load(las(kGpsDrive_s - 1e9, true), with(poses(kWeekDrive_s, -1, 5)));
   expect_true_origins(cloud);
   ASSERT_TRUE(report.timed.has_value());
   EXPECT_NE(report.timed->clock.find("adjusted GPS time; trajectory: GPS seconds of the week"),
@@ -168,22 +168,23 @@ TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
   ASSERT_EQ(cloud.scan_poses.size(), 40U);
   ASSERT_EQ(cloud.scan_indices.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); i += 97)
-    EXPECT_NEAR(cloud.scan_poses[cloud.scan_indices[i]].time_s - kWeek_s, recording_.time_s[i],
+    EXPECT_NEAR(cloud.scan_poses[cloud.scan_indices[i]].time_s - kWeekDrive_s, recording_.time_s[i],
                 0.051);
   EXPECT_LT(length(cloud.scan_poses[7].world_from_sensor.translation - sensor_on_street(0.75)),
             1e-3);
 }
 
 TEST_F(TimedPoints, PlyOfUtcAndPosesOfGps) {
-  const auto [cloud, report] = load(ply(kUtc_s), with(poses(kGps_s, 0, 4)));
+  const auto [cloud, report] = load(ply(kUtcDrive_s), with(poses(kGpsDrive_s, 0, 4)));
   expect_true_origins(cloud);
-  EXPECT_NEAR(report.timed->offset_s, kGps_s - kUtc_s, 1e-6);
+  EXPECT_NEAR(report.timed->offset_s, kGpsDrive_s - kUtcDrive_s, 1e-6);
   EXPECT_NE(report.timed->clock.find("UTC since 1970"), std::string::npos);
 }
 
 TEST_F(TimedPoints, OfSeveralClocksThePointsTellWhich) {
   // UTC in nanoseconds; whether the poses are of UTC, GPS time or TAI, their drive covers it.
-  const auto [cloud, report] = load(ply(kUtc_s, 1e-9), with(poses(kGps_s + 315964800, -60, 60)));
+  const auto [cloud, report] =
+      load(ply(kUtcDrive_s, 1e-9), with(poses(kGpsDrive_s + 315964800, -60, 60)));
   EXPECT_NEAR(report.timed->offset_s, 18, 1e-6);
   ASSERT_EQ(cloud.sensor_positions.size(), cloud.size());
   EXPECT_LT(length(vec_cast<double>(cloud.sensor_positions[99]) -
@@ -193,22 +194,22 @@ TEST_F(TimedPoints, OfSeveralClocksThePointsTellWhich) {
 
 TEST_F(TimedPoints, WithFewPointsSeveralClocksAreAnErrorAndCanBeStated) {
   recording_ = Recording(300);
-  const auto points = ply(kUtc_s, 1, "gps_time");
-  LoadOptions options = with(poses(kGps_s, -60, 60));
+  const auto points = ply(kUtcDrive_s, 1, "gps_time");
+  LoadOptions options = with(poses(kGpsDrive_s, -60, 60));
   expect_error(ErrorKind::data,
                {"several clocks", "too few points", "`time_offset`", "UTC since 1970", "TAI (PTP)"},
                [&] { load(points, options); });
-  options.time_offset_s = kGps_s - kUtc_s;
+  options.time_offset_s = kGpsDrive_s - kUtcDrive_s;
   expect_true_origins(load(points, options).first);
 }
 
 TEST_F(TimedPoints, TimesThatAreNotCoveredAreAnErrorWithFigures) {
-  const auto points = ply(kGps_s);
+  const auto points = ply(kGpsDrive_s);
   expect_error(ErrorKind::data, {"does not cover", " of ", "2.540 s after", "poses.csv"},
-               [&] { load(points, with(poses(kGps_s, 0, 1.4759))); });
+               [&] { load(points, with(poses(kGpsDrive_s, 0, 1.4759))); });
   expect_error(ErrorKind::data, {"by any known clock", "`time_offset`"},
                [&] { load(points, with(poses(5000, 0, 4))); });
-  LoadOptions options = with(poses(kGps_s, 0, 4));
+  LoadOptions options = with(poses(kGpsDrive_s, 0, 4));
   options.time_offset_s = 100;
   expect_error(ErrorKind::data, {"by the stated `time_offset`"}, [&] { load(points, options); });
 }
@@ -220,15 +221,15 @@ TEST_F(TimedPoints, PointsInAGapAreAnError) {
 }
 
 TEST_F(TimedPoints, PosesThatJumpAreAnError) {
-  const auto file = poses(kUtc_s, -1, 5);
+  const auto file = poses(kUtcDrive_s, -1, 5);
   Trajectory jumping = read_trajectory(file);
   for (TimedPose& pose : jumping)
-    if (pose.time_s > kUtc_s + 0.1) pose.world_from_sensor.translation.x += 60;
+    if (pose.time_s > kUtcDrive_s + 0.1) pose.world_from_sensor.translation.x += 60;
   write_trajectory_csv(file, jumping);
   LoadOptions options = with(file);
   options.trust_origins = true;  // the hidden points are reported first
   expect_error(ErrorKind::data, {"poses.csv: between ", "the poses jump by ", "m/s"},
-               [&] { load(ply(kUtc_s), options); });
+               [&] { load(ply(kUtcDrive_s), options); });
 }
 
 TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
@@ -283,13 +284,13 @@ TEST_F(TimedPoints, TilesOfOneDriveShareItsScans) {
   recording_ = Recording(20);
   const std::filesystem::path folder = folder_.path() / "tiles";
   std::filesystem::create_directories(folder);
-  const auto times = recording_.times(kWeek_s, 1);
+  const auto times = recording_.times(kWeekDrive_s, 1);
   const std::size_t half = times.size() / 2 + 100;  // in the middle of a scan
   std::vector<ColumnView> columns = recording_.columns("gps_time", times);
   write_ply(folder / "a.ply", half, columns);
   for (ColumnView& column : columns) column.data = static_cast<const double*>(column.data) + half;
   write_ply(folder / "b.ply", times.size() - half, columns);
-  const auto [cloud, report] = load(folder, with(poses(kWeek_s, 0, 4)));
+  const auto [cloud, report] = load(folder, with(poses(kWeekDrive_s, 0, 4)));
   expect_true_origins(cloud);
   EXPECT_EQ(cloud.scan_poses.size(), 40U);
   EXPECT_EQ(cloud.scan_indices[half - 1], cloud.scan_indices[half]);
@@ -309,7 +310,7 @@ TEST_F(TimedPoints, PausesOfTheRecordingEndScans) {
     kept.time_s.push_back(t);
   }
   recording_ = kept;
-  const auto [cloud, report] = load(ply(kGps_s), with(poses(kGps_s, 0, 4)));
+  const auto [cloud, report] = load(ply(kGpsDrive_s), with(poses(kGpsDrive_s, 0, 4)));
   ASSERT_EQ(cloud.scan_poses.size(), 20U);
   for (std::size_t i = 1; i < cloud.size(); ++i)
     EXPECT_EQ(cloud.scan_indices[i] != cloud.scan_indices[i - 1],

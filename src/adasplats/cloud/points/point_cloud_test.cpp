@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "adasplats/core/constants.h"
+
 namespace adasplats {
 namespace {
 
@@ -81,7 +83,6 @@ TEST(ChooseOrigin, ZeroNearZeroAndForNothing) {
   EXPECT_TRUE(choose_origin({-1000, -5, 0}, {1000, 5, 1}) == Vec3d{});
   constexpr double kInf = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(choose_origin({kInf, kInf, kInf}, {-kInf, -kInf, -kInf}) == Vec3d{});
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(choose_origin({kNaN, 0, 0}, {kNaN, 1, 1}) == Vec3d{});
 }
 

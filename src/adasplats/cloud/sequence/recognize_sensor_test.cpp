@@ -20,7 +20,7 @@ constexpr std::size_t kPoints = 3000;
 
 /// How far a ray goes in a hall of 80 by 24 m, whose floor is 1.9 m below the origin and whose roof
 /// is 10 m above.
-double range_in_hall(Vec3d origin, Vec3d way) {
+double range_in_long_hall(Vec3d origin, Vec3d way) {
   const Vec3d low = {-40, -12, -1.9}, high = {40, 12, 10};
   double range_m = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -43,7 +43,7 @@ std::vector<Vec3d> scan_in_hall(const std::string& sensor, const RigidTransform&
     const Vec3d origin = mount.rotation * vec_cast<double>(firings[at].origin);
     const Vec3d way = normalized(mount.rotation * vec_cast<double>(firings[at].direction) +
                                  (0.02 * kDegree) * noise);
-    const double range_m = range_in_hall(origin, way) + 0.02 * random.normal();
+    const double range_m = range_in_long_hall(origin, way) + 0.02 * random.normal();
     points.push_back(mount.translation + origin + range_m * way);
   }
   return points;
@@ -197,7 +197,7 @@ TEST(RecognizeSensor, RefusesTheDenseGridOfATerrestrialScanner) {
       const double azimuth_rad = (18 * column + 0.06 * row) * kDegree;
       const Vec3d way = {std::cos(elevation_rad) * std::cos(azimuth_rad),
                          std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
-      points.push_back(range_in_hall({}, way) * way);
+      points.push_back(range_in_long_hall({}, way) * way);
     }
   }
   EXPECT_FALSE(recognize_sensor(points, cones_of_all({"velodyne-vlp-16"}), Executor(1)));

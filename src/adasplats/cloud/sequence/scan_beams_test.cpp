@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kRevolution_s = 0.1033;
+constexpr double kHdlRevolution_s = 0.1033;
 
 /// A quarter of the beams of KITTI's HDL-64E, of both blocks, none next to where these meet.
 constexpr std::array<double, 16> kSomeElevations_deg = {
@@ -24,7 +24,7 @@ constexpr std::array<double, 16> kSomeElevations_deg = {
     -10.4708, -12.1150, -14.0484, -16.1767, -18.3234, -20.2224, -22.4376, -24.9993};
 
 /// How a sequence of scans was measured: uniformly accelerated, never turning.
-struct Drive {
+struct KittiDrive {
   std::size_t scans = 3;
   std::size_t firings = 400;  ///< of each of 16 beams, a scan
   double yaw_rad = 0;
@@ -38,7 +38,7 @@ struct Drive {
   double time_s(std::size_t scan) const { return period_s * static_cast<double>(scan); }
   /// During the revolution of a scan.
   Vec3d sweep_m(std::size_t scan) const {
-    return kRevolution_s * (velocity_mps + time_s(scan) * acceleration_mps2);
+    return kHdlRevolution_s * (velocity_mps + time_s(scan) * acceleration_mps2);
   }
   RigidTransform pose(std::size_t scan) const {
     const double t = time_s(scan), c = std::cos(yaw_rad), s = std::sin(yaw_rad);
@@ -54,7 +54,7 @@ struct Beam {
 
 /// The beams of a scan, one firing after the other. Oracle: first where the sensor was, then the
 /// beam's cone around that place.
-std::vector<Beam> beams_of(const Drive& drive, std::size_t scan) {
+std::vector<Beam> beams_of(const KittiDrive& drive, std::size_t scan) {
   std::vector<Beam> beams;
   for (std::size_t firing = 0; firing < drive.firings; ++firing) {
     // Clockwise from the rear: share 0 looks back, 1/4 to the left, 1/2 ahead, 3/4 to the right.
@@ -78,7 +78,7 @@ std::vector<Beam> beams_of(const Drive& drive, std::size_t scan) {
   return beams;
 }
 
-void write_poses(const TemporaryFolder& folder, const Drive& drive) {
+void write_poses(const TemporaryFolder& folder, const KittiDrive& drive) {
   std::string poses, times;
   for (std::size_t scan = 0; scan < drive.scans; ++scan) {
     const RigidTransform pose = drive.pose(scan);
@@ -94,7 +94,8 @@ void write_poses(const TemporaryFolder& folder, const Drive& drive) {
   folder.write("times.txt", times);
 }
 
-void write_scan(const TemporaryFolder& folder, std::size_t scan, const std::vector<Vec3d>& points) {
+void write_frame(const TemporaryFolder& folder, std::size_t scan,
+                 const std::vector<Vec3d>& points) {
   std::vector<float> values;
   for (const Vec3d p : points)
     values.insert(values.end(), {static_cast<float>(p.x), static_cast<float>(p.y),
@@ -102,17 +103,17 @@ void write_scan(const TemporaryFolder& folder, std::size_t scan, const std::vect
   folder.write("velodyne/00000" + std::to_string(scan) + ".bin", values);
 }
 
-KittiSequence write_sequence(const TemporaryFolder& folder, const Drive& drive) {
+KittiSequence write_sequence(const TemporaryFolder& folder, const KittiDrive& drive) {
   for (std::size_t scan = 0; scan < drive.scans; ++scan) {
     std::vector<Vec3d> points;
     for (const Beam& beam : beams_of(drive, scan)) points.push_back(beam.point);
-    write_scan(folder, scan, points);
+    write_frame(folder, scan, points);
   }
   write_poses(folder, drive);
   return open_kitti_sequence(folder.path());
 }
 
-ScanBeams recognized(const Drive& drive) {
+ScanBeams recognized(const KittiDrive& drive) {
   const TemporaryFolder folder;
   return recognize_beams(write_sequence(folder, drive), Executor(2));
 }
@@ -125,7 +126,7 @@ void expect_frame_origin(const ScanBeams& beams) {
 }
 
 TEST(RecognizeBeams, PointsAsMeasuredLieOnTheConesThemselves) {
-  Drive drive;
+  KittiDrive drive;
   drive.compensated = false;
   const ScanBeams beams = recognized(drive);
   EXPECT_TRUE(beams.from_hdl64);
@@ -136,7 +137,7 @@ TEST(RecognizeBeams, PointsAsMeasuredLieOnTheConesThemselves) {
 // Oracle: the velocity times the duration of a revolution.
 TEST(RecognizeBeams, CompensatedPointsGiveTheWayOfEveryRevolution) {
   for (const std::size_t scans : {2, 3, 9}) {
-    Drive drive;
+    KittiDrive drive;
     drive.scans = scans;
     const ScanBeams beams = recognized(drive);
     EXPECT_TRUE(beams.from_hdl64);
@@ -149,7 +150,7 @@ TEST(RecognizeBeams, CompensatedPointsGiveTheWayOfEveryRevolution) {
 
 TEST(RecognizeBeams, SweepsAreInTheFrameOfTheScan) {
   for (const double yaw_rad : {0.5, 2.0, -1.2}) {
-    Drive drive;
+    KittiDrive drive;
     drive.yaw_rad = yaw_rad;
     drive.velocity_mps = {9, -2, 0.5};  // drifts to its right and up
     const ScanBeams beams = recognized(drive);
@@ -161,7 +162,7 @@ TEST(RecognizeBeams, SweepsAreInTheFrameOfTheScan) {
 }
 
 TEST(RecognizeBeams, SweepsFollowTimesAndSpeeds) {
-  Drive drive;
+  KittiDrive drive;
   drive.scans = 5;
   drive.period_s = 0.25;
   drive.velocity_mps = {4, 0, 0};
@@ -169,13 +170,13 @@ TEST(RecognizeBeams, SweepsFollowTimesAndSpeeds) {
   const ScanBeams beams = recognized(drive);
   ASSERT_EQ(beams.sweeps_m.size(), 5U);
   for (const std::size_t scan : {1, 2, 3})  // the others have no neighbour on one side
-    EXPECT_NEAR(beams.sweeps_m[scan].x, kRevolution_s * (4 + 0.5 * static_cast<double>(scan)),
+    EXPECT_NEAR(beams.sweeps_m[scan].x, kHdlRevolution_s * (4 + 0.5 * static_cast<double>(scan)),
                 1e-5);
-  EXPECT_NEAR(beams.sweeps_m[0].x, kRevolution_s * 4.25, 1e-5);  // of the way to the next one
+  EXPECT_NEAR(beams.sweeps_m[0].x, kHdlRevolution_s * 4.25, 1e-5);  // of the way to the next one
 }
 
 TEST(RecognizeBeams, OtherSensorsStartAtTheOrigin) {
-  Drive even;
+  KittiDrive even;
   even.hdl64 = false;
   expect_frame_origin(recognized(even));
   even.compensated = false;
@@ -184,7 +185,7 @@ TEST(RecognizeBeams, OtherSensorsStartAtTheOrigin) {
 
 TEST(RecognizeBeams, PointsAnywhereAreOfNoSensor) {
   const TemporaryFolder folder;
-  const Drive drive;
+  const KittiDrive drive;
   for (std::size_t scan = 0; scan < drive.scans; ++scan) {
     std::vector<Vec3d> points;
     for (std::size_t i = 0; i < 8000; ++i) {
@@ -194,14 +195,14 @@ TEST(RecognizeBeams, PointsAnywhereAreOfNoSensor) {
       points.push_back({range_m * std::cos(azimuth_rad), range_m * std::sin(azimuth_rad),
                         range_m * random.uniform(-0.45, 0.03)});
     }
-    write_scan(folder, scan, points);
+    write_frame(folder, scan, points);
   }
   write_poses(folder, drive);
   expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)));
 }
 
 TEST(RecognizeBeams, FewPointsOrNoneInTheRangesAreNotEnough) {
-  Drive drive;
+  KittiDrive drive;
   drive.scans = 2;
   drive.firings = 160;  // every 11th of 2 * 16 * 160 points: 466
   expect_frame_origin(recognized(drive));
@@ -218,7 +219,7 @@ TEST(RecognizeBeams, FewPointsOrNoneInTheRangesAreNotEnough) {
 
 TEST(RecognizeBeams, EmptyScansAndPointsThatAreNotFinite) {
   const TemporaryFolder folder;
-  Drive drive;
+  KittiDrive drive;
   drive.scans = 2;
   const Vec3d nowhere = {NAN, 10, -1};
   std::vector<Vec3d> points;
@@ -226,19 +227,19 @@ TEST(RecognizeBeams, EmptyScansAndPointsThatAreNotFinite) {
     points.push_back(beam.point);
     points.push_back(nowhere);
   }
-  write_scan(folder, 0, {});
-  write_scan(folder, 1, std::vector<Vec3d>(9000, nowhere));
+  write_frame(folder, 0, {});
+  write_frame(folder, 1, std::vector<Vec3d>(9000, nowhere));
   write_poses(folder, drive);
   expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)));
-  write_scan(folder, 0, points);
-  write_scan(folder, 1, points);
+  write_frame(folder, 0, points);
+  write_frame(folder, 1, points);
   EXPECT_TRUE(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)).from_hdl64);
 }
 
 // Seconds that are none would make the vehicle stand during a revolution.
 TEST(RecognizeBeams, TimesInAnotherUnitThanSecondsAreRefused) {
   const TemporaryFolder folder;
-  const KittiSequence sequence = write_sequence(folder, Drive{});
+  const KittiSequence sequence = write_sequence(folder, KittiDrive{});
   EXPECT_FALSE(recognize_beams(sequence, Executor(2)).sweeps_m.empty());
   for (const auto& [factor, text] :
        {std::pair{1e3, "1000"}, {1e6, "1000000"}, {1e9, "1000000000"}}) {
@@ -248,7 +249,7 @@ TEST(RecognizeBeams, TimesInAnotherUnitThanSecondsAreRefused) {
                  {folder.path().string(), "times.txt", std::string("divided by ") + text},
                  [&] { recognize_beams(wrong, Executor(2)); });
   }
-  Drive drive;
+  KittiDrive drive;
   drive.compensated = false;  // the times say nothing of such points
   const TemporaryFolder other;
   KittiSequence raw = write_sequence(other, drive);
@@ -257,7 +258,7 @@ TEST(RecognizeBeams, TimesInAnotherUnitThanSecondsAreRefused) {
 }
 
 TEST(RecognizeBeams, NoTimeBetweenPosesIsNoWay) {
-  Drive drive;
+  KittiDrive drive;
   drive.compensated = false;
   const TemporaryFolder folder;
   KittiSequence sequence = write_sequence(folder, drive);
@@ -277,7 +278,7 @@ TEST(RecognizeBeams, NoTimeBetweenPosesIsNoWay) {
 
 TEST(RecognizeBeams, PosesAtEqualTimesSayNothingOfTheOthers) {
   const TemporaryFolder folder;
-  Drive drive;
+  KittiDrive drive;
   drive.scans = 9;
   KittiSequence sequence = write_sequence(folder, drive);
   for (const std::size_t scan : {5, 7}) sequence.trajectory[scan].time_s = drive.time_s(6);
@@ -344,7 +345,7 @@ TEST(OriginOf, IsInTheBlockThatTheBeamIsOf) {
 // is off by a degree at most, seen from the middle of the frame: 1 mm.
 TEST(LoadCloud, SensorPositionsAreWhereBeamsStart) {
   const TemporaryFolder folder;
-  Drive drive;
+  KittiDrive drive;
   drive.scans = 6;
   drive.yaw_rad = 0.7;
   drive.acceleration_mps2 = {3, -1, 0};

@@ -22,7 +22,7 @@ namespace {
 // A street whose facades go forward and back by 3 m every 8 m, driven along at 8 m/s by an HDL-64E
 // whose scans are as they were measured.
 constexpr double kSpeed_mps = 8, kRevolution_s = 0.1033, kPeriod_s = 0.1, kGround_m = -1.7;
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kStreetScans = 12;
 
 /// From the middle of the street, m: facades lie at both of its signs.
 double facade_m(double along_m) {
@@ -75,7 +75,7 @@ std::vector<float> scan_of(std::size_t scan, double sense) {
 
 KittiSequence write_drive(const TemporaryFolder& folder, double sense, double seconds = 1) {
   std::string poses, times;
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kStreetScans; ++k) {
     const double time_s = kPeriod_s * static_cast<double>(k);
     folder.write("velodyne/" + std::to_string(100 + k) + ".bin", scan_of(k, sense));
     poses += "1 0 0 " + std::to_string(kSpeed_mps * time_s) + " 0 1 0 0 0 0 1 0\n";
@@ -110,7 +110,7 @@ TEST(SweepCheck, TheMotionIsTakenOutOfScansAsMeasured) {
   const KittiSequence sequence = write_drive(folder, 1);
   const ScanBeams beams = recognize_beams(sequence, Executor(2));
   EXPECT_EQ(beams.description(), "HDL-64E blocks, rolling");
-  EXPECT_EQ(beams.raw_motions.size(), kScans);
+  EXPECT_EQ(beams.raw_motions.size(), kStreetScans);
   EXPECT_EQ(beams.unknown_sweep_m, 0);
   const PointCloud cloud = loaded(folder);
   EXPECT_LT(from_facades_m(cloud), 1e-3);

@@ -13,7 +13,7 @@ namespace {
 constexpr float kHeight_m = 1.7F;
 
 /// A drive along x, scans `step_m` apart, over a road that rises by `slope`.
-struct Drive {
+struct RoadDrive {
   PointCloud cloud;
   float step_m = 2, slope = 0;
   int scans = 12;
@@ -47,7 +47,7 @@ struct Drive {
 
 TEST(DrivenPath, WhatWasAheadIsFoundAndTheRoadStays) {
   for (const float slope : {0.0F, 0.12F}) {
-    Drive drive;
+    RoadDrive drive;
     drive.slope = slope;
     drive.add_road();
     const std::size_t road = drive.cloud.size();
@@ -63,7 +63,7 @@ TEST(DrivenPath, WhatWasAheadIsFoundAndTheRoadStays) {
 }
 
 TEST(DrivenPath, WhatStandsBesideOrAboveStays) {
-  Drive drive;
+  RoadDrive drive;
   drive.add_road();
   const std::size_t road = drive.cloud.size();
   for (int scan = 0; scan < drive.scans; ++scan) {
@@ -76,7 +76,7 @@ TEST(DrivenPath, WhatStandsBesideOrAboveStays) {
 }
 
 TEST(DrivenPath, NothingWithoutADriveOnTheGround) {
-  const auto with_trail = [](Drive drive) {
+  const auto with_trail = [](RoadDrive drive) {
     drive.add_road();
     const std::size_t road = drive.cloud.size();
     for (int scan = 0; scan < drive.scans; ++scan)
@@ -92,15 +92,15 @@ TEST(DrivenPath, NothingWithoutADriveOnTheGround) {
   auto [resting, rest_road] = with_trail({.step_m = 0.01F});
   EXPECT_EQ(resting.found(rest_road).first, 0U) << "a sensor at rest";
 
-  Drive flying = moving;
+  RoadDrive flying = moving;
   for (Vec3f& sensor : flying.cloud.sensor_positions) sensor.z += 20;
   EXPECT_EQ(flying.found(road).first, 0U) << "a drone above what it saw";
 
-  Drive guessed = moving;
+  RoadDrive guessed = moving;
   guessed.cloud.origin_kinds.assign(guessed.cloud.size(), OriginKind::guessed);
   EXPECT_EQ(guessed.found(road).first, 0U);
 
-  Drive scanless = moving;
+  RoadDrive scanless = moving;
   scanless.cloud.scan_indices.clear();
   EXPECT_EQ(scanless.found(road).first, 0U);
 }

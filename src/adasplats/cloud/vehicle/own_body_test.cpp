@@ -13,9 +13,9 @@
 namespace adasplats {
 namespace {
 
-constexpr float kHeight_m = 1.7F;
+constexpr float kSensorHeight_m = 1.7F;
 
-struct Drive {
+struct BodyDrive {
   PointCloud cloud;
   std::vector<bool> is_body;
 
@@ -28,17 +28,17 @@ struct Drive {
 
 /// Scans `step_m` apart of a plane, a wall to the left, and with `body` a bonnet in front of a
 /// sensor that turns with the road.
-Drive drive(int scans, float step_m, bool body) {
-  Drive drive;
+BodyDrive drive(int scans, float step_m, bool body) {
+  BodyDrive drive;
   for (int s = 0; s < scans; ++s) {
-    const Vec3f sensor = {static_cast<float>(s) * step_m, 0, kHeight_m};
+    const Vec3f sensor = {static_cast<float>(s) * step_m, 0, kSensorHeight_m};
     const double heading = 0.02 * s;
     for (int a = 0; a < 360; a += 2) {
       const double azimuth = a * std::numbers::pi / 180;
       const Vec3f across = {static_cast<float>(std::cos(azimuth)),
                             static_cast<float>(std::sin(azimuth)), 0};
       for (float range_m = 2.1F; range_m < 16; range_m += 0.2F) {
-        drive.add(sensor + across * range_m - Vec3f{0, 0, kHeight_m}, sensor);
+        drive.add(sensor + across * range_m - Vec3f{0, 0, kSensorHeight_m}, sensor);
       }
       if (across.y > 0.3F) drive.add(sensor + across * (3 / across.y) + Vec3f{0, 0, 0.5F}, sensor);
     }
@@ -57,7 +57,7 @@ std::size_t count(const std::vector<std::uint8_t>& flags) {
 }
 
 TEST(OwnBody, IsFoundAndNothingElse) {
-  const Drive with = drive(30, 0.8F, true);
+  const BodyDrive with = drive(30, 0.8F, true);
   const auto flags = find_own_body(with.cloud, {}, Executor(2));
   ASSERT_EQ(flags.size(), with.cloud.size());
   for (std::size_t i = 0; i < flags.size(); ++i) ASSERT_EQ(flags[i] != 0, with.is_body[i]) << i;
@@ -72,9 +72,9 @@ TEST(OwnBody, ASensorAtRestKeepsWhatStandsBesideIt) {
 }
 
 TEST(OwnBody, RoomsOfABuildingKeepTheirFloors) {
-  Drive rooms;
+  BodyDrive rooms;
   for (int room = 0; room < 9; ++room) {
-    const Vec3f station = {20.0F * static_cast<float>(room), 0, kHeight_m};
+    const Vec3f station = {20.0F * static_cast<float>(room), 0, kSensorHeight_m};
     for (int y = -30; y <= 30; ++y)
       for (int x = -30; x <= 30; ++x)
         rooms.add({station.x + 0.2F * static_cast<float>(x), 0.2F * static_cast<float>(y), 0},
@@ -84,7 +84,7 @@ TEST(OwnBody, RoomsOfABuildingKeepTheirFloors) {
 }
 
 TEST(OwnBody, AScannerOfProfilesKeepsTheRoad) {
-  Drive profiles;
+  BodyDrive profiles;
   for (int k = 0; k < 2000; ++k) {
     const Vec3f sensor = {0.02F * static_cast<float>(k), 0, 2.5F};
     for (int y = -80; y <= 80; ++y)
@@ -95,7 +95,7 @@ TEST(OwnBody, AScannerOfProfilesKeepsTheRoad) {
 
 TEST(OwnBody, AMapThatIsSeenFromNearbyAloneKeepsTheRoad) {
   // Each point from within 1.5 m along the road, as a mobile scanner with two profiles measures.
-  Drive map;
+  BodyDrive map;
   for (std::uint64_t k = 0; k < 200'000; ++k) {
     Random random(1, 0, k);
     const double along = random.uniform(0, 40), across = random.uniform(-9, 9);
@@ -110,7 +110,7 @@ TEST(OwnBody, AMapThatIsSeenFromNearbyAloneKeepsTheRoad) {
 }
 
 TEST(OwnBody, OnlyMeasuredOriginsTell) {
-  Drive guessed = drive(30, 0.8F, true);
+  BodyDrive guessed = drive(30, 0.8F, true);
   guessed.cloud.origin_kinds.assign(guessed.cloud.size(), OriginKind::guessed);
   EXPECT_TRUE(find_own_body(guessed.cloud, {}, Executor(2)).empty());
   guessed.cloud.origin_kinds.assign(guessed.cloud.size(), OriginKind::stated);
@@ -118,12 +118,12 @@ TEST(OwnBody, OnlyMeasuredOriginsTell) {
 }
 
 TEST(OwnBody, TheSameOnAnyNumberOfThreads) {
-  const Drive with = drive(40, 0.8F, true);
+  const BodyDrive with = drive(40, 0.8F, true);
   EXPECT_EQ(find_own_body(with.cloud, {}, Executor(1)), find_own_body(with.cloud, {}, Executor(3)));
 }
 
 TEST(OwnBody, AGivenRadiusTakesWhatIsNearer) {
-  Drive with = drive(3, 0.8F, true);
+  BodyDrive with = drive(3, 0.8F, true);
   EXPECT_EQ(count(points_within(with.cloud, 2, Executor(2))), 3U * 8);
   with.cloud.origin_kinds.assign(with.cloud.size(), OriginKind::guessed);
   EXPECT_EQ(count(points_within(with.cloud, 2, Executor(2))), 0U);

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+#include "adasplats/core/constants.h"
+
 namespace adasplats {
 namespace {
 
@@ -48,10 +50,9 @@ TEST(Vec3, Normalized) {
 
 TEST(Vec3, IsFinite) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr float kMax = std::numeric_limits<float>::max();
   EXPECT_TRUE(is_finite(Vec3f{kMax, -kMax, 0}));
-  for (const float bad : {kInf, -kInf, kNaN}) {
+  for (const float bad : {kInf, -kInf, static_cast<float>(kNaN)}) {
     EXPECT_FALSE(is_finite(Vec3f{bad, 0, 0}));
     EXPECT_FALSE(is_finite(Vec3f{0, bad, 0}));
     EXPECT_FALSE(is_finite(Vec3f{0, 0, bad}));

@@ -6,17 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Twelve beams, 0.2 m above the origin.
 LidarModel sensor() {
@@ -155,7 +152,7 @@ TEST(BeamGrid, DoublesAndStrangersAreCounted) {
   Made made = make_scan(kNineOfTen);
   made.scan.positions.push_back(made.scan.positions[7]);
   made.scan.positions.push_back({5, 5, 30});
-  made.scan.positions.push_back({kNan, 0, 0});
+  made.scan.positions.push_back({kNaN, 0, 0});
   made.scan.positions.push_back({0, 0, 0});
   made.scan.intensities.clear();
   const BeamGrid grid = find_beam_grid(made.scan, sensor());

@@ -7,17 +7,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
-#include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Oracles: the definition by hand; 4.5 / sqrt(4.5 * 5) for the ties.
 TEST(RankCorrelation, KnownValues) {
@@ -229,7 +225,7 @@ TEST_F(MeasuredGround, IntensitiesArePredicted) {
   EXPECT_LT(intensity_accuracy(with, sequence, indices, executor, progress).rank_correlation, 0.98);
   with.attributes.intensities = {};
   EXPECT_THROW(intensity_accuracy(with, sequence, indices, executor, progress), Error);
-  const std::vector<float> unknown(disks.size(), kNan);
+  const std::vector<float> unknown(disks.size(), kNaN);
   with.attributes.intensities = unknown;
   EXPECT_THROW(intensity_accuracy(with, sequence, indices, executor, progress), Error);
 }

@@ -11,12 +11,12 @@
 namespace adasplats {
 namespace {
 
-constexpr std::uint32_t kRows = 9, kColumns = 11;
+constexpr std::uint32_t kRows = 9, kImageColumns = 11;
 
 /// Whole numbers without order.
 std::vector<float> pattern(int factor, int modulus) {
   std::vector<float> image;
-  for (int i = 0; i < static_cast<int>(kRows * kColumns); ++i)
+  for (int i = 0; i < static_cast<int>(kRows * kImageColumns); ++i)
     image.push_back(static_cast<float>(i * factor % modulus));
   return image;
 }
@@ -39,7 +39,7 @@ double window_similarity(const std::vector<double>& a, const std::vector<double>
 // Oracle: brute force by the definitions.
 TEST(ImageError, AgreesWithTheDefinitions) {
   std::vector<float> predicted = pattern(37, 101), truth = pattern(53, 89);
-  const ImageError error = image_error(predicted, truth, kColumns, 80);
+  const ImageError error = image_error(predicted, truth, kImageColumns, 80);
   std::vector<double> a(predicted.begin(), predicted.end()), b(truth.begin(), truth.end());
   for (std::vector<double>* image : {&a, &b})
     for (double& value : *image) value = std::clamp(value, 1e-6, 80.0);
@@ -60,8 +60,8 @@ TEST(ImageError, AgreesWithTheDefinitions) {
     for (std::size_t column = 0; column <= 4; ++column) {
       std::vector<double> x, y;
       for (std::size_t i = 0; i < 49; ++i) {
-        x.push_back(a[(row + i / 7) * kColumns + column + i % 7]);
-        y.push_back(b[(row + i / 7) * kColumns + column + i % 7]);
+        x.push_back(a[(row + i / 7) * kImageColumns + column + i % 7]);
+        y.push_back(b[(row + i / 7) * kImageColumns + column + i % 7]);
       }
       sum += window_similarity(x, y, range);
     }
@@ -71,7 +71,7 @@ TEST(ImageError, AgreesWithTheDefinitions) {
 
 TEST(ImageError, EqualImages) {
   const std::vector<float> image = pattern(37, 79);
-  const ImageError error = image_error(image, image, kColumns, 80);
+  const ImageError error = image_error(image, image, kImageColumns, 80);
   EXPECT_EQ(error.rmse, 0);
   EXPECT_EQ(error.medae, 0);
   EXPECT_NEAR(error.ssim, 1, 1e-12);
@@ -84,7 +84,7 @@ TEST(ImageError, AConstantDifference) {
   for (float& value : truth) value = value / 100 + 0.1F;
   std::vector<float> predicted = truth;
   for (float& value : predicted) value += 0.0625F;
-  const ImageError error = image_error(predicted, truth, kColumns, 1);
+  const ImageError error = image_error(predicted, truth, kImageColumns, 1);
   EXPECT_NEAR(error.rmse, 0.0625, 1e-6);
   EXPECT_NEAR(error.medae, 0.0625, 1e-6);
   EXPECT_NEAR(error.psnr_db, 20 * std::log10(16.0), 1e-4);

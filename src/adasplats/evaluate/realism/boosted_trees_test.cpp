@@ -13,7 +13,7 @@
 namespace adasplats {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 /// Five normal features; of positive samples the third is higher by `shift`.
 SampleTable shifted(std::uint64_t seed, std::size_t count, double shift) {
@@ -68,10 +68,10 @@ TEST(BoostedTrees, KnowThatAFeatureIsMissing) {
   for (std::size_t i = 0; i < 400; ++i) {
     const bool positive = i % 2 == 0;
     table.positive.push_back(positive ? 1 : 0);
-    table.values.push_back(positive && i % 4 == 0 ? kNan : static_cast<float>(i % 7));
+    table.values.push_back(positive && i % 4 == 0 ? kMissing : static_cast<float>(i % 7));
   }
   const BoostedTrees trees(table, {});
-  const float nothing[] = {kNan}, something[] = {3};
+  const float nothing[] = {kMissing}, something[] = {3};
   EXPECT_GT(trees.score(nothing), 2.0);    // all of these are positive
   EXPECT_LT(trees.score(something), 0.0);  // a third of these
 }

@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kRings = 8;  // one row of patches suffices
+constexpr std::size_t kPatchRings = 8;  // one row of patches suffices
 
 /// Scans with walls around 10 m away that change along the drive, with noise and missing beams.
 std::vector<RealismScan> drawn_scans(std::uint64_t seed, std::size_t count, double sigma_m,
@@ -23,7 +23,7 @@ std::vector<RealismScan> drawn_scans(std::uint64_t seed, std::size_t count, doub
   for (std::size_t s = 0; s < count; ++s) {
     KittiScan points = test::drawn_points(
         [&](std::size_t ring, std::size_t column) -> std::optional<test::DrawnReturn> {
-          if (ring >= kRings) return {};
+          if (ring >= kPatchRings) return {};
           Random random = test::of_beam(seed * 1000 + s, ring, column);
           if (random.uniform() < 0.1) return {};
           const double wall_m = 10 + std::sin(0.3 * static_cast<double>(s + column / 64));

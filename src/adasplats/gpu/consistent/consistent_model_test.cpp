@@ -49,7 +49,7 @@ constexpr std::size_t kBytesOf<LocalPlane> = offsetof(LocalPlane, scale) + 1;
 
 /// Number of values that differ in any bit, including surplus values of either side.
 template <class T>
-std::size_t count_different(const std::vector<T>& a, const std::vector<T>& b) {
+std::size_t count_different_unpadded(const std::vector<T>& a, const std::vector<T>& b) {
   const std::size_t common = std::min(a.size(), b.size());
   std::size_t different = std::max(a.size(), b.size()) - common;
   for (std::size_t i = 0; i < common; ++i) {
@@ -59,26 +59,26 @@ std::size_t count_different(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 void expect_same(const ConsistentState& a, const ConsistentState& b) {
-  EXPECT_EQ(count_different(a.fused.positions, b.fused.positions), 0U) << "cells";
-  EXPECT_EQ(count_different(a.fused.begins, b.fused.begins), 0U) << "where cells begin";
-  EXPECT_EQ(count_different(a.fused.members, b.fused.members), 0U) << "points of cells";
-  EXPECT_EQ(count_different(a.planes, b.planes), 0U) << "planes";
-  EXPECT_EQ(count_different(a.seeds, b.seeds), 0U) << "seeds";
-  EXPECT_EQ(count_different(a.rays, b.rays), 0U) << "rays";
-  EXPECT_EQ(count_different(a.radii_m, b.radii_m), 0U) << "radii";
-  EXPECT_EQ(count_different(a.chosen, b.chosen), 0U) << "chosen disks";
+  EXPECT_EQ(count_different_unpadded(a.fused.positions, b.fused.positions), 0U) << "cells";
+  EXPECT_EQ(count_different_unpadded(a.fused.begins, b.fused.begins), 0U) << "where cells begin";
+  EXPECT_EQ(count_different_unpadded(a.fused.members, b.fused.members), 0U) << "points of cells";
+  EXPECT_EQ(count_different_unpadded(a.planes, b.planes), 0U) << "planes";
+  EXPECT_EQ(count_different_unpadded(a.seeds, b.seeds), 0U) << "seeds";
+  EXPECT_EQ(count_different_unpadded(a.rays, b.rays), 0U) << "rays";
+  EXPECT_EQ(count_different_unpadded(a.radii_m, b.radii_m), 0U) << "radii";
+  EXPECT_EQ(count_different_unpadded(a.chosen, b.chosen), 0U) << "chosen disks";
 }
 
 void expect_same(const ConsistentSplats& a, const ConsistentSplats& b) {
-  EXPECT_EQ(count_different(a.disks, b.disks), 0U);
-  EXPECT_EQ(count_different(a.classes, b.classes), 0U);
-  EXPECT_EQ(count_different(a.intensities, b.intensities), 0U);
+  EXPECT_EQ(count_different_unpadded(a.disks, b.disks), 0U);
+  EXPECT_EQ(count_different_unpadded(a.classes, b.classes), 0U);
+  EXPECT_EQ(count_different_unpadded(a.intensities, b.intensities), 0U);
 }
 
 void expect_same(const Reflectances& a, const Reflectances& b) {
-  EXPECT_EQ(count_different(a.values, b.values), 0U) << "reflectances";
-  EXPECT_EQ(count_different(a.response.range_gains, b.response.range_gains), 0U);
-  EXPECT_EQ(count_different(a.response.incidence_gains, b.response.incidence_gains), 0U);
+  EXPECT_EQ(count_different_unpadded(a.values, b.values), 0U) << "reflectances";
+  EXPECT_EQ(count_different_unpadded(a.response.range_gains, b.response.range_gains), 0U);
+  EXPECT_EQ(count_different_unpadded(a.response.incidence_gains, b.response.incidence_gains), 0U);
   EXPECT_EQ(a.response.empty(), b.response.empty());
 }
 
@@ -104,8 +104,8 @@ class SideBySide {
       return dynamic_cast<const ShowsConsistentState&>(*steps).evidence(seeds, options.evidence);
     };
     const RayEvidence cpu = of(cpu_), gpu = of(gpu_);
-    EXPECT_EQ(count_different(cpu.confirmed, gpu.confirmed), 0U);
-    EXPECT_EQ(count_different(cpu.contradicted, gpu.contradicted), 0U);
+    EXPECT_EQ(count_different_unpadded(cpu.confirmed, gpu.confirmed), 0U);
+    EXPECT_EQ(count_different_unpadded(cpu.contradicted, gpu.contradicted), 0U);
   }
 
   /// Returns the number of processed seeds.

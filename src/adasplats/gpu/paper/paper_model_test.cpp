@@ -28,6 +28,7 @@
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/scanned_room_test.h"
 #include "adasplats/splats/model/canonical_order.h"
+#include "adasplats/splats/model/same_bytes_test.h"
 #include "adasplats/splats/model_engine.h"
 #include "adasplats/splats/paper/select.h"
 
@@ -360,12 +361,6 @@ std::pair<SplatModel, BuildReport> build(const PointCloud& cloud, const PaperOpt
   const auto engine = on_gpu ? make_cuda_model_engine(0) : nullptr;
   return build_model(cloud, &semantickitti_labels(), {options, DynamicRemoval::moving}, executor,
                      quiet, engine.get());
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  if (a.size() != b.size()) return false;
-  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 /// All bits of the splats and of their report must agree.

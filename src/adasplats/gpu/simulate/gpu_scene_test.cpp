@@ -21,7 +21,7 @@ namespace {
 
 constexpr Vec3d kOrigin = {1000, 2000, 30};
 
-Vec3f random_unit(Random& random) {
+Vec3f random_direction(Random& random) {
   const Vec3d v = {random.normal(), random.normal(), random.normal()};
   return vec_cast<float>(normalized(v));
 }
@@ -30,10 +30,10 @@ std::vector<Disk> room_of_disks(std::uint64_t count) {
   std::vector<Disk> disks;
   for (std::uint64_t i = 0; i < count; ++i) {
     Random random(11, 0, i);
-    const Vec3f outward = random_unit(random);
+    const Vec3f outward = random_direction(random);
     const auto distance = static_cast<float>(random.uniform(3, 20));
-    disks.push_back(
-        {distance * outward, static_cast<float>(random.uniform(0.05, 0.4)), random_unit(random)});
+    disks.push_back({distance * outward, static_cast<float>(random.uniform(0.05, 0.4)),
+                     random_direction(random)});
   }
   return disks;
 }
@@ -192,7 +192,7 @@ TEST_P(OnGpu, RaysOfTheCaller) {
   std::vector<Ray> rays;
   for (std::uint64_t i = 0; i < 3001; ++i) {
     Random random(3, 1, i);
-    rays.push_back({0.1F * random_unit(random), 0.2F, random_unit(random), 30});
+    rays.push_back({0.1F * random_direction(random), 0.2F, random_direction(random), 30});
   }
   std::vector<Hit> hits(rays.size()), wanted(rays.size());
   scene_->tracer().nearest(rays, hits, executor_);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/optix/optix_library.h"
@@ -22,7 +23,6 @@
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 enum class Backend { brute_force, embree, cuda, optix };
@@ -252,7 +252,7 @@ std::vector<Hit> first_hits(std::span<const Hit> hits, std::size_t stride, std::
   return first;
 }
 
-std::size_t count_different(std::span<const Hit> found, std::span<const Hit> expected) {
+std::size_t count_different_hits(std::span<const Hit> found, std::span<const Hit> expected) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < found.size(); ++i) different += found[i] == expected[i] ? 0 : 1;
   return different;
@@ -267,7 +267,7 @@ void expect_equal_hits(std::span<const Hit> found, std::span<const Hit> expected
     ADD_FAILURE() << "hit " << i << ": t " << found[i].t << " of " << found[i].primitive
                   << ", expected t " << expected[i].t << " of " << expected[i].primitive;
   }
-  EXPECT_EQ(count_different(found, expected), 0U);
+  EXPECT_EQ(count_different_hits(found, expected), 0U);
 }
 
 std::size_t count_valid(std::span<const Hit> hits) {
@@ -353,7 +353,7 @@ TEST_P(ComparedScene, AMillionRaysMatchEmbree) {
   const auto rays = awkward_rays(layout, scene, 1'000'000);
   const auto expected = make_caster(scene, Backend::embree)->cast(rays, 1);
   const auto found = cast(scene, rays);
-  const std::size_t different = count_different(found, expected);
+  const std::size_t different = count_different_hits(found, expected);
   RecordProperty("rays", static_cast<int>(rays.size()));
   RecordProperty("rays_that_differ", static_cast<int>(different));
   std::cout << name_of(GetParam()) << ": " << different << " of " << rays.size()
@@ -420,7 +420,7 @@ TEST_P(DeviceScene, NonFiniteRaysHitNothing) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}};
   const Ray good = {{0, 0, 0}, 0, {1, 0, 0}};
   std::vector<Ray> rays;
-  for (const float bad : {kNaN, kInfinity, -kInfinity, 2e18F}) {
+  for (const float bad : {static_cast<float>(kNaN), kInfinity, -kInfinity, 2e18F}) {
     for (int axis = 0; axis < 3; ++axis) {
       rays.push_back(good);
       rays.back().origin[axis] = bad;

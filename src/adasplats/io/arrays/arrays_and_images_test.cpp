@@ -10,16 +10,14 @@
 #include "adasplats/io/arrays/npy.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {
 
 using io_test::bytes_of;
-using io_test::expect_error;
 using io_test::put;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 // The oracle: the bytes that numpy/lib/format.py (format version 1.0) describes, written by hand.
@@ -127,7 +125,7 @@ TEST(KittiBin, FourFloatsAPoint) {
   for (int k = 0; k < 40000; ++k)
     for (const float part : {0.0F, 0.25F, 0.5F, 0.75F})
       content += bytes_of(static_cast<float>(k) + part);
-  const Table table = read_kitti_bin(folder.file("000000.bin", content));
+  const Table table = read_kitti_bin(folder.write("000000.bin", content));
   ASSERT_EQ(table.rows, 40000U);
   for (std::size_t column = 0; column < 4; ++column) {
     const auto& values = std::get<std::vector<float>>(table.columns[column].values);
@@ -140,8 +138,8 @@ TEST(KittiBin, FourFloatsAPoint) {
 TEST(KittiBin, PartOfAPointIsAnError) {
   const TemporaryFolder folder;
   expect_error(ErrorKind::data, {"byte 17", "found 1 bytes"},
-               [&] { read_kitti_bin(folder.file("a.bin", std::string(17, 'x'))); });
-  expect_error(ErrorKind::data, {"empty"}, [&] { read_kitti_bin(folder.file("b.bin", "")); });
+               [&] { read_kitti_bin(folder.write("a.bin", std::string(17, 'x'))); });
+  expect_error(ErrorKind::data, {"empty"}, [&] { read_kitti_bin(folder.write("b.bin", "")); });
   expect_error(ErrorKind::no_input, {}, [&] { read_kitti_bin(folder.path() / "c.bin"); });
 }
 
@@ -159,16 +157,16 @@ std::string circle(int points, int floats) {
 
 TEST(KittiBin, FiveFloatsAPointAreReadByName) {
   const TemporaryFolder folder;
-  const Table table = read_points(folder.file("n__LIDAR_TOP__1.pcd.bin", circle(50, 5)));
+  const Table table = read_points(folder.write("n__LIDAR_TOP__1.pcd.bin", circle(50, 5)));
   ASSERT_EQ(table.rows, 50U);
   EXPECT_EQ(table.columns[4].name, "ring");
   EXPECT_EQ(table.columns[4].as_double(33), 1.0);
   EXPECT_EQ(table.columns[3].as_double(33), 45.0);
   EXPECT_EQ(table.columns[0].as_double(0), 9.5);
   expect_error(ErrorKind::data, {"a.pcd.bin", "20 bytes a point", "found 16 bytes"},
-               [&] { read_points(folder.file("a.pcd.bin", circle(51, 4))); });
+               [&] { read_points(folder.write("a.pcd.bin", circle(51, 4))); });
   expect_error(ErrorKind::data, {"a.pcd.bin", "not a ring"},
-               [&] { read_points(folder.file("a.pcd.bin", circle(50, 4))); });
+               [&] { read_points(folder.write("a.pcd.bin", circle(50, 4))); });
 }
 
 TEST(KittiBin, FiveFloatsAreNotTakenForFour) {
@@ -176,9 +174,9 @@ TEST(KittiBin, FiveFloatsAreNotTakenForFour) {
   // 80 bytes divide 400: both sizes fit, the values do not. 51 x 20 is no multiple of 16.
   for (const int points : {20, 40, 51, 500})
     expect_error(ErrorKind::data, {"b.bin", "nuScenes", "*.pcd.bin"},
-                 [&] { read_points(folder.file("b.bin", circle(points, 5))); });
+                 [&] { read_points(folder.write("b.bin", circle(points, 5))); });
   for (const int points : {20, 40, 51, 500})
-    EXPECT_EQ(read_points(folder.file("b.bin", circle(points, 4))).rows,
+    EXPECT_EQ(read_points(folder.write("b.bin", circle(points, 4))).rows,
               static_cast<std::size_t>(points));
 }
 
@@ -188,7 +186,7 @@ TEST(KittiBin, FiveFloatsInASequenceMustBeConverted) {
   for (const char* name : {"b.bin", "b.pcd.bin"})
     for (const int points : {20, 51})
       expect_error(ErrorKind::data, {name, "nuScenes", "remove the ring"},
-                   [&] { read_kitti_bin(folder.file(name, circle(points, 5))); });
+                   [&] { read_kitti_bin(folder.write(name, circle(points, 5))); });
 }
 
 TEST(KittiBin, IntensitiesThatAreNotFiniteAreUnknown) {
@@ -196,24 +194,24 @@ TEST(KittiBin, IntensitiesThatAreNotFiniteAreUnknown) {
   for (const float value : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
     std::string content = circle(3, 4);
     put(content, 12, value);
-    EXPECT_EQ(read_kitti_bin(folder.file("a.bin", content)).rows, 3U);
+    EXPECT_EQ(read_kitti_bin(folder.write("a.bin", content)).rows, 3U);
     std::string five = circle(3, 5);
     put(five, 12, value);
-    EXPECT_EQ(read_points(folder.file("a.pcd.bin", five)).rows, 3U);
+    EXPECT_EQ(read_points(folder.write("a.pcd.bin", five)).rows, 3U);
   }
 }
 
 TEST(KittiBin, OtherFilesAreNotTakenForScans) {
   const TemporaryFolder folder;
   expect_error(ErrorKind::data, {"c.bin", "CloudCompare"},
-               [&] { read_points(folder.file("c.bin", "CCB2" + std::string(60, '\0'))); });
+               [&] { read_points(folder.write("c.bin", "CCB2" + std::string(60, '\0'))); });
   // Three floats a point: the fourth is the next one's x.
   std::string three;
   for (int k = 0; k < 16; ++k)
     for (const double value : {9.5 * std::cos(0.5 * k), 9.5 * std::sin(0.5 * k), -1.7})
       three += bytes_of(static_cast<float>(value));
   expect_error(ErrorKind::data, {"d.bin", "point 2", "-1.7", "0 to 65535", "not a KITTI scan"},
-               [&] { read_points(folder.file("d.bin", three)); });
+               [&] { read_points(folder.write("d.bin", three)); });
 }
 
 // Oracle: the layout that was written. All values are possible coordinates and intensities.
@@ -233,7 +231,7 @@ TEST(KittiBin, OtherWidthsAreErrors) {
       for (int i = 0; i < width; ++i)
         content += bytes_of(static_cast<float>(values[static_cast<std::size_t>(i)]));
     }
-    const auto file = folder.file("w.bin", content);
+    const auto file = folder.write("w.bin", content);
     if (width == 4)
       EXPECT_EQ(read_points(file).rows, 420U);
     else
@@ -255,9 +253,9 @@ TEST(KittiBin, SixFloatsOfPointsInNoOrder) {
       six += bytes_of(static_cast<float>(100 + grey + random * 11 % 89));
     four += bytes_of(static_cast<float>(100 + random * 11 % 89));
   }
-  EXPECT_EQ(read_points(folder.file("four.bin", four)).rows, 100U);
+  EXPECT_EQ(read_points(folder.write("four.bin", four)).rows, 100U);
   expect_error(ErrorKind::data, {"six.bin", "6 floats a point"},
-               [&] { read_points(folder.file("six.bin", six)); });
+               [&] { read_points(folder.write("six.bin", six)); });
 }
 
 // The layout of NCLT: 2 bytes each for x, y and z, 1 each for intensity and laser.
@@ -271,7 +269,7 @@ TEST(KittiBin, IntegersAreNotFloats) {
     content += bytes_of(static_cast<std::uint8_t>(k % 32));
   }
   expect_error(ErrorKind::data, {"n.bin", "not a KITTI scan", "8 bytes a point", "NCLT"},
-               [&] { read_points(folder.file("n.bin", content)); });
+               [&] { read_points(folder.write("n.bin", content)); });
 }
 
 }  // namespace

@@ -7,12 +7,10 @@
 #include <array>
 
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::TemporaryFolder;
 
 std::uint32_t number_at(const std::string& bytes, std::size_t offset, int count) {
   std::uint32_t value = 0;
@@ -99,8 +97,8 @@ TEST(Npz, NoArraysAndBadNames) {
 TEST(Npz, TooLargeForZip) {
   const TemporaryFolder folder;
   const NamedArray huge[] = {{"a", {ColumnType::u8, {std::size_t{1} << 32}, nullptr}}};
-  io_test::expect_error(ErrorKind::data, {"a.npz", "4 GiB"},
-                        [&] { write_npz(folder.path() / "a.npz", huge); });
+  expect_error(ErrorKind::data, {"a.npz", "4 GiB"},
+               [&] { write_npz(folder.path() / "a.npz", huge); });
   EXPECT_EQ(folder.file_count(), 0U);
 }
 

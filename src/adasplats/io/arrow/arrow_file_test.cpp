@@ -18,7 +18,6 @@ using arrow_test::ArrowColumn;
 using arrow_test::halves;
 using arrow_test::numbers;
 using arrow_test::texts;
-using io_test::expect_error;
 using io_test::values_of;
 
 ArrowTable table_of(const std::string& bytes) { return arrow_table_of("a.feather", bytes); }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "adasplats/io/base/base64.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats::bags_test {
 

@@ -19,8 +19,6 @@ using bags_test::mcap_of;
 using bags_test::mcap_records;
 using bags_test::PackedZeros;
 using bags_test::Said;
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 
 const std::vector<Said> kSaid = {{"/a", "pkg/msg/One", 5, "first"},
                                  {"/b", "pkg/msg/Two", 7, std::string(3000, 'x')},
@@ -55,15 +53,15 @@ void expect_messages(const std::filesystem::path& path, const std::vector<Said>&
 // Oracle: files put together by the letter of the specification.
 TEST(McapRecording, ChunksAndLooseRecordsGiveTheirMessages) {
   const TemporaryFolder folder;
-  expect_messages(folder.file("chunk.mcap", mcap_of(kSaid)));
+  expect_messages(folder.write("chunk.mcap", mcap_of(kSaid)));
   std::vector<std::string> topics;
-  expect_messages(folder.file("loose.mcap", mcap_file(mcap_records(kSaid, topics))));
+  expect_messages(folder.write("loose.mcap", mcap_file(mcap_records(kSaid, topics))));
   topics.clear();
   const std::string first = mcap_records({kSaid[0]}, topics);
   const std::string rest = mcap_records({kSaid[1], kSaid[2]}, topics);
-  expect_messages(folder.file("two.mcap", mcap_file(mcap_chunk("", first, first.size()) +
-                                                    mcap_chunk("", rest, rest.size()))));
-  EXPECT_TRUE(contents_of(folder.file("none.mcap", mcap_file(""))).empty());
+  expect_messages(folder.write("two.mcap", mcap_file(mcap_chunk("", first, first.size()) +
+                                                     mcap_chunk("", rest, rest.size()))));
+  EXPECT_TRUE(contents_of(folder.write("none.mcap", mcap_file(""))).empty());
 }
 
 // Oracle: the writer, whose files are tested against the specification (io/mcap).
@@ -87,7 +85,7 @@ TEST(McapRecording, DamageIsAnError) {
   const TemporaryFolder folder;
   const std::string whole = mcap_of(kSaid);
   const auto read = [&](const std::string& content) {
-    const auto path = folder.file("a.mcap", content);
+    const auto path = folder.write("a.mcap", content);
     return [path] { contents_of(path); };
   };
   expect_error(ErrorKind::data, {"a.mcap", "first bytes"}, read("no recording at all"));
@@ -111,18 +109,18 @@ TEST(McapRecording, DamageIsAnError) {
 // Oracle: bags put together by the letter of the specification.
 TEST(RosbagRecording, ChunksAndLooseRecordsGiveTheirMessages) {
   const TemporaryFolder folder;
-  expect_messages(folder.file("chunk.bag", bags_test::bag_of(kSaid)));
+  expect_messages(folder.write("chunk.bag", bags_test::bag_of(kSaid)));
   std::vector<std::string> topics;
   expect_messages(
-      folder.file("loose.bag", bags_test::bag_file(bags_test::bag_records(kSaid, topics))));
-  EXPECT_TRUE(contents_of(folder.file("none.bag", bags_test::bag_file(""))).empty());
+      folder.write("loose.bag", bags_test::bag_file(bags_test::bag_records(kSaid, topics))));
+  EXPECT_TRUE(contents_of(folder.write("none.bag", bags_test::bag_file(""))).empty());
 }
 
 TEST(RosbagRecording, DamageIsAnError) {
   const TemporaryFolder folder;
   const std::string whole = bags_test::bag_of(kSaid);
   const auto read = [&](const std::string& content) {
-    const auto path = folder.file("a.bag", content);
+    const auto path = folder.write("a.bag", content);
     return [path] { contents_of(path); };
   };
   expect_error(ErrorKind::data, {"a.bag", "2.0"}, read("#ROSBAG V1.2\n"));
@@ -164,8 +162,8 @@ const std::vector<Said> kMessagesInDb3 = {{"/a", "pkg/msg/One", 5, "first"},
 TEST(SqliteRecording, GivesItsMessages) {
   const TemporaryFolder folder;
   with_sqlite(
-      [&] { expect_messages(folder.file("a.db3", bags_test::small_db3()), kMessagesInDb3); });
-  const std::filesystem::path text = folder.file("b.db3", "this is no database, but some text");
+      [&] { expect_messages(folder.write("a.db3", bags_test::small_db3()), kMessagesInDb3); });
+  const std::filesystem::path text = folder.write("b.db3", "this is no database, but some text");
   const Error error = io_test::error_of([&] { contents_of(text); });
   EXPECT_TRUE(error.kind() == ErrorKind::data || error.kind() == ErrorKind::unavailable);
   EXPECT_NE(std::string(error.what()).find("b.db3"), std::string::npos) << error.what();
@@ -231,19 +229,19 @@ TEST(Ros2Bag, CompressedFilesLeaveNothingBehind) {
   ASSERT_EQ(setenv("TMPDIR", unpacked.path().c_str(), 1), 0);
   const std::string plain = mcap_of(kSaid);
   with_zstd([&] {
-    const auto path = folder.file("drive.mcap.zstd", zstd_frame(plain));
+    const auto path = folder.write("drive.mcap.zstd", zstd_frame(plain));
     EXPECT_TRUE(is_recording(path));
     expect_messages(path);
     // Consecutive frames.
-    expect_messages(folder.file("parts.MCAP.zst",
-                                zstd_frame(plain.substr(0, 100)) + zstd_frame(plain.substr(100))));
+    expect_messages(folder.write("parts.MCAP.zst",
+                                 zstd_frame(plain.substr(0, 100)) + zstd_frame(plain.substr(100))));
     io_test::write_bytes(folder.path() / "metadata.yaml",
                          "rosbag2_bagfile_information:\n  version: 4\n  relative_file_paths:\n"
                          "    - drive.mcap.zstd\n  compression_format: zstd\n"
                          "  compression_mode: FILE\n");
     expect_messages(folder.path());
     const auto refused = [&](const std::string& bytes, std::vector<std::string> words) {
-      const auto broken = folder.file("broken.mcap.zstd", bytes);
+      const auto broken = folder.write("broken.mcap.zstd", bytes);
       words.push_back(broken.string());
       expect_error(ErrorKind::data, words, [&] { contents_of(broken); });
     };
@@ -274,13 +272,13 @@ TEST(Ros2Bag, MessagesCompressedOneByOne) {
   };
   describe("zstd");
   with_zstd([&] {
-    folder.file("drive.mcap", mcap_of(packed));
+    folder.write("drive.mcap", mcap_of(packed));
     expect_messages(folder.path());
     packed[1].bytes.pop_back();
-    folder.file("drive.mcap", mcap_of(packed));
+    folder.write("drive.mcap", mcap_of(packed));
     expect_error(ErrorKind::data, {"drive.mcap", "/b", "end early"},
                  [&] { contents_of(folder.path()); });
-    folder.file("drive.mcap", mcap_of(kSaid));
+    folder.write("drive.mcap", mcap_of(kSaid));
     expect_error(ErrorKind::data, {"drive.mcap", "/a", "damaged"},
                  [&] { contents_of(folder.path()); });
     describe("lz4");
@@ -307,7 +305,7 @@ TEST(Recording, BrokenFilesAreErrors) {
   std::size_t read = 0, refused = 0;
   for (int round = 0; round < 400; ++round) {
     for (const auto& [name, content] : seeds) {
-      const auto path = folder.file(name, mutator.mutate(content, seeds[0].second));
+      const auto path = folder.write(name, mutator.mutate(content, seeds[0].second));
       try {
         contents_of(path);
         ++read;

@@ -17,7 +17,6 @@ namespace {
 using bags_test::bytes_of;
 using bags_test::cloud_message;
 using bags_test::CloudWords;
-using io_test::expect_error;
 using io_test::values_of;
 
 /// Two rows of two points with room between everything, and every type once.

@@ -15,12 +15,10 @@
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::TemporaryFolder;
 
 void execute(sqlite3* database, const std::string& text) {
   char* problem = nullptr;
@@ -120,13 +118,13 @@ std::string with_large_record(std::string bytes, std::size_t page, std::size_t h
 }
 
 void expect_refused(const TemporaryFolder& folder, const std::string& bytes, std::size_t page) {
-  const std::filesystem::path path = folder.file("b.db3", bytes);
+  const std::filesystem::path path = folder.write("b.db3", bytes);
   sqlite3_memory_highwater(1);
   const auto before = sqlite3_memory_used();
-  io_test::expect_error(ErrorKind::data,
-                        {"b.db3: byte " + std::to_string(page) + ":", "a record of 4294967295",
-                         "in a file of " + std::to_string(bytes.size())},
-                        [&] { read_bag(path); });
+  expect_error(ErrorKind::data,
+               {"b.db3: byte " + std::to_string(page) + ":", "a record of 4294967295",
+                "in a file of " + std::to_string(bytes.size())},
+               [&] { read_bag(path); });
   // The pages that it holds are a few MB at most.
   EXPECT_LT(sqlite3_memory_highwater(0) - before, 8'000'000);
 }
@@ -159,8 +157,8 @@ TEST(SqliteDatabase, RecordsAtTheEndOfAPageAreRejected) {
   for (const auto& [size, said] : {std::pair("\xff\xff", "a record with a truncated size"),
                                    std::pair("\xff\x7f", "a record of 16383 bytes")}) {
     bytes.replace(kTopics + kPage - 2, 2, size);
-    io_test::expect_error(ErrorKind::data, {"byte 512:", said},
-                          [&] { read_bag(folder.file("a.db3", bytes)); });
+    expect_error(ErrorKind::data, {"byte 512:", said},
+                 [&] { read_bag(folder.write("a.db3", bytes)); });
   }
 }
 
@@ -170,8 +168,8 @@ TEST(SqliteDatabase, SizesOfMoreThan32BitsAreRejected) {
   std::string bytes = bags_test::small_db3();
   constexpr std::size_t kTopics = 512, kCell = 0x1d2;
   bytes.replace(kTopics + kCell, 6, std::string("\xfe\xff\xff\x9d\xdb\0", 6));
-  io_test::expect_error(ErrorKind::data, {"byte 512:", "a record of 4363685162368 bytes"},
-                        [&] { read_bag(folder.file("a.db3", bytes)); });
+  expect_error(ErrorKind::data, {"byte 512:", "a record of 4363685162368 bytes"},
+               [&] { read_bag(folder.write("a.db3", bytes)); });
 }
 
 }  // namespace

@@ -13,14 +13,11 @@
 #include <vector>
 
 #include "adasplats/io/arrays/npy.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 
 TEST(AtomicFile, RoundTripOfEmptySmallAndLarge) {
   const TemporaryFolder folder;
@@ -48,7 +45,7 @@ TEST(AtomicFile, ManySmallWritesAreTheirConcatenation) {
 
 TEST(AtomicFile, OldFileIsThereUntilCommitAndStaysWithoutIt) {
   const TemporaryFolder folder;
-  const std::filesystem::path path = folder.file("file", "old");
+  const std::filesystem::path path = folder.write("file", "old");
   {
     AtomicFile file(path);
     file.write("new");
@@ -76,7 +73,7 @@ TEST(AtomicFile, TwoWritersOfOneFileDoNotMix) {
 
 TEST(AtomicFile, FollowsALinkAndKeepsIt) {
   const TemporaryFolder folder;
-  const std::filesystem::path target = folder.file("target", "old");
+  const std::filesystem::path target = folder.write("target", "old");
   const std::filesystem::path link = folder.path() / "link";
   std::filesystem::create_symlink(target, link);
   write_file(link, "new");
@@ -145,7 +142,7 @@ void expect_old_file_survives(F&& write) {
   const std::filesystem::path path = folder.path() / "file";
   write(path);
   const std::uintmax_t size = std::filesystem::file_size(path);
-  folder.file("file", "old content");
+  folder.write("file", "old content");
   std::vector<rlim_t> limits = {0, 1, static_cast<rlim_t>(size - 1)};
   for (std::uintmax_t limit = 9973; limit < size; limit += 9973) limits.push_back(limit);
   for (const rlim_t limit : limits) {

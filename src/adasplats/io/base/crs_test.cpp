@@ -4,12 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::expect_error;
 
 const std::string kDatum =
     R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
@@ -41,12 +41,12 @@ TEST(Sha256, PiecesDoNotMatter) {
 }
 
 TEST(Sha256, OfFiles) {
-  const io_test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::string content(600000, 'y');
-  EXPECT_EQ(sha256_of_file(folder.file("a", content)), digest_of(content, content.size()));
-  EXPECT_EQ(sha256_of_file(folder.file("b", "")), digest_of("", 1));
-  io_test::expect_error(ErrorKind::no_input, {"missing"},
-                        [&] { sha256_of_file(folder.path() / "missing"); });
+  EXPECT_EQ(sha256_of_file(folder.write("a", content)), digest_of(content, content.size()));
+  EXPECT_EQ(sha256_of_file(folder.write("b", "")), digest_of("", 1));
+  expect_error(ErrorKind::no_input, {"missing"},
+               [&] { sha256_of_file(folder.path() / "missing"); });
 }
 
 }  // namespace

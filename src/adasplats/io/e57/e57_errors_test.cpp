@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 
 // Damaged and inconsistent files, all but the first case with valid checksums.
@@ -15,19 +15,17 @@ namespace {
 
 using io_test::data_packet;
 using io_test::E57Composer;
-using io_test::expect_error;
 using io_test::float_field;
 using io_test::integer_field;
 using io_test::other_packet;
 using io_test::put;
 using io_test::sealed_e57;
 using io_test::stream_of;
-using io_test::TemporaryFolder;
 using io_test::xyz_fields;
 
 void expect_rejected(const std::string& content, const std::vector<std::string>& parts) {
   const TemporaryFolder folder;
-  const auto path = folder.file("a.e57", content);
+  const auto path = folder.write("a.e57", content);
   std::vector<std::string> all = {"a.e57: "};
   all.insert(all.end(), parts.begin(), parts.end());
   expect_error(ErrorKind::data, all, [&] { read_points(path); });
@@ -91,7 +89,7 @@ TEST(E57Errors, TheHeader) {
 // Bytes beyond the size in the header are ignored.
 TEST(E57Errors, MoreBytesThanTheHeaderStates) {
   const TemporaryFolder folder;
-  EXPECT_EQ(read_points(folder.file("a.e57", many_points().file() + "more")).rows, 200U);
+  EXPECT_EQ(read_points(folder.write("a.e57", many_points().file() + "more")).rows, 200U);
 }
 
 TEST(E57Errors, ContentOfTheXml) {

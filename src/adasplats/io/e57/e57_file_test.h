@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 /// Composes E57 files byte by byte, after ASTM E2807-11.
 namespace adasplats::io_test {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/e57/e57_file_test.h"
 
 // Files that are composed here by the standard's layout; what they hold is computed here, too.
@@ -23,7 +23,6 @@ using io_test::other_packet;
 using io_test::PackedBits;
 using io_test::pose_element;
 using io_test::stream_of;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 using io_test::xyz_fields;
 
@@ -32,7 +31,7 @@ using Notes = std::vector<ReaderNote>;
 
 Table read_composed(const std::string& content) {
   const TemporaryFolder folder;
-  return read_points(folder.file("a.e57", content));
+  return read_points(folder.write("a.e57", content));
 }
 
 std::vector<std::string> names_of_columns(const Table& table) {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/las/copc.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 
@@ -50,8 +50,8 @@ class CopcFile {
     io_test::put(file_, 100, records + 1);
     std::memcpy(&table_at, &file_[points_at], 8);
     io_test::put(file_, points_at, table_at + record.size());
-    const io_test::TemporaryFolder folder;
-    chunks_ = read_laz_layout(folder.file("a.laz", file_), false).chunks;
+    const TemporaryFolder folder;
+    chunks_ = read_laz_layout(folder.write("a.laz", file_), false).chunks;
     add_pages();
   }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/copc_file_test.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 
@@ -18,23 +18,21 @@ namespace adasplats {
 namespace {
 
 using io_test::bytes_of;
-using io_test::expect_error;
 using io_test::Mutator;
 using io_test::put;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 using laz_test::CopcFile;
 using laz_test::entry;
 using laz_test::kLazSamples;
 using laz_test::laz_file;
 
-Table read(const std::string& bytes, const PointSelection& selection = {},
-           const Executor* executor = nullptr) {
+Table read_copc_bytes(const std::string& bytes, const PointSelection& selection = {},
+                      const Executor* executor = nullptr) {
   const TemporaryFolder folder;
   LasReadOptions options;
   options.selection = selection;
   options.executor = executor;
-  return read_points(folder.file("a.copc.laz", bytes), options);
+  return read_points(folder.write("a.copc.laz", bytes), options);
 }
 
 /// The rows of `all` that are in both a list of ranges of rows and an extent, by brute force.
@@ -59,45 +57,46 @@ void expect_equal(const Table& found, const Table& wanted) {
 
 TEST(Copc, LevelsAreThoseOfTheOctree) {
   const CopcFile file;
-  const Table all = read(file.bytes());
+  const Table all = read_copc_bytes(file.bytes());
   ASSERT_EQ(all.rows, 40U);
   const std::size_t first = file.chunks()[0].points, second = first + file.chunks()[1].points;
   const Executor executor(2);
   for (const Executor* const threads : {static_cast<const Executor*>(nullptr), &executor}) {
-    expect_equal(read(file.bytes(), {.level = 0}, threads), expected(all, {{0, first}}));
-    expect_equal(read(file.bytes(), {.level = 1}, threads), expected(all, {{0, second}}));
-    expect_equal(read(file.bytes(), {.level = 2}, threads), all);
-    expect_equal(read(file.bytes(), {.level = 4000000000}, threads), all);
+    expect_equal(read_copc_bytes(file.bytes(), {.level = 0}, threads), expected(all, {{0, first}}));
+    expect_equal(read_copc_bytes(file.bytes(), {.level = 1}, threads),
+                 expected(all, {{0, second}}));
+    expect_equal(read_copc_bytes(file.bytes(), {.level = 2}, threads), all);
+    expect_equal(read_copc_bytes(file.bytes(), {.level = 4000000000}, threads), all);
   }
-  EXPECT_TRUE(read(file.bytes(), {.level = 0}).notes.empty());
+  EXPECT_TRUE(read_copc_bytes(file.bytes(), {.level = 0}).notes.empty());
   // 8 m on level 0, 4 m on level 1: the first that is as fine as that.
-  EXPECT_EQ(read(file.bytes(), {.resolution_m = 100.0}).rows, first);
-  EXPECT_EQ(read(file.bytes(), {.resolution_m = 8.0}).rows, first);
-  EXPECT_EQ(read(file.bytes(), {.resolution_m = 7.9}).rows, second);
-  EXPECT_EQ(read(file.bytes(), {.resolution_m = 4.0}).rows, second);
-  EXPECT_EQ(read(file.bytes(), {.resolution_m = 0.1}).rows, 40U);
-  EXPECT_EQ(read(file.bytes(), {.level = 0, .resolution_m = 0.1}).rows, first);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.resolution_m = 100.0}).rows, first);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.resolution_m = 8.0}).rows, first);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.resolution_m = 7.9}).rows, second);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.resolution_m = 4.0}).rows, second);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.resolution_m = 0.1}).rows, 40U);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.level = 0, .resolution_m = 0.1}).rows, first);
 }
 
 TEST(Copc, ExtentsAreThoseOfPointsAndOfCubes) {
   CopcFile file;
-  const Table all = read(file.bytes());
+  const Table all = read_copc_bytes(file.bytes());
   std::vector<double> x = values_of(all, "x");
   std::ranges::sort(x);
   Extent half;
   half.low.x = x[20];
   put(file.bytes(), CopcFile::kInfoAt, 400.0);  // all cubes meet it
-  expect_equal(read(file.bytes(), {.extent = half}), expected(all, {{0, 40}}, half));
-  expect_equal(read(file.bytes(), {.extent = half, .level = 0}),
+  expect_equal(read_copc_bytes(file.bytes(), {.extent = half}), expected(all, {{0, 40}}, half));
+  expect_equal(read_copc_bytes(file.bytes(), {.extent = half, .level = 0}),
                expected(all, {{0, file.chunks()[0].points}}, half));
   Extent nowhere;
   nowhere.low.z = 5000;
-  EXPECT_EQ(read(file.bytes(), {.extent = nowhere}).rows, 0U);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.extent = nowhere}).rows, 0U);
   // An extent that contains all points, but does not overlap the root's cube.
   put(file.bytes(), CopcFile::kInfoAt, -2000.0);
   Extent right;
   right.low.x = -350;
-  EXPECT_EQ(read(file.bytes(), {.extent = right}).rows, 0U);
+  EXPECT_EQ(read_copc_bytes(file.bytes(), {.extent = right}).rows, 0U);
   // One that the cube of 1-0-0-0 alone does not meet, which is not unpacked then: zeros instead of
   // its chunk are no fault.
   put(file.bytes(), CopcFile::kInfoAt, -400.0);
@@ -105,7 +104,7 @@ TEST(Copc, ExtentsAreThoseOfPointsAndOfCubes) {
   std::string without = file.bytes();
   for (std::size_t k = 0; k < file.chunks()[1].bytes; ++k)
     without[file.chunks()[1].offset_bytes + k] = '\0';
-  const Table found = read(without, {.extent = right});
+  const Table found = read_copc_bytes(without, {.extent = right});
   expect_equal(found, expected(all, {{0, first}, {first + file.chunks()[1].points, 40}}, right));
 }
 
@@ -116,7 +115,7 @@ TEST(Copc, OctreesThatContradictThemselvesAreErrors) {
                                  const std::vector<std::string>& parts) {
     std::string file = sound.bytes();
     put(file, at, value);
-    expect_error(ErrorKind::data, parts, [&] { read(file, all); });
+    expect_error(ErrorKind::data, parts, [&] { read_copc_bytes(file, all); });
   };
   const std::size_t root = sound.root_page_at(), inner = sound.inner_page_at();
   const std::size_t info = CopcFile::kInfoAt;
@@ -141,16 +140,19 @@ TEST(Copc, OctreesThatContradictThemselvesAreErrors) {
   expect_broken(root + 28, std::int32_t{1}, {"1 points", "chunk table"});
   std::string twice = sound.bytes();
   twice.replace(root + 32 + 16, 16, twice.substr(root + 16, 16));
-  expect_error(ErrorKind::data, {"node 1-0-0-0", "another node"}, [&] { read(twice, all); });
+  expect_error(ErrorKind::data, {"node 1-0-0-0", "another node"},
+               [&] { read_copc_bytes(twice, all); });
   // A page that leads to itself, for its own node and for another.
   std::string cycle = sound.bytes();
   cycle.replace(inner + 16, 16, cycle.substr(root + 64 + 16, 16));
-  expect_error(ErrorKind::data, {"node 1-1-0-0 occurs twice"}, [&] { read(cycle, all); });
+  expect_error(ErrorKind::data, {"node 1-1-0-0 occurs twice"},
+               [&] { read_copc_bytes(cycle, all); });
   cycle = sound.bytes();
   cycle.replace(inner + 32 + 16, 16, cycle.substr(root + 64 + 16, 16));
-  expect_error(ErrorKind::data, {"page of node 2-3-0-0 occurs twice"}, [&] { read(cycle, all); });
+  expect_error(ErrorKind::data, {"page of node 2-3-0-0 occurs twice"},
+               [&] { read_copc_bytes(cycle, all); });
   // None of it matters when all points are read.
-  EXPECT_EQ(read(cycle).rows, 40U);
+  EXPECT_EQ(read_copc_bytes(cycle).rows, 40U);
 }
 
 // Nothing but an error of ours may escape, and no point may come twice.
@@ -175,7 +177,7 @@ TEST(Copc, DamagedFilesEndInErrors) {
     extent.low.x = round % 3 == 0 ? 0 : -1e9;
     try {
       const Table table =
-          read_points(folder.file("a.laz", broken), {.selection = {.extent = extent, .level = 9}});
+          read_points(folder.write("a.laz", broken), {.selection = {.extent = extent, .level = 9}});
       EXPECT_LE(table.rows, 40U);
       ++read_well;
     } catch (const Error& error) {
@@ -190,9 +192,9 @@ TEST(Copc, OtherFilesHaveNoLevels) {
   for (const PointSelection& selection : {PointSelection{.level = 0}, {.resolution_m = 1.0}}) {
     const TemporaryFolder folder;
     const std::string word = selection.level ? "`level`" : "`resolution`";
-    const auto laz = folder.file("a.laz", laz_file(kLazSamples[2]));
-    const auto las = folder.file("a.las", las_file(kLazSamples[2]));
-    const auto text = folder.file("a.xyz", "1 2 3\n");
+    const auto laz = folder.write("a.laz", laz_file(kLazSamples[2]));
+    const auto las = folder.write("a.las", las_file(kLazSamples[2]));
+    const auto text = folder.write("a.xyz", "1 2 3\n");
     for (const auto& path : {laz, las, text})
       expect_error(ErrorKind::usage, {path.string(), word, "COPC"},
                    [&] { read_points(path, {.selection = selection}); });
@@ -203,7 +205,7 @@ TEST(Copc, OtherFilesHaveNoLevels) {
 TEST(Extents, OfFilesWithoutLevels) {
   const TemporaryFolder folder;
   Extent half;
-  const Table all = read_points(folder.file("a.laz", laz_file(kLazSamples[1])));
+  const Table all = read_points(folder.write("a.laz", laz_file(kLazSamples[1])));
   std::vector<double> x = values_of(all, "x");
   std::ranges::sort(x);
   half.high.x = x[20];
@@ -212,12 +214,12 @@ TEST(Extents, OfFilesWithoutLevels) {
   ASSERT_GE(wanted.rows, 20U);
   ASSERT_LT(wanted.rows, all.rows);
   expect_equal(read_points(folder.path() / "a.laz", options), wanted);
-  expect_equal(read_points(folder.file("a.las", las_file(kLazSamples[1])), options), wanted);
-  const auto text = folder.file("a.csv", "X,Y,Z,label\n1,2,3,4\n5,6,7,8\n5.5,nan,7,9\n9,9,9,10\n");
+  expect_equal(read_points(folder.write("a.las", las_file(kLazSamples[1])), options), wanted);
+  const auto text = folder.write("a.csv", "X,Y,Z,label\n1,2,3,4\n5,6,7,8\n5.5,nan,7,9\n9,9,9,10\n");
   const Table some = read_points(text, {.selection = {.extent = Extent{{5, 6, 7}, {6, 7, 8}}}});
   ASSERT_EQ(some.rows, 1U);
   EXPECT_EQ(values_of(some, "label"), std::vector<double>{8});
-  const auto one = folder.file("b.csv", "x,y,label\n1,2,4\n");
+  const auto one = folder.write("b.csv", "x,y,label\n1,2,4\n");
   expect_error(ErrorKind::data, {"b.csv", "`extent`"}, [&] { read_points(one, options); });
 }
 
@@ -230,13 +232,13 @@ TEST(Extents, FilesBeyondAreNotUnpacked) {
   }
   Extent far;
   far.low.y = 1100;
-  EXPECT_EQ(read(file, {.extent = far}).rows, 0U);
+  EXPECT_EQ(read_copc_bytes(file, {.extent = far}).rows, 0U);
   std::uint32_t points_at = 0;
   std::memcpy(&points_at, &file[96], 4);
   put(file, points_at + 8 + 8, std::int32_t{2000000000});  // z of the first point, as it is
-  EXPECT_EQ(read(file, {.extent = far}).rows, 0U);
+  EXPECT_EQ(read_copc_bytes(file, {.extent = far}).rows, 0U);
   far.low.y = 900;
-  expect_error(ErrorKind::data, {"damaged LAZ"}, [&] { read(file, {.extent = far}); });
+  expect_error(ErrorKind::data, {"damaged LAZ"}, [&] { read_copc_bytes(file, {.extent = far}); });
 }
 
 }  // namespace

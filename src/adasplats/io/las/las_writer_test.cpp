@@ -8,15 +8,13 @@
 #include <limits>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_header.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 template <class T>

@@ -6,23 +6,21 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
 using io_test::put;
-using io_test::TemporaryFolder;
 using laz_test::kLazSamples;
 using laz_test::laz_file;
 using laz_test::LazSample;
 
 Table read_bytes(const std::string& content, const LasReadOptions& options = {}) {
   const TemporaryFolder folder;
-  return read_las(folder.file("file.laz", content), options);
+  return read_las(folder.write("file.laz", content), options);
 }
 
 void expect_broken(const std::string& content, const std::vector<std::string>& parts) {

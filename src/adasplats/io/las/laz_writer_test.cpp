@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/layered_writer.h"
@@ -22,13 +22,12 @@
 namespace adasplats {
 namespace {
 
-using io_test::TemporaryFolder;
 using laz_test::kLazSamples;
 using laz_test::LazSample;
 
 constexpr std::size_t kPointBytes = 30, kPointLayers = 9;
 
-std::uint32_t number_at(const std::string& bytes, std::size_t at) {
+std::uint32_t u32_of(const std::string& bytes, std::size_t at) {
   std::uint32_t number = 0;
   std::memcpy(&number, bytes.data() + at, sizeof number);
   return number;
@@ -41,7 +40,7 @@ std::vector<std::string> layers_of(const std::string& bytes, std::size_t record_
   std::size_t at = sizes_at + 4 * count;
   std::vector<std::string> layers;
   for (std::size_t k = 0; k < count; ++k) {
-    layers.push_back(bytes.substr(at, number_at(bytes, sizes_at + 4 * k)));
+    layers.push_back(bytes.substr(at, u32_of(bytes, sizes_at + 4 * k)));
     at += layers.back().size();
   }
   return layers;
@@ -68,7 +67,7 @@ TEST(LazWriter, GivesTheBytesOfLaszip) {
     const LazSample& sample = kLazSamples[which];
     SCOPED_TRACE(sample.name);
     const std::string file = laz_file(sample);
-    const LazLayout layout = read_laz_layout(folder.file("a.laz", file), false);
+    const LazLayout layout = read_laz_layout(folder.write("a.laz", file), false);
     const std::size_t between = sample.format == 10 ? 3 : 1;  // layers of colours and packets
     const std::string records = format_6_of(sample);
     std::size_t first = 0;
@@ -82,7 +81,7 @@ TEST(LazWriter, GivesTheBytesOfLaszip) {
           reinterpret_cast<const std::byte*>(records.data() + first * kRecordBytes), points,
           kRecordBytes);
       EXPECT_EQ(packed.substr(0, kRecordBytes), records.substr(first * kRecordBytes, kRecordBytes));
-      EXPECT_EQ(number_at(packed, kRecordBytes), points);
+      EXPECT_EQ(u32_of(packed, kRecordBytes), points);
       const auto found = layers_of(packed, kRecordBytes, kPointLayers + laz_test::kExtraBytes);
       for (std::size_t k = 0; k < kPointLayers; ++k) EXPECT_EQ(found[k], wanted[k]) << k;
       // Version 4 has the extra bytes of channels in another way.
@@ -109,7 +108,7 @@ TEST(LazWriter, GivesTheColoursOfLaszip) {
   }
   constexpr std::size_t kRecordBytes = kPointBytes + kColourBytes + laz_test::kExtraBytes;
   std::size_t first = 0;
-  for (const LazChunk& chunk : read_laz_layout(folder.file("a.laz", file), false).chunks) {
+  for (const LazChunk& chunk : read_laz_layout(folder.write("a.laz", file), false).chunks) {
     const auto points = static_cast<std::size_t>(chunk.points);
     const std::string packed = pack_layered_chunk(
         reinterpret_cast<const std::byte*>(records.data() + first * kRecordBytes), points,
@@ -245,7 +244,7 @@ TEST(LazWriter, EqualPointsTakeHardlyAnyBytes) {
   const std::string bytes = file.take();
   EXPECT_LT(bytes.size(), 30000U);
   const TemporaryFolder folder;
-  const Table table = read_las(folder.file("a.laz", bytes));
+  const Table table = read_las(folder.write("a.laz", bytes));
   EXPECT_EQ(table.rows, zeros.size());
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats::laz_test {
 

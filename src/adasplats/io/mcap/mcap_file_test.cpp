@@ -4,13 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/mcap/mcap_records_test.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::TemporaryFolder;
 
 McapChannel channel(const std::string& topic) {
   return {topic, "cdr", "a/msg/" + topic, "ros2msg", "uint8 x\n"};
@@ -65,7 +63,7 @@ TEST(McapFile, Metadata) {
   EXPECT_EQ(read_mcap_metadata(path, "adasplats", "labels"), "asprs");
   EXPECT_EQ(read_mcap_metadata(path, "adasplats", "other"), "");
   EXPECT_EQ(read_mcap_metadata(path, "others", "labels"), "");
-  EXPECT_EQ(read_mcap_metadata(folder.file("b.mcap", "no MCAP"), "adasplats", "labels"), "");
+  EXPECT_EQ(read_mcap_metadata(folder.write("b.mcap", "no MCAP"), "adasplats", "labels"), "");
 }
 
 TEST(McapFile, UnknownChannelAndUnfinishedFile) {
@@ -75,8 +73,8 @@ TEST(McapFile, UnknownChannelAndUnfinishedFile) {
     EXPECT_THROW(writer.add_message(0, 0, "x"), std::out_of_range);
   }
   EXPECT_EQ(folder.file_count(), 0U);
-  io_test::expect_error(ErrorKind::cannot_create, {"no", "a.mcap"},
-                        [&] { McapFile(folder.path() / "no" / "a.mcap", "ros2"); });
+  expect_error(ErrorKind::cannot_create, {"no", "a.mcap"},
+               [&] { McapFile(folder.path() / "no" / "a.mcap", "ros2"); });
 }
 
 }  // namespace

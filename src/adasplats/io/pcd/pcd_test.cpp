@@ -7,27 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/pcd/lzf.h"
 
 namespace adasplats {
 namespace {
 
 using io_test::bytes_of;
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 using Doubles = std::vector<double>;
 
-Table read(const std::string& content) {
+Table read_pcd_bytes(const std::string& content) {
   const TemporaryFolder folder;
-  return read_pcd(folder.file("file.pcd", content));
+  return read_pcd(folder.write("file.pcd", content));
 }
 
-void expect_data_error(const std::string& content, const std::vector<std::string>& parts) {
-  expect_error(ErrorKind::data, parts, [&] { read(content); });
+void expect_pcd_error(const std::string& content, const std::vector<std::string>& parts) {
+  expect_error(ErrorKind::data, parts, [&] { read_pcd_bytes(content); });
 }
 
 /// A header of two points: x and y of 4 bytes, two counts of 2 bytes, 3 bytes of padding.
@@ -67,17 +65,18 @@ std::string compressed_body(const std::string& packed, std::uint32_t unpacked_by
 }
 
 TEST(Pcd, TheSameTwoPointsInEachEncoding) {
-  expect_two_points(read(kTwoPoints + "DATA ascii\n1.5 1 2 3 -3 300 1e9\n-2 nan x 0 4 5 0.25\n"));
-  expect_two_points(read(kTwoPoints + "DATA binary\n" + binary_body()));
+  expect_two_points(
+      read_pcd_bytes(kTwoPoints + "DATA ascii\n1.5 1 2 3 -3 300 1e9\n-2 nan x 0 4 5 0.25\n"));
+  expect_two_points(read_pcd_bytes(kTwoPoints + "DATA binary\n" + binary_body()));
   const auto i16 = [](int v) { return bytes_of(static_cast<std::int16_t>(v)); };
   const std::string fields_apart = bytes_of(1.5F) + bytes_of(-2.0F) + "padpad" + i16(-3) +
                                    i16(300) + i16(4) + i16(5) + bytes_of(1e9) + bytes_of(0.25);
-  expect_two_points(read(kTwoPoints + "DATA binary_compressed\n" +
-                         compressed_body(stored_lzf(fields_apart), 38)));
+  expect_two_points(read_pcd_bytes(kTwoPoints + "DATA binary_compressed\n" +
+                                   compressed_body(stored_lzf(fields_apart), 38)));
 }
 
 TEST(Pcd, OldHeadersAndBodiesThatBeginWithANewline) {
-  const Table table = read(
+  const Table table = read_pcd_bytes(
       "VERSION .5\r\nFIELDS x\r\nSIZE 4\r\nTYPE U\r\nWIDTH 1\r\nHEIGHT 1\r\n"
       "DATA binary\r\n\n\r\n\r");
   EXPECT_EQ(values_of(table, "x"), Doubles{static_cast<double>(0x0d0a0d0a)});
@@ -87,7 +86,7 @@ TEST(Pcd, NoPoints) {
   const std::string header = kFields + "WIDTH 0\nHEIGHT 1\nPOINTS 0\n";
   for (const char* encoding : {"ascii", "binary", "binary_compressed"})
     for (const char* body : {"", "x"}) {
-      const Table table = read(header + "DATA " + encoding + "\n" + body);
+      const Table table = read_pcd_bytes(header + "DATA " + encoding + "\n" + body);
       EXPECT_EQ(table.rows, 0U);
       ASSERT_EQ(table.columns.size(), 4U);
       for (const Column& column : table.columns) EXPECT_EQ(column.size(), 0U);
@@ -95,7 +94,7 @@ TEST(Pcd, NoPoints) {
 }
 
 TEST(Pcd, NaNPointsAreKept) {
-  const Table table = read("FIELDS x\nSIZE 4\nTYPE F\nPOINTS 2\nDATA ascii\nnan\n1\n");
+  const Table table = read_pcd_bytes("FIELDS x\nSIZE 4\nTYPE F\nPOINTS 2\nDATA ascii\nnan\n1\n");
   EXPECT_TRUE(std::isnan(values_of(table, "x")[0]));
   EXPECT_EQ(values_of(table, "x")[1], 1.0);
 }
@@ -105,11 +104,11 @@ TEST(Pcd, WidthTimesHeight) {
   const auto with = [](const std::string& counts) {
     return kFields + counts + "DATA binary\n" + binary_body();
   };
-  expect_data_error(with("WIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\n"), {"2^64"});
-  expect_data_error(with("WIDTH 2\nHEIGHT 1\nPOINTS 3\n"), {"POINTS is 3", "is 2"});
-  expect_data_error(with("WIDTH -1\nHEIGHT 1\n"), {"WIDTH", "'-1'"});
-  expect_data_error(with("HEIGHT 1\n"), {"neither WIDTH nor POINTS"});
-  expect_data_error(with("WIDTH 18446744073709551616\n"), {"WIDTH"});
+  expect_pcd_error(with("WIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\n"), {"2^64"});
+  expect_pcd_error(with("WIDTH 2\nHEIGHT 1\nPOINTS 3\n"), {"POINTS is 3", "is 2"});
+  expect_pcd_error(with("WIDTH -1\nHEIGHT 1\n"), {"WIDTH", "'-1'"});
+  expect_pcd_error(with("HEIGHT 1\n"), {"neither WIDTH nor POINTS"});
+  expect_pcd_error(with("WIDTH 18446744073709551616\n"), {"WIDTH"});
 }
 
 // Fault 11.
@@ -118,21 +117,21 @@ TEST(Pcd, SizeTypeAndCount) {
     return "FIELDS x y\nSIZE " + std::string(size) + "\nTYPE " + type + "\nCOUNT " + count +
            "\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n" + std::string(64, '\1');
   };
-  EXPECT_EQ(read(with("4 8", "F F", "1 1")).rows, 1U);
+  EXPECT_EQ(read_pcd_bytes(with("4 8", "F F", "1 1")).rows, 1U);
   for (const char* size : {"0 4", "-4 4", "16 4", "4 3", "4", "4 4 4", "x 4"})
-    expect_data_error(with(size, "F F", "1 1"), {"SIZE"});
+    expect_pcd_error(with(size, "F F", "1 1"), {"SIZE"});
   for (const char* type : {"F", "F X", "F FF"})
-    expect_data_error(with("4 4", type, "1 1"), {"TYPE"});
-  expect_data_error(with("2 4", "F F", "1 1"), {"TYPE F with SIZE 2"});
+    expect_pcd_error(with("4 4", type, "1 1"), {"TYPE"});
+  expect_pcd_error(with("2 4", "F F", "1 1"), {"TYPE F with SIZE 2"});
   for (const char* count : {"0 0", "-1 1", "4294967296 1", "1", "1 1 1"})
-    expect_data_error(with("4 4", "F F", count), {"COUNT"});
-  expect_data_error(with("4 4", "F F", "65536 65536"), {"more than 65536"});
-  expect_data_error(with("4 4", "F F", "65000 1"), {"room for 0"});
+    expect_pcd_error(with("4 4", "F F", count), {"COUNT"});
+  expect_pcd_error(with("4 4", "F F", "65536 65536"), {"more than 65536"});
+  expect_pcd_error(with("4 4", "F F", "65000 1"), {"room for 0"});
 }
 
 // PCL skips fields of which a point has no values.
 TEST(Pcd, FieldsWithoutValues) {
-  const Table table = read(
+  const Table table = read_pcd_bytes(
       "FIELDS _ x n _ y\nSIZE 1 4 8 1 4\nTYPE U F F U F\nCOUNT 0 1 0 2 1\nWIDTH 1\nHEIGHT 1\n"
       "POINTS 1\nDATA binary\n" +
       bytes_of(1.5F) + std::string(2, '\1') + bytes_of(-2.0F));
@@ -146,36 +145,36 @@ TEST(Pcd, CompressedSizes) {
   const std::string header =
       "FIELDS x\nSIZE 4\nTYPE U\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary_compressed\n";
   const std::string body = stored_lzf(bytes_of(1) + bytes_of(2));
-  EXPECT_EQ(values_of(read(header + compressed_body(body, 8)), "x"), (Doubles{1, 2}));
-  expect_data_error(header + compressed_body(body, 9), {"found 9", "2 points"});
-  expect_data_error(header + bytes_of(0xffffffffU) + bytes_of(8U) + body, {"4294967295"});
-  expect_data_error(header + compressed_body(body.substr(0, 5), 8), {"damaged"});
-  expect_data_error(header + compressed_body(body + std::string(1, '\0') + "x", 8), {"damaged"});
-  expect_data_error(header + "1234", {"ends here"});
+  EXPECT_EQ(values_of(read_pcd_bytes(header + compressed_body(body, 8)), "x"), (Doubles{1, 2}));
+  expect_pcd_error(header + compressed_body(body, 9), {"found 9", "2 points"});
+  expect_pcd_error(header + bytes_of(0xffffffffU) + bytes_of(8U) + body, {"4294967295"});
+  expect_pcd_error(header + compressed_body(body.substr(0, 5), 8), {"damaged"});
+  expect_pcd_error(header + compressed_body(body + std::string(1, '\0') + "x", 8), {"damaged"});
+  expect_pcd_error(header + "1234", {"ends here"});
   const std::string many = "FIELDS x\nSIZE 4\nTYPE U\nPOINTS 1000000000\nDATA binary_compressed\n";
-  expect_data_error(many + compressed_body(body, 4000000000U), {"cannot hold 4000000000"});
+  expect_pcd_error(many + compressed_body(body, 4000000000U), {"cannot hold 4000000000"});
 }
 
 // Faults 13, 14: counts that the file cannot hold, checked before any allocation.
 TEST(Pcd, FewerPointsThanTheHeaderStates) {
   for (const char* points : {"3", "2147483648", "4294967297", "18446744073709551615"}) {
     const std::string header = kFields + "WIDTH " + points + "\nHEIGHT 1\nPOINTS " + points + "\n";
-    expect_data_error(header + "DATA binary\n" + binary_body(), {"room for 2", points});
-    expect_data_error(header + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 1 1\n", {points});
-    expect_data_error(header + "DATA binary_compressed\n" + compressed_body(stored_lzf("x"), 38),
-                      {"found 38", points});
+    expect_pcd_error(header + "DATA binary\n" + binary_body(), {"room for 2", points});
+    expect_pcd_error(header + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 1 1\n", {points});
+    expect_pcd_error(header + "DATA binary_compressed\n" + compressed_body(stored_lzf("x"), 38),
+                     {"found 38", points});
   }
-  expect_data_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1               \n", {"after 1 points"});
-  expect_data_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 100\n",
-                    {"file.pcd:13", "'y'", "end of the line"});
-  expect_data_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 99999 1\n",
-                    {"file.pcd:13", "'n_1'", "'99999'"});
+  expect_pcd_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1               \n", {"after 1 points"});
+  expect_pcd_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 100\n",
+                   {"file.pcd:13", "'y'", "end of the line"});
+  expect_pcd_error(kTwoPoints + "DATA ascii\n1 1 1 1 1 1 1\n1 1 1 1 1 99999 1\n",
+                   {"file.pcd:13", "'n_1'", "'99999'"});
 }
 
 // Fault 13: a file that is cut while it is read is an error, not a SIGBUS.
 TEST(Pcd, FileThatShrinksWhileItIsRead) {
   const TemporaryFolder folder;
-  const std::filesystem::path path = folder.file("file", std::string(1000000, 'x'));
+  const std::filesystem::path path = folder.write("file", std::string(1000000, 'x'));
   InputFile file(path);
   file.peek(1);
   ASSERT_EQ(::truncate(path.c_str(), 500000), 0);
@@ -183,10 +182,10 @@ TEST(Pcd, FileThatShrinksWhileItIsRead) {
 }
 
 TEST(Pcd, BrokenHeaders) {
-  expect_data_error("289814.15 4320978.61 170.76\n", {"file.pcd:1", "'289814.15'"});
-  expect_data_error("VERSION 0.7\n", {"no DATA"});
-  expect_data_error(kTwoPoints + "DATA text\n", {"'text'"});
-  expect_data_error("POINTS 1\nDATA ascii\n1\n", {"no FIELDS"});
+  expect_pcd_error("289814.15 4320978.61 170.76\n", {"file.pcd:1", "'289814.15'"});
+  expect_pcd_error("VERSION 0.7\n", {"no DATA"});
+  expect_pcd_error(kTwoPoints + "DATA text\n", {"'text'"});
+  expect_pcd_error("POINTS 1\nDATA ascii\n1\n", {"no FIELDS"});
 }
 
 TEST(Lzf, BackReferencesThatOverlapAndAreLong) {

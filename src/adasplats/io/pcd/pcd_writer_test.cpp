@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 // Oracle: our reader, whose tests have files that PCL wrote.

@@ -8,28 +8,19 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/base/mutator_test.h"
-#include "adasplats/io/base/test_files.h"
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/io/pickle/pickle_samples_test.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
 using io_test::from_base64;
-using io_test::TemporaryFolder;
+using io_test::values_of;
 using Doubles = std::vector<double>;
 
 Table frame_of(std::string_view base64) { return data_frame_of("f", from_base64(base64)); }
-
-Doubles values_of(const Table& table, std::string_view name) {
-  const Column* const column = table.find(name);
-  if (column == nullptr) return {-999};
-  Doubles values;
-  for (std::size_t i = 0; i < column->size(); ++i) values.push_back(column->as_double(i));
-  return values;
-}
 
 std::string our_frame() {
   return pickled_data_frame(std::vector<FrameColumn>{{"x", Doubles{1.5, 2}},

@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/core/maths/random.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
-
-using io_test::expect_error;
 
 std::string noise(std::size_t bytes) {
   Random random(3, 0, bytes);

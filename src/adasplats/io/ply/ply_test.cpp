@@ -10,30 +10,28 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
 
 using io_test::big_endian;
 using io_test::bytes_of;
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 using Doubles = std::vector<double>;
 
-Table read(const std::string& content) {
+Table read_ply_bytes(const std::string& content) {
   const TemporaryFolder folder;
-  return read_ply(folder.file("file.ply", content));
+  return read_ply(folder.write("file.ply", content));
 }
 
 MeshTable read_mesh(const std::string& content) {
   const TemporaryFolder folder;
-  return read_ply_mesh(folder.file("file.ply", content));
+  return read_ply_mesh(folder.write("file.ply", content));
 }
 
-void expect_data_error(const std::string& content, const std::vector<std::string>& parts) {
-  expect_error(ErrorKind::data, parts, [&] { read(content); });
+void expect_ply_error(const std::string& content, const std::vector<std::string>& parts) {
+  expect_error(ErrorKind::data, parts, [&] { read_ply_bytes(content); });
 }
 
 const std::string kXyzFloat = "property float x\nproperty float y\nproperty float z\n";
@@ -41,7 +39,7 @@ const std::string kBinary = "ply\nformat binary_little_endian 1.0\n";
 const std::string kAscii = "ply\nformat ascii 1.0\n";
 
 TEST(Ply, AsciiOfEveryType) {
-  const Table table = read(
+  const Table table = read_ply_bytes(
       kAscii +
       "comment hello there\nobj_info more\nelement vertex 2\n"
       "property char a\nproperty uint8 b\nproperty short c\nproperty uint16 d\nproperty int e\n"
@@ -77,9 +75,10 @@ TEST(Ply, BinaryOfBothByteOrdersWithOtherElementsAround) {
            encode(600000.125) + encode(U8{200}) + encode(I16{-2}) +         // vertex 0
            encode(-1.0) + encode(U8{1}) + encode(I16{300});                 // vertex 1
   };
-  const Table little = read(kBinary + elements + body([](auto v) { return bytes_of(v); }));
-  const Table big = read("ply\nformat binary_big_endian 1.0\n" + elements +
-                         body([](auto v) { return big_endian(v); }));
+  const Table little =
+      read_ply_bytes(kBinary + elements + body([](auto v) { return bytes_of(v); }));
+  const Table big = read_ply_bytes("ply\nformat binary_big_endian 1.0\n" + elements +
+                                   body([](auto v) { return big_endian(v); }));
   for (const Table& table : {little, big}) {
     EXPECT_EQ(values_of(table, "x"), (Doubles{600000.125, -1}));
     EXPECT_EQ(values_of(table, "s"), (Doubles{200, 1}));
@@ -91,9 +90,10 @@ TEST(Ply, ListInsideTheVertexElementIsSteppedOver) {
   const std::string header =
       "element vertex 2\nproperty float x\nproperty list uchar int l\n"
       "property uchar c\nend_header\n";
-  const Table binary = read(kBinary + header + bytes_of(1.5F) + "\x02" + bytes_of(5) + bytes_of(6) +
-                            "\x07" + bytes_of(2.5F) + std::string(1, '\0') + "\x08");
-  const Table ascii = read(kAscii + header + "1.5 2 5 6 7\n2.5 0 8\n");
+  const Table binary =
+      read_ply_bytes(kBinary + header + bytes_of(1.5F) + "\x02" + bytes_of(5) + bytes_of(6) +
+                     "\x07" + bytes_of(2.5F) + std::string(1, '\0') + "\x08");
+  const Table ascii = read_ply_bytes(kAscii + header + "1.5 2 5 6 7\n2.5 0 8\n");
   for (const Table& table : {binary, ascii}) {
     EXPECT_EQ(values_of(table, "x"), (Doubles{1.5, 2.5}));
     EXPECT_EQ(values_of(table, "c"), (Doubles{7, 8}));
@@ -113,51 +113,52 @@ TEST(Ply, LineEndsOfTheHeader) {
   // 0x0a0d0a is a body that begins with newlines: bytes 0a 0d 0a 00.
   for (const int value : {1, 0x0a0d0a, 0x0d0a0d, 0x0a0a0a0a}) {
     for (const char* end : {"\n", "\r\n", "\r"}) {
-      const Table table = read(with_line_end(end) + bytes_of(value));
+      const Table table = read_ply_bytes(with_line_end(end) + bytes_of(value));
       EXPECT_EQ(values_of(table, "x"), Doubles{static_cast<double>(value)});
     }
   }
-  EXPECT_EQ(values_of(read("ply\rformat ascii 1.0\relement vertex 2\rproperty int x\r"
-                           "end_header\r4\r5\r"),
+  EXPECT_EQ(values_of(read_ply_bytes("ply\rformat ascii 1.0\relement vertex 2\rproperty int x\r"
+                                     "end_header\r4\r5\r"),
                       "x"),
             (Doubles{4, 5}));
-  EXPECT_EQ(values_of(read("ply\r\nformat ascii 1.0\r\nelement vertex 2\r\nproperty int x\r\n"
-                           "end_header\r\n4\r\n\r\n5"),
-                      "x"),
-            (Doubles{4, 5}));
+  EXPECT_EQ(
+      values_of(read_ply_bytes("ply\r\nformat ascii 1.0\r\nelement vertex 2\r\nproperty int x\r\n"
+                               "end_header\r\n4\r\n\r\n5"),
+                "x"),
+      (Doubles{4, 5}));
 }
 
 TEST(Ply, ZeroRecords) {
   for (const std::string& start : {kAscii, kBinary})
-    EXPECT_EQ(read(start + "element vertex 0\n" + kXyzFloat + "end_header\n").rows, 0U);
+    EXPECT_EQ(read_ply_bytes(start + "element vertex 0\n" + kXyzFloat + "end_header\n").rows, 0U);
 }
 
 // Fault 1.
 TEST(Ply, FewerRecordsThanTheHeaderStates) {
   const std::string header = "element vertex 2\n" + kXyzFloat + "end_header\n";
-  expect_data_error(kBinary + header + std::string(23, '\1'),
-                    {"file.ply", "byte", "room for 1", "states 2"});
-  expect_data_error(kAscii + header + "1 2 3\n", {"file.ply", "states 2"});
-  expect_data_error(kAscii + header + "1 2 3            \n", {"file.ply:", "after 1", "states 2"});
-  expect_data_error(kAscii + header + "1 2 3\n4 5\n6\n", {"file.ply:9", "'z'", "end of the line"});
+  expect_ply_error(kBinary + header + std::string(23, '\1'),
+                   {"file.ply", "byte", "room for 1", "states 2"});
+  expect_ply_error(kAscii + header + "1 2 3\n", {"file.ply", "states 2"});
+  expect_ply_error(kAscii + header + "1 2 3            \n", {"file.ply:", "after 1", "states 2"});
+  expect_ply_error(kAscii + header + "1 2 3\n4 5\n6\n", {"file.ply:9", "'z'", "end of the line"});
 }
 
 // Fault 2, and other broken headers.
 TEST(Ply, BrokenHeaders) {
-  expect_data_error(kAscii + "element vertex 1\n" + kXyzFloat, {"end_header"});
-  expect_data_error(kAscii + "element vertex 1\n" + kXyzFloat + "1 2 3\n", {"file.ply:7", "'1'"});
-  expect_data_error("ply\nend_header\n", {"no 'format'"});
-  expect_data_error("plx\n", {"'plx'", "'ply'"});
-  expect_data_error("ply\nformat binary 1.0\n", {"file.ply:2", "'binary'"});
-  expect_data_error("ply\nformat ascii 2.0\n", {"'2.0'", "1.0"});
-  expect_data_error(kAscii + "property float x\n", {"before the first element"});
-  expect_data_error(kAscii + "element vertex 1\nproperty real x\n", {"'real'"});
-  expect_data_error(kAscii + "element vertex 1\nproperty float\n", {"without a name"});
-  expect_data_error(kAscii + "element vertex 1\nproperty int x\nproperty int x\n", {"twice"});
-  expect_data_error(kAscii + "element vertex 1\nelement vertex 1\n", {"twice"});
-  expect_data_error(kAscii + "element vertex 1\nend_header\n1\n", {"no properties"});
-  expect_data_error(kAscii + "element points 1\nproperty int x\nend_header\n1\n", {"'vertex'"});
-  expect_data_error("", {"empty"});
+  expect_ply_error(kAscii + "element vertex 1\n" + kXyzFloat, {"end_header"});
+  expect_ply_error(kAscii + "element vertex 1\n" + kXyzFloat + "1 2 3\n", {"file.ply:7", "'1'"});
+  expect_ply_error("ply\nend_header\n", {"no 'format'"});
+  expect_ply_error("plx\n", {"'plx'", "'ply'"});
+  expect_ply_error("ply\nformat binary 1.0\n", {"file.ply:2", "'binary'"});
+  expect_ply_error("ply\nformat ascii 2.0\n", {"'2.0'", "1.0"});
+  expect_ply_error(kAscii + "property float x\n", {"before the first element"});
+  expect_ply_error(kAscii + "element vertex 1\nproperty real x\n", {"'real'"});
+  expect_ply_error(kAscii + "element vertex 1\nproperty float\n", {"without a name"});
+  expect_ply_error(kAscii + "element vertex 1\nproperty int x\nproperty int x\n", {"twice"});
+  expect_ply_error(kAscii + "element vertex 1\nelement vertex 1\n", {"twice"});
+  expect_ply_error(kAscii + "element vertex 1\nend_header\n1\n", {"no properties"});
+  expect_ply_error(kAscii + "element points 1\nproperty int x\nend_header\n1\n", {"'vertex'"});
+  expect_ply_error("", {"empty"});
 }
 
 // Fault 3: counts are rejected before allocation; products of sizes would wrap.
@@ -167,15 +168,15 @@ TEST(Ply, HugeCounts) {
     const std::string header = "element vertex " + std::string(count) + "\n" + kXyzFloat;
     const std::string list = "property list uchar int l\n";
     for (const std::string& start : {kAscii, kBinary}) {
-      expect_data_error(start + header + "end_header\n" + std::string(1000, '1'), {count});
-      expect_data_error(start + header + list + "end_header\n" + std::string(1000, '1'), {count});
+      expect_ply_error(start + header + "end_header\n" + std::string(1000, '1'), {count});
+      expect_ply_error(start + header + list + "end_header\n" + std::string(1000, '1'), {count});
     }
     const std::string before = "element other " + std::string(count) + "\nproperty double a\n";
-    expect_data_error(kBinary + before + header + "end_header\n" + std::string(100, '1'), {count});
-    expect_data_error(kAscii + before + header + "end_header\n1\n1\n", {"after 2"});
+    expect_ply_error(kBinary + before + header + "end_header\n" + std::string(100, '1'), {count});
+    expect_ply_error(kAscii + before + header + "end_header\n1\n1\n", {"after 2"});
   }
   for (const char* count : {"-1", "1.5", "18446744073709551616", "", "0x10"})
-    expect_data_error(kBinary + "element vertex " + count + "\n", {"file.ply:3", "count"});
+    expect_ply_error(kBinary + "element vertex " + count + "\n", {"file.ply:3", "count"});
 }
 
 // Fault 4.
@@ -209,17 +210,18 @@ TEST(Ply, BadTokens) {
     return kAscii + "element vertex 1\nproperty " + type + " x\nend_header\n" + token + "\n";
   };
   for (const char* token : {"256", "-1", "1.5", "abc", "0x10", "1e3", "1,5", "nan", "--1", "+-1"})
-    expect_data_error(with("uchar", token), {"file.ply:6", "'x'", token});
+    expect_ply_error(with("uchar", token), {"file.ply:6", "'x'", token});
   for (const char* token : {"1e39", "abc", "1..2", "1,5", "1.5f", "+", "1e400", "-1e400"})
-    expect_data_error(with("float", token), {"file.ply:6", "'x'", token});
-  expect_data_error(with("int", "2147483648"), {"'2147483648'"});
-  expect_data_error(with("int", "1 2"), {"'2' after the last"});
-  EXPECT_EQ(values_of(read(with("float", "1e-60")), "x"), Doubles{0});
-  EXPECT_EQ(values_of(read(with("double", "-1e-400")), "x"), Doubles{-0.0});
-  EXPECT_EQ(values_of(read(with("float", "1e-40")), "x"), Doubles{static_cast<double>(1e-40F)});
-  EXPECT_EQ(values_of(read(with("float", "-1.#INF")), "x"),
+    expect_ply_error(with("float", token), {"file.ply:6", "'x'", token});
+  expect_ply_error(with("int", "2147483648"), {"'2147483648'"});
+  expect_ply_error(with("int", "1 2"), {"'2' after the last"});
+  EXPECT_EQ(values_of(read_ply_bytes(with("float", "1e-60")), "x"), Doubles{0});
+  EXPECT_EQ(values_of(read_ply_bytes(with("double", "-1e-400")), "x"), Doubles{-0.0});
+  EXPECT_EQ(values_of(read_ply_bytes(with("float", "1e-40")), "x"),
+            Doubles{static_cast<double>(1e-40F)});
+  EXPECT_EQ(values_of(read_ply_bytes(with("float", "-1.#INF")), "x"),
             Doubles{-std::numeric_limits<double>::infinity()});
-  EXPECT_TRUE(std::isnan(values_of(read(with("double", "1.#QNAN")), "x")[0]));
+  EXPECT_TRUE(std::isnan(values_of(read_ply_bytes(with("double", "1.#QNAN")), "x")[0]));
 }
 
 // Fault 9.
@@ -269,9 +271,9 @@ TEST(PlyMesh, NeedsFacesWithCorners) {
                [&] { read_mesh(vertices + "element face 0\nproperty uchar c\nend_header\n1\n"); });
   const TemporaryFolder folder;
   const std::string faces = "\nproperty list uchar int vertex_indices\nend_header\n1\n";
-  EXPECT_FALSE(ply_has_faces(folder.file("a.ply", vertices + "end_header\n1\n")));
-  EXPECT_FALSE(ply_has_faces(folder.file("b.ply", vertices + "element face 0" + faces)));
-  EXPECT_TRUE(ply_has_faces(folder.file("c.ply", vertices + "element face 1" + faces)));
+  EXPECT_FALSE(ply_has_faces(folder.write("a.ply", vertices + "end_header\n1\n")));
+  EXPECT_FALSE(ply_has_faces(folder.write("b.ply", vertices + "element face 0" + faces)));
+  EXPECT_TRUE(ply_has_faces(folder.write("c.ply", vertices + "element face 1" + faces)));
 }
 
 // Fault 5 of an index: 2^32 in a uint64 list must not wrap to vertex 0.

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {
 
 using io_test::bytes_of;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 
 template <class T>

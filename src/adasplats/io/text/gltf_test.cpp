@@ -15,11 +15,11 @@
 namespace adasplats {
 namespace {
 
-using Json = nlohmann::json;
+using Gltf = nlohmann::json;
 using Corners = std::vector<std::uint32_t>;
 
 template <class T>
-std::string bytes_of(const std::vector<T>& values) {
+std::string buffer_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
   if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
@@ -38,26 +38,26 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-std::string glb(const Json& json, const std::string& binary) {
-  constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+std::string glb(const Gltf& json, const std::string& binary) {
+  constexpr std::uint32_t kJson = 0x4e4f534a, kBin = 0x004e4942;
   const auto chunk = [](std::string content, std::uint32_t type, char filler) {
     while (content.size() % 4 != 0) content += filler;
-    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(content.size()), type}) + content;
+    return buffer_of<std::uint32_t>({static_cast<std::uint32_t>(content.size()), type}) + content;
   };
-  const std::string chunks = chunk(json.dump(), kJson, ' ') + chunk(binary, kBinary, '\0');
+  const std::string chunks = chunk(json.dump(), kJson, ' ') + chunk(binary, kBin, '\0');
   return std::string("glTF") +
-         bytes_of<std::uint32_t>({2, static_cast<std::uint32_t>(12 + chunks.size())}) + chunks;
+         buffer_of<std::uint32_t>({2, static_cast<std::uint32_t>(12 + chunks.size())}) + chunks;
 }
 
 /// A pyramid's four vertices, and indices of two triangles as bytes.
 std::string vertices_and_indices() {
-  return bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3}) +
-         bytes_of<std::uint8_t>({0, 1, 2, 0, 3, 1});
+  return buffer_of<float>({0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3}) +
+         buffer_of<std::uint8_t>({0, 1, 2, 0, 3, 1});
 }
 
 /// With the buffer left to the caller.
-Json two_triangles() {
-  return Json::parse(R"({
+Gltf two_triangles() {
+  return Gltf::parse(R"({
     "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
@@ -69,7 +69,7 @@ Json two_triangles() {
     "buffers": [{"byteLength": 54}]})");
 }
 
-Json with_data(Json json, const std::string& bytes) {
+Gltf with_data(Gltf json, const std::string& bytes) {
   json["buffers"][0] = {
       {"byteLength", bytes.size()},
       {"uri", std::string("data:application/octet-stream;base64,") + base64(bytes)}};
@@ -87,10 +87,10 @@ std::vector<Vec3d> vertices_of(const MeshTable& mesh) {
 
 class GltfTest : public testing::Test {
  protected:
-  MeshTable read(const Json& json, const std::string& bytes = vertices_and_indices()) const {
+  MeshTable read(const Gltf& json, const std::string& bytes = vertices_and_indices()) const {
     return read_gltf_mesh(folder_.write("mesh.gltf", with_data(json, bytes).dump()));
   }
-  void expect_rejected(const Json& json, const std::vector<std::string>& parts) const {
+  void expect_rejected(const Gltf& json, const std::vector<std::string>& parts) const {
     expect_error(ErrorKind::data, parts, [&] { read(json); });
   }
 
@@ -99,7 +99,7 @@ class GltfTest : public testing::Test {
 
 // Oracle: the numbers in the file; glTF's left, up, forward (x, y, z) are our y, z, x.
 TEST_F(GltfTest, SameMeshFromAllThreeContainers) {
-  Json beside = two_triangles();
+  Gltf beside = two_triangles();
   beside["buffers"][0]["uri"] = "a%20b%2ebin";
   folder_.write("a b.bin", vertices_and_indices());
   for (const auto& path :
@@ -124,9 +124,9 @@ TEST_F(GltfTest, IsRecognisedByItsContent) {
 // Oracle: the products written out. The child is turned by 90 degrees about y (z to x), scaled
 // and moved by its parent; the other node has a matrix.
 TEST_F(GltfTest, NodesPlaceMeshes) {
-  Json json = two_triangles();
+  Gltf json = two_triangles();
   json["scenes"][0]["nodes"] = {0, 2};
-  json["nodes"] = Json::parse(R"([
+  json["nodes"] = Gltf::parse(R"([
     {"translation": [10, 20, 30], "scale": [1, 2, 4], "children": [1]},
     {"mesh": 0, "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]},
     {"mesh": 0, "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1]},
@@ -147,8 +147,8 @@ TEST_F(GltfTest, NodesPlaceMeshes) {
 
 // Oracle: section 3.7.2.1 of the specification.
 TEST_F(GltfTest, TrianglesOfEveryMode) {
-  Json json = two_triangles();
-  Json& primitive = json["meshes"][0]["primitives"][0];
+  Gltf json = two_triangles();
+  Gltf& primitive = json["meshes"][0]["primitives"][0];
   const auto corners = [&] { return read(json).triangle_vertices; };
   primitive["mode"] = 5;
   EXPECT_EQ(corners(), (Corners{0, 1, 2, 1, 2, 0, 2, 0, 3, 0, 3, 1}));
@@ -169,37 +169,37 @@ TEST_F(GltfTest, TrianglesOfEveryMode) {
 }
 
 TEST_F(GltfTest, InterleavedVerticesAndWiderIndices) {
-  Json json = two_triangles();
-  const std::string vertices = bytes_of<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 2, 0, 9, 0, 0, 3});
+  Gltf json = two_triangles();
+  const std::string vertices = buffer_of<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 2, 0, 9, 0, 0, 3});
   json["bufferViews"][0] = {{"buffer", 0}, {"byteLength", 64}, {"byteStride", 16}};
   json["accessors"][0]["byteOffset"] = 4;
   const std::vector<Vec3d> expected = vertices_of(read(two_triangles()));
   json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 64}, {"byteLength", 12}};
   json["accessors"][1]["componentType"] = 5123;
-  MeshTable mesh = read(json, vertices + bytes_of<std::uint16_t>({0, 1, 2, 0, 3, 1}));
+  MeshTable mesh = read(json, vertices + buffer_of<std::uint16_t>({0, 1, 2, 0, 3, 1}));
   EXPECT_EQ(vertices_of(mesh), expected);
   EXPECT_EQ(mesh.triangle_vertices, (Corners{0, 1, 2, 0, 3, 1}));
   json["bufferViews"][1]["byteLength"] = 24;
   json["accessors"][1]["componentType"] = 5125;
-  mesh = read(json, vertices + bytes_of<std::uint32_t>({0, 1, 2, 0, 3, 1}));
+  mesh = read(json, vertices + buffer_of<std::uint32_t>({0, 1, 2, 0, 3, 1}));
   EXPECT_EQ(mesh.triangle_vertices, (Corners{0, 1, 2, 0, 3, 1}));
 }
 
 TEST_F(GltfTest, WithoutScenesEveryMeshOnce) {
-  Json json = two_triangles();
+  Gltf json = two_triangles();
   json.erase("scenes");
   json.erase("scene");
   EXPECT_EQ(read(json).faces.rows, 2U);
   json.erase("meshes");
   EXPECT_EQ(read(json).faces.rows, 0U);
-  json["scenes"] = Json::parse("[{}]");
+  json["scenes"] = Gltf::parse("[{}]");
   EXPECT_EQ(read(json).faces.rows, 0U);
 }
 
 TEST_F(GltfTest, IndicesOutsideTheirArrays) {
-  const auto changed = [](const char* pointer, const Json& value) {
-    Json json = two_triangles();
-    json[Json::json_pointer(pointer)] = value;
+  const auto changed = [](const char* pointer, const Gltf& value) {
+    Gltf json = two_triangles();
+    json[Gltf::json_pointer(pointer)] = value;
     return json;
   };
   expect_rejected(changed("/scene", 1), {"mesh.gltf", "scene", "found 1", "there are only 1"});
@@ -221,9 +221,9 @@ TEST_F(GltfTest, IndicesOutsideTheirArrays) {
 }
 
 TEST_F(GltfTest, ValuesOfTheWrongType) {
-  const auto changed = [](const char* pointer, const Json& value) {
-    Json json = two_triangles();
-    json[Json::json_pointer(pointer)] = value;
+  const auto changed = [](const char* pointer, const Gltf& value) {
+    Gltf json = two_triangles();
+    json[Gltf::json_pointer(pointer)] = value;
     return json;
   };
   expect_rejected(changed("/asset/version", "1.0"), {"asset.version", "found 1.0"});
@@ -235,7 +235,7 @@ TEST_F(GltfTest, ValuesOfTheWrongType) {
   expect_rejected(changed("/accessors/0/type", "VEC2"), {"accessors[0].type", "VEC3"});
   expect_rejected(changed("/accessors/0/componentType", 5123), {"componentType", "5126"});
   expect_rejected(changed("/accessors/1/componentType", 5126), {"componentType", "5121"});
-  expect_rejected(changed("/accessors/0/sparse", Json::object()), {"sparse"});
+  expect_rejected(changed("/accessors/0/sparse", Gltf::object()), {"sparse"});
   expect_rejected(changed("/meshes/0/primitives/0/mode", 7), {"mode 7"});
   expect_rejected(changed("/extensionsRequired", {"KHR_draco_mesh_compression"}),
                   {"draco", "export"});
@@ -243,7 +243,7 @@ TEST_F(GltfTest, ValuesOfTheWrongType) {
 }
 
 TEST_F(GltfTest, MissingBuffers) {
-  Json json = two_triangles();
+  Gltf json = two_triangles();
   const auto expect = [&](ErrorKind kind, const std::vector<std::string>& parts) {
     expect_error(kind, parts, [&] { read_gltf_mesh(folder_.write("m.gltf", json.dump())); });
   };
@@ -267,7 +267,7 @@ TEST_F(GltfTest, BrokenContainers) {
   rejected(whole.substr(0, 12), {"glTF"});
   rejected(whole.substr(0, 15), {"byte 12", "chunk"});
   rejected(whole.substr(0, whole.size() - 1), {"chunk"});
-  rejected(std::string("glTF") + bytes_of<std::uint32_t>({1, 12}), {"version 2", "found 1"});
+  rejected(std::string("glTF") + buffer_of<std::uint32_t>({1, 12}), {"version 2", "found 1"});
   rejected("{\"asset\": ", {"glTF", "line 1"});
   rejected("[]", {"object"});
   rejected("{}", {"'asset' is missing"});

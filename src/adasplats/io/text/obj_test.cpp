@@ -4,32 +4,30 @@
 
 #include <gtest/gtest.h>
 
-#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/base/files_test.h"
 
 namespace adasplats {
 namespace {
 
-using io_test::expect_error;
-using io_test::TemporaryFolder;
 using io_test::values_of;
 using Doubles = std::vector<double>;
 using Indices = std::vector<std::uint32_t>;
 
-MeshTable read(const std::string& content) {
+MeshTable read_obj_text(const std::string& content) {
   const TemporaryFolder folder;
-  return read_obj_mesh(folder.file("a file.obj", content));
+  return read_obj_mesh(folder.write("a file.obj", content));
 }
 
 bool recognised(const std::string& content) {
   const TemporaryFolder folder;
-  return is_obj(folder.file("file", content));
+  return is_obj(folder.write("file", content));
 }
 
 constexpr const char* kFourVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 // Oracle of the tests below: the indices as the Wavefront specification (1992) counts them.
 TEST(Obj, TrianglesWithEveryKindOfCorner) {
-  const MeshTable mesh = read(
+  const MeshTable mesh = read_obj_text(
       "# a comment\nmtllib x.mtl\no thing\nv 1 2 3\nv 4e0 -5 +6 1.0\r\nv 7 8 9 0.5 0.5 0.5\n"
       "vt 0 0\nvn 0 0 1\ng group\nusemtl m\ns off\nf 1 2 3\nf 1/1 2/1 3/1\nf 3//1 2//1 1//1\n"
       "f 1/1/1 3/1/1 2/1/1 # a comment\n");
@@ -42,30 +40,31 @@ TEST(Obj, TrianglesWithEveryKindOfCorner) {
 
 TEST(Obj, PolygonsBecomeFans) {
   const MeshTable mesh =
-      read("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5\nf 5 4 3 2\n");
+      read_obj_text("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5\nf 5 4 3 2\n");
   EXPECT_EQ(mesh.triangle_vertices, (Indices{0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2, 4, 2, 1}));
 }
 
 TEST(Obj, NegativeIndicesCountFromTheLastVertexSoFar) {
-  const MeshTable mesh = read(std::string(kFourVertices) + "f -4 -3 -2\nv 5 5 5\nf -1/-1 -5 -4\n");
+  const MeshTable mesh =
+      read_obj_text(std::string(kFourVertices) + "f -4 -3 -2\nv 5 5 5\nf -1/-1 -5 -4\n");
   EXPECT_EQ(mesh.triangle_vertices, (Indices{0, 1, 2, 4, 0, 1}));
 }
 
 TEST(Obj, VerticesMayFollowAndLinesMayContinue) {
-  const MeshTable mesh = read("f 1 2 \\\n  3\nv 0 0 0\nv 1 0 0\nv 0 \\\r\n 1 0\n\n");
+  const MeshTable mesh = read_obj_text("f 1 2 \\\n  3\nv 0 0 0\nv 1 0 0\nv 0 \\\r\n 1 0\n\n");
   EXPECT_EQ(mesh.triangle_vertices, (Indices{0, 1, 2}));
   EXPECT_EQ(values_of(mesh.vertices, "y"), (Doubles{0, 0, 1}));
 }
 
 TEST(Obj, VerticesWithoutFaces) {
-  const MeshTable mesh = read("v 1 2 3");
+  const MeshTable mesh = read_obj_text("v 1 2 3");
   EXPECT_EQ(mesh.vertices.rows, 1U);
   EXPECT_EQ(mesh.faces.rows, 0U);
 }
 
 TEST(Obj, BrokenFilesAreErrorsWithLines) {
   const auto bad = [](const std::string& content, const std::vector<std::string>& parts) {
-    expect_error(ErrorKind::data, parts, [&] { read(content); });
+    expect_error(ErrorKind::data, parts, [&] { read_obj_text(content); });
   };
   const std::string good = kFourVertices;
   bad(good + "f 1 2\n", {"a file.obj:5:", "3 corners", "2"});

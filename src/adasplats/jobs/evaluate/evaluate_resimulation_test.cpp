@@ -19,12 +19,6 @@
 namespace adasplats {
 namespace {
 
-DeviceOptions on_cpu() {
-  DeviceOptions options;
-  options.kind = DeviceKind::cpu;
-  return options;
-}
-
 /// A disk, and calibrated with scans at times 0, 1, 2 s and x = 0, 10, 20 m.
 SplatModel calibrated_model() {
   SplatModel model;
@@ -41,7 +35,7 @@ TimedPose pose_at(double time_s, double x) {
 
 // Oracle: the scans listed in the calibration. Time alone or position alone is no match.
 TEST(HeldOutProtocol, ScansOfTheModelMatchByTimeAndPosition) {
-  OwnSession session(on_cpu(), 1);
+  OwnSession session({.kind = DeviceKind::cpu}, 1);
   const ModelScene scene(calibrated_model(), std::nullopt, session);
   KittiSequence sequence;
   EXPECT_EQ(scans_of_model(scene, sequence), 0U);
@@ -95,7 +89,7 @@ TEST(EvaluateResimulation, ModelsOfOtherPlacesAreReported) {
     std::string text;
   };
   const TemporaryFolder folder;
-  OwnSession session(on_cpu(), 1);
+  OwnSession session({.kind = DeviceKind::cpu}, 1);
   const auto evaluate = [&](double x_m) {
     SplatModel wall;
     wall.disks = {{{5, 0, 2}, 4, {-1, 0, 0}}};

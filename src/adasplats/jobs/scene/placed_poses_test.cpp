@@ -16,12 +16,6 @@ namespace {
 
 constexpr Vec3d kOrigin = {448262, 5411932, 110};  // UTM
 
-DeviceOptions on_cpu() {
-  DeviceOptions options;
-  options.kind = DeviceKind::cpu;
-  return options;
-}
-
 /// A street that rises by a tenth along x, relative to the origin, with a hole of 1.4 m about zero
 /// where the vehicle stood, a roof 4 m above it from x = 10 on, a wall at y = 8, and two disks far
 /// below, as reflections make them.
@@ -45,7 +39,7 @@ SplatModel street() {
 
 class PlacedPoses : public testing::Test {
  protected:
-  OwnSession session_{on_cpu(), 2};
+  OwnSession session_{{.kind = DeviceKind::cpu}, 2};
   ModelScene scene_{street(), std::nullopt, session_};
   const Executor& executor_ = session_.executor;
   ProgressSink progress_;
@@ -91,7 +85,7 @@ TEST(PlacedPosesInHole, HeightIsOfTheGroundAround) {
     void warn(std::string_view message) override { text += message; }
     std::string text;
   } warnings;
-  OwnSession session(on_cpu(), 2);
+  OwnSession session({.kind = DeviceKind::cpu}, 2);
   const ModelScene scene(std::move(model), std::nullopt, session);
   const SensorPlace place{0, 0, {}, 0};
   const Trajectory poses = poses_at(scene, std::span(&place, 1), 2, session.executor, warnings);

@@ -12,6 +12,7 @@
 #include <set>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
@@ -100,7 +101,6 @@ TEST(ScanWindows, AShortDriveIsOneWindow) {
 class BadScans final : public ScanReader {
  public:
   KittiScan read(const std::filesystem::path& file) const override {
-    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     if (file == "0") return {};
     KittiScan scan;

@@ -11,28 +11,16 @@
 #include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/captions/font.h"
 #include "adasplats/simulate/captions/text.h"
+#include "adasplats/simulate/image/pixels_test.h"
 
 namespace adasplats {
 namespace {
 
-constexpr Rgb kPaper = {77, 77, 77}, kRed = {255, 0, 0}, kGreen = {0, 255, 0};
+constexpr Rgb kPaper = {77, 77, 77};
 
 Image paper(int width, int height) {
   return {width, height,
           std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), kPaper[0])};
-}
-
-Rgb pixel(const Image& image, int x, int y) {
-  const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                       static_cast<std::size_t>(x));
-  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
-}
-
-std::size_t count(const Image& image, Rgb rgb) {
-  std::size_t found = 0;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) found += pixel(image, x, y) == rgb ? 1 : 0;
-  return found;
 }
 
 /// Columns and rows, first and last, of what is no paper.

@@ -9,23 +9,16 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/image/developing.h"
+#include "adasplats/simulate/image/pixels_test.h"
 #include "adasplats/simulate/image/shading.h"
 
 namespace adasplats {
 namespace {
-
-using Rgb = std::array<int, 3>;
-constexpr Rgb kWhite = {255, 255, 255};
-
-Rgb pixel(const Image& image, int x, int y) {
-  const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                       static_cast<std::size_t>(x));
-  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
-}
 
 std::size_t count_not(const Image& image, Rgb rgb) {
   std::size_t count = 0;
@@ -248,7 +241,7 @@ TEST(RenderImage, EveryPixelHasItsOwnRay) {
         Rgb expected = kWhite;
         if (hit.valid())
           for (int axis = 0; axis < 3; ++axis)
-            expected[static_cast<std::size_t>(axis)] = static_cast<int>(
+            expected[static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(
                 std::lround(127.5F * (1.0F + shot.disks[hit.primitive].normal[axis])));
         ASSERT_EQ(pixel(image, x, y), expected) << x << ", " << y;
       }
@@ -456,7 +449,6 @@ TEST(Viridis, HasItsEndsAndClampsTheRest) {
 }
 
 TEST(QuantileRange, IgnoresNonFiniteValues) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> values = {3, kNaN, 1, 2, HUGE_VALF, 5, 4};
   const ValueRange all = quantile_range(values, 0, 1);
   EXPECT_EQ(all.low, 1.0F);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/temporary_folder_test.h"
 
@@ -157,8 +158,7 @@ TEST(Layers, OnlyThoseWantedAreMade) {
 }
 
 TEST(Layers, MillimetresCountWhatTheyCannotHold) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<float> metres = {kNan, 1.2345F, 65.535F, 65.5356F, 1000, -2, 0.0001F};
+  const std::vector<float> metres = {kNaN, 1.2345F, 65.535F, 65.5356F, 1000, -2, 0.0001F};
   const Millimetres mm = millimetres_of(metres);
   EXPECT_EQ(mm.values, (std::vector<std::uint16_t>{0, 1235, 65535, 65535, 65535, 0, 0}));
   EXPECT_EQ(mm.clipped, 4U);

@@ -10,26 +10,13 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/simulate/image/pixels_test.h"
 #include "adasplats/simulate/image/point_colors.h"
 
 namespace adasplats {
 namespace {
 
-constexpr Rgb kWhite = {255, 255, 255}, kRed = {255, 0, 0}, kGreen = {0, 255, 0};
-constexpr Vec3d kOrigin = {7000, -300, 50};
-
-Rgb pixel(const Image& image, int x, int y) {
-  const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                       static_cast<std::size_t>(x));
-  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
-}
-
-std::size_t count(const Image& image, Rgb rgb) {
-  std::size_t found = 0;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) found += pixel(image, x, y) == rgb ? 1 : 0;
-  return found;
-}
+constexpr Vec3d kCloudOrigin = {7000, -300, 50};
 
 PointImageOptions on_white(PointImageOptions options = {}) {
   options.background = kWhite;
@@ -46,7 +33,7 @@ PointImageOptions single_pixels() {
 }
 
 Camera camera_of(int width, int height) {
-  Camera camera = look_at(kOrigin + Vec3d{3, -5, 4}, kOrigin + Vec3d{20, 9, 1});
+  Camera camera = look_at(kCloudOrigin + Vec3d{3, -5, 4}, kCloudOrigin + Vec3d{20, 9, 1});
   camera.width = width;
   camera.height = height;
   return camera;
@@ -54,7 +41,7 @@ Camera camera_of(int width, int height) {
 
 Image draw(const std::vector<Vec3f>& points, const std::vector<Rgb>& colors, const Camera& camera,
            const PointImageOptions& options, int threads = 1) {
-  return draw_points(points, kOrigin, colors, camera, options, Executor(threads));
+  return draw_points(points, kCloudOrigin, colors, camera, options, Executor(threads));
 }
 
 // Oracle: Camera::ray, which goes the other way.
@@ -68,7 +55,7 @@ TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
   for (const Camera& camera : {camera_of(40, 30), parallel, lens}) {
     for (int y = 0; y < camera.height; y += 7) {
       for (int x = 0; x < camera.width; x += 3) {
-        const Ray ray = camera.ray(x + 0.5, y + 0.5, kOrigin);
+        const Ray ray = camera.ray(x + 0.5, y + 0.5, kCloudOrigin);
         const Image image =
             draw({ray.origin + 8.0F * ray.direction}, {kRed}, camera, single_pixels());
         EXPECT_EQ(pixel(image, x, y), kRed);
@@ -80,7 +67,7 @@ TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
 
 TEST(DrawPoints, TheNearestThenTheFirstPointWins) {
   const Camera camera = camera_of(20, 20);
-  const Ray ray = camera.ray(10.5, 10.5, kOrigin);
+  const Ray ray = camera.ray(10.5, 10.5, kCloudOrigin);
   const Vec3f near = ray.origin + 5.0F * ray.direction;
   const Vec3f far = ray.origin + 5.01F * ray.direction;
   EXPECT_EQ(pixel(draw({far, near}, {kRed, kGreen}, camera, single_pixels()), 10, 10), kGreen);
@@ -91,7 +78,7 @@ TEST(DrawPoints, TheNearestThenTheFirstPointWins) {
 // Analytic: 10 cm at 4 m are 10 pixels where 100 pixels are 4 m wide there (tan of half the angle
 // is 0.5), and 5 pixels at twice the distance.
 TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
-  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  Camera camera = look_at(kCloudOrigin, kCloudOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 100;
   camera.horizontal_fov_rad = 2 * std::atan(0.5);
   PointImageOptions options = on_white();
@@ -111,7 +98,7 @@ TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
 TEST(DrawPoints, PointsBehindNonFiniteOrFarOutsideAreNotDrawn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
-  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  Camera camera = look_at(kCloudOrigin, kCloudOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 50;
   const std::vector<Vec3f> points = {{-5, 0, 0},    {0, 0, 0},        {nan, 0, 0},
                                      {5, 0, nan},   {infinity, 0, 0}, {5, -infinity, 0},
@@ -139,7 +126,7 @@ TEST(DrawPoints, SameBytesForAnyThreads) {
 
 // Analytic: far pixels beside near ones are darker, near ones and flat parts are not.
 TEST(DrawPoints, ReliefDarkensPointsBehind) {
-  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  Camera camera = look_at(kCloudOrigin, kCloudOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 60;
   PointImageOptions options = on_white();
   options.min_px = options.max_px = 60;

@@ -6,17 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kDegree = std::numbers::pi / 180;
 
 Vec3f direction_of(double azimuth_deg, double elevation_deg) {
   const double azimuth = azimuth_deg * kDegree, elevation = elevation_deg * kDegree;
@@ -93,9 +89,9 @@ TEST(RayDrop, SeparableDrawsEnd) {
 TEST(RayDrop, UnknownReflectanceIsTheUsualOne) {
   RayDropModel model = some_model();
   model.usual_reflectance = 0.25;
-  EXPECT_EQ(drop_probability(model, {30, 0.4F, kNan}), drop_probability(model, {30, 0.4F, 0.25F}));
+  EXPECT_EQ(drop_probability(model, {30, 0.4F, kNaN}), drop_probability(model, {30, 0.4F, 0.25F}));
   // Fitted: the median of those that are known.
-  std::vector<EchoConditions> echoes(300, {20, 0.5F, kNan});
+  std::vector<EchoConditions> echoes(300, {20, 0.5F, kNaN});
   std::vector<std::uint8_t> dropped(300, 0);
   for (std::size_t i = 0; i < 150; ++i) dropped[2 * i] = 1;
   EXPECT_EQ(fit_ray_drop(echoes, dropped).usual_reflectance, 0.3);
@@ -163,7 +159,7 @@ TEST(BlockedSectors, AreWhereScansAgree) {
   EXPECT_FALSE(model.blocks(direction_of(20, -20.0)));
   EXPECT_FALSE(model.blocks(direction_of(20, -21.0)));
   EXPECT_FALSE(model.blocks({0, 0, 0}));  // unknown
-  EXPECT_FALSE(model.blocks({kNan, 0, 0}));
+  EXPECT_FALSE(model.blocks({kNaN, 0, 0}));
 }
 
 TEST(BlockedSectors, ChangingSectorsAreNotBlocked) {
@@ -193,7 +189,7 @@ TEST(RayDrop, BeamsAreLostBelowTheirProbability) {
     rules.weights[0] = random.uniform(-6, 2);
     for (int i = 0; i < 3000; ++i) {
       EchoConditions echo = random_echo(random);
-      if (i % 10 == 0) echo.reflectance = kNan;
+      if (i % 10 == 0) echo.reflectance = kNaN;
       const double chance = drop_chance(rules, echo.range_m, echo.cos_incidence, echo.reflectance);
       // Any number, and those beside the chance.
       for (const double drawn : {random.uniform(), chance * (1 - 1e-12), chance * (1 + 1e-12)}) {

@@ -17,7 +17,7 @@
 namespace adasplats {
 namespace {
 
-constexpr Vec3d kOrigin = {650'000, 6'860'000, 35};
+constexpr Vec3d kUtmOrigin = {650'000, 6'860'000, 35};
 
 /// Disks of all sizes and directions around the origin.
 std::vector<Disk> scattered_disks(std::size_t count) {
@@ -44,13 +44,13 @@ class ScanCasterTest : public testing::Test {
       TimedPose pose;
       pose.time_s = 0.1 * i;
       pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0.4 * i, 0.05, -0.02),
-                                kOrigin + Vec3d{1.5 * i - 3, 0.25 * i, 1}};
+                                kUtmOrigin + Vec3d{1.5 * i - 3, 0.25 * i, 1}};
       poses_.push_back({pose, {}});
     }
   }
 
   std::unique_ptr<ScanCaster> caster() const {
-    return make_cpu_scan_caster(*tracer_, kOrigin, executor_);
+    return make_cpu_scan_caster(*tracer_, kUtmOrigin, executor_);
   }
   /// All hits that the sink was given, pose by pose.
   std::vector<std::vector<Hit>> cast(std::span<const ScanMotion> motions, int depth = 1) const {
@@ -77,7 +77,7 @@ TEST_F(ScanCasterTest, HitsMatchBruteForce) {
   const std::vector<std::vector<Hit>> scans = cast(poses_);
   ASSERT_EQ(scans.size(), poses_.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    const std::vector<Ray> rays = scan_rays(sensor_, firings_, poses_[i], kOrigin, executor_);
+    const std::vector<Ray> rays = scan_rays(sensor_, firings_, poses_[i], kUtmOrigin, executor_);
     std::vector<Hit> expected(rays.size());
     brute_force->nearest(rays, expected, executor_);
     EXPECT_EQ(scans[i], expected) << "pose " << i;
@@ -98,8 +98,8 @@ TEST_F(ScanCasterTest, ScansMatchSimulateScan) {
   caster()->cast(sensor_, firings_, poses_, 1, [&](std::size_t i, std::span<const Hit> hits) {
     const Scan scan =
         scan_of_hits(hits, attributes, sensor_, firings_, poses_[i], i, options, executor_);
-    const Scan expected = simulate_scan(*tracer_, attributes, kOrigin, sensor_, firings_, poses_[i],
-                                        i, options, executor_);
+    const Scan expected = simulate_scan(*tracer_, attributes, kUtmOrigin, sensor_, firings_,
+                                        poses_[i], i, options, executor_);
     EXPECT_EQ(scan.time_s, expected.time_s);
     EXPECT_EQ(scan.rays, expected.rays);
     EXPECT_EQ(scan.ranges_m, expected.ranges_m);

@@ -10,14 +10,13 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/simulate/scan/firing_report.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 LidarModel test_sensor() {
   LidarModel sensor;
@@ -236,7 +235,7 @@ TEST(Weather, ReturnsAreLostByTheFormula) {
 TEST(Weather, UnknownAndTinyReflectancesCountAsDocumented) {
   const Weather rain{.rain_mm_h = 30};
   const LidarModel sensor = test_sensor();
-  EXPECT_EQ(reported_share(rain, sensor, 60, kNan), reported_share(rain, sensor, 60, 0.3));
+  EXPECT_EQ(reported_share(rain, sensor, 60, kNaN), reported_share(rain, sensor, 60, 0.3));
   EXPECT_EQ(reported_share(rain, sensor, 60, 0), reported_share(rain, sensor, 60, 0.01));
   EXPECT_LT(reported_share(rain, sensor, 60, 0.1), reported_share(rain, sensor, 60, 0.3));
   const auto firings = fan(20'000);
@@ -467,8 +466,8 @@ TEST(Weather, NoFiringsAndNoRangeLeftAreNoReturns) {
 TEST(Weather, RejectsInvalidWeather) {
   const LidarModel sensor = test_sensor();
   for (const Weather& wrong :
-       {Weather{.rain_mm_h = -1}, Weather{.rain_mm_h = kNan}, Weather{.fog_visibility_m = -5},
-        Weather{.fog_visibility_m = kNan}, Weather{.snow_mm_h = -1}, Weather{.snow_mm_h = kNan},
+       {Weather{.rain_mm_h = -1}, Weather{.rain_mm_h = kNaN}, Weather{.fog_visibility_m = -5},
+        Weather{.fog_visibility_m = kNaN}, Weather{.snow_mm_h = -1}, Weather{.snow_mm_h = kNaN},
         Weather{.rain_mm_h = 1, .white_intensity = 0}}) {
     try {
       in_weather(Scan{}, {}, sensor, {}, wrong, 1, 0);

@@ -19,6 +19,7 @@
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/consistent/scanned_room_test.h"
 #include "adasplats/splats/model/canonical_order.h"
+#include "adasplats/splats/model/same_bytes_test.h"
 #include "adasplats/surface/adaptive_planes.h"
 #include "adasplats/trace/tracer.h"
 
@@ -45,7 +46,8 @@ struct Built {
   Warnings warnings;
 };
 
-Built build(PointCloud cloud, int threads = 2, const BuildOptions& options = consistent_options()) {
+Built build_consistent(PointCloud cloud, int threads = 2,
+                       const BuildOptions& options = consistent_options()) {
   Built built;
   std::tie(built.model, built.report) = build_model(std::move(cloud), &semantickitti_labels(),
                                                     options, Executor(threads), built.warnings);
@@ -54,7 +56,7 @@ Built build(PointCloud cloud, int threads = 2, const BuildOptions& options = con
 
 /// The room's model, made once: tests only look at it.
 const Built& room_model() {
-  static const Built built = build(scanned_room());
+  static const Built built = build_consistent(scanned_room());
   return built;
 }
 
@@ -72,17 +74,6 @@ void expect_sound(const Built& built) {
     EXPECT_TRUE(std::isfinite(disk.radius));
   }
   EXPECT_EQ(built.report.primitives, built.model.size());
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  if (a.size() != b.size()) return false;
-  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-bool same_bytes(const SplatModel& a, const SplatModel& b) {
-  return same_bytes(a.disks, b.disks) && same_bytes(a.classes, b.classes) &&
-         same_bytes(a.intensities, b.intensities);
 }
 
 float distance_to_points_m(Vec3f place, const std::vector<Vec3f>& points) {
@@ -107,7 +98,7 @@ TEST(ConsistentModel, CellsOfSmallDenseObjectsFollowTheSpacing) {
         direction_of(random.uniform(0, 6.2831853), std::asin(random.uniform(-1, 1)));
     cloud.positions.push_back(kRadius_m * vec_cast<float>(direction));
   }
-  const Built ball = build(cloud);
+  const Built ball = build_consistent(cloud);
   EXPECT_LT(ball.report.consistent->scale, 0.25);
   EXPECT_GT(ball.model.size(), 500U);
   for (const Disk& disk : ball.model.disks) ASSERT_NEAR(length(disk.center), kRadius_m, 0.002F);
@@ -116,12 +107,12 @@ TEST(ConsistentModel, CellsOfSmallDenseObjectsFollowTheSpacing) {
   }));
   BuildOptions chosen = consistent_options();
   std::get<ConsistentOptions>(chosen.recipe).cell_m = 0.04;
-  EXPECT_EQ(build(cloud, 2, chosen).report.consistent->scale, 1);
+  EXPECT_EQ(build_consistent(cloud, 2, chosen).report.consistent->scale, 1);
   // Noise of half a cell: smaller cells would show the noise.
   for (std::size_t i = 0; i < cloud.size(); ++i)
     cloud.positions[i] =
         (1 + static_cast<float>(Random(4, 0, i).uniform(-0.4, 0.4))) * cloud.positions[i];
-  EXPECT_GE(build(cloud).report.consistent->scale, 0.25);
+  EXPECT_GE(build_consistent(cloud).report.consistent->scale, 0.25);
 }
 
 TEST(ConsistentModel, PointsFromTheAirStayInPlace) {
@@ -133,7 +124,7 @@ TEST(ConsistentModel, PointsFromTheAirStayInPlace) {
     cloud.positions.push_back(vec_cast<float>(
         Vec3d{x, y, is_tree ? random.uniform(1, 15) : random.uniform(-0.03, 0.03)}));
   }
-  const Built forest = build(cloud);
+  const Built forest = build_consistent(cloud);
   EXPECT_TRUE(forest.report.consistent->sparse);
   EXPECT_EQ(forest.report.consistent->splats_limited, 0U);
   EXPECT_GT(forest.model.size(), 1500U);
@@ -152,7 +143,7 @@ TEST(ConsistentModel, CountsCentresMovedByTheMaximum) {
   }
   BuildOptions options = consistent_options();
   std::get<ConsistentOptions>(options.recipe).isolated = 100;
-  const Built built = build(cloud, 2, options);
+  const Built built = build_consistent(cloud, 2, options);
   EXPECT_FALSE(built.report.consistent->sparse);
   EXPECT_GT(built.report.consistent->splats_limited, 50U);
   // A few centres are nearer to another point than to their own.
@@ -228,7 +219,7 @@ TEST(ConsistentModel, SurfacesThatLaterRaysPassThroughLeaveAlmostNoSplats) {
   // Without the rays it stays: that is what the check is for.
   BuildOptions unchecked = consistent_options();
   std::get<ConsistentOptions>(unchecked.recipe).balance_rounds = 0;
-  const Built built = build(cloud, 2, unchecked);
+  const Built built = build_consistent(cloud, 2, unchecked);
   EXPECT_GE(splats_in(built.model, above_floor, 0.05), 5U);
   EXPECT_FALSE(built.report.ray_checked);
   EXPECT_TRUE(built.warnings.texts.empty());
@@ -262,7 +253,7 @@ PointCloud scanned_wall(bool with_empty_beams) {
 // Nothing was measured above the edge, so only empty beams limit the disks.
 TEST(ConsistentModel, BeamsWithoutReturnEndDisksAtEdges) {
   const auto overhang_m2 = [](bool with_empty_beams) {
-    const Built built = build(scanned_wall(with_empty_beams));
+    const Built built = build_consistent(scanned_wall(with_empty_beams));
     EXPECT_EQ(built.report.consistent->empty_beams > 0, with_empty_beams);
     const std::unique_ptr<Tracer> tracer = make_cpu_tracer(built.model.view(), Executor(2));
     // Of a grid of rays from the front.
@@ -328,7 +319,7 @@ TEST(ConsistentModel, MajorityOfACellAndTheSmallestOfEquals) {
       }
     }
   }
-  const Built built = build(cloud);
+  const Built built = build_consistent(cloud);
   ASSERT_GT(built.model.size(), 0U);
   for (std::size_t i = 0; i < built.model.size(); ++i) {
     EXPECT_EQ(built.model.classes[i], 40);
@@ -339,7 +330,7 @@ TEST(ConsistentModel, MajorityOfACellAndTheSmallestOfEquals) {
     if (label == 40) label = 10;  // cars can move
   BuildOptions options = consistent_options();
   options.remove = DynamicRemoval::movable;
-  const Built removed = build(cloud, 2, options);
+  const Built removed = build_consistent(cloud, 2, options);
   EXPECT_EQ(removed.report.points_dynamic, 800U);
   EXPECT_EQ(removed.report.points_used, 1200U);
   ASSERT_GT(removed.model.size(), 0U);
@@ -371,19 +362,19 @@ TEST(ConsistentModel, OrderOfPointsAndThreadsDoNotChangeTheBytes) {
   PointCloud cloud = thin_room();
   // Equal positions with other attributes must not make the order matter either.
   for (std::size_t i = 0; i < 300; ++i) cloud.positions[i + 1000] = cloud.positions[i];
-  const SplatModel one = build(cloud, 1, quick_options()).model;
+  const SplatModel one = build_consistent(cloud, 1, quick_options()).model;
   EXPECT_GT(one.size(), 500U);
   std::vector<std::uint32_t> order(cloud.size());
   std::iota(order.begin(), order.end(), 0U);
   for (std::size_t i = order.size(); i-- > 1;)
     std::swap(order[i], order[Random(5, 0, i).next_bits() % (i + 1)]);
-  EXPECT_TRUE(same_bytes(one, build(gather(cloud, order), 3, quick_options()).model));
+  EXPECT_TRUE(same_bytes(one, build_consistent(gather(cloud, order), 3, quick_options()).model));
 }
 
 TEST(ConsistentModel, WarnsOnceAboutMissingSensorPositions) {
   PointCloud cloud = thin_room();
   cloud.sensor_positions.clear();
-  const Built built = build(cloud, 2, quick_options());
+  const Built built = build_consistent(cloud, 2, quick_options());
   expect_sound(built);
   EXPECT_GT(built.model.size(), 500U);
   EXPECT_FALSE(built.report.ray_checked);
@@ -393,7 +384,8 @@ TEST(ConsistentModel, WarnsOnceAboutMissingSensorPositions) {
   EXPECT_TRUE(room_model().warnings.texts.empty());
   std::vector<std::uint32_t> backward(cloud.size());
   std::iota(backward.rbegin(), backward.rend(), 0U);
-  EXPECT_TRUE(same_bytes(built.model, build(gather(cloud, backward), 3, quick_options()).model));
+  EXPECT_TRUE(
+      same_bytes(built.model, build_consistent(gather(cloud, backward), 3, quick_options()).model));
 }
 
 /// With sensor positions that are off by 5 m, as the nearest pose of a trajectory may be.
@@ -405,10 +397,12 @@ PointCloud with_false_origins(PointCloud cloud, OriginKind kind) {
 
 TEST(ConsistentModel, GuessedOriginsMakeNoRays) {
   const PointCloud cloud = thin_room();
-  const Built guessed = build(with_false_origins(cloud, OriginKind::guessed), 2, quick_options());
+  const Built guessed =
+      build_consistent(with_false_origins(cloud, OriginKind::guessed), 2, quick_options());
   BuildOptions trusting = quick_options();
   trusting.trust_origins = true;  // else it is an error
-  const Built believed = build(with_false_origins(cloud, OriginKind::measured), 2, trusting);
+  const Built believed =
+      build_consistent(with_false_origins(cloud, OriginKind::measured), 2, trusting);
   EXPECT_FALSE(guessed.report.ray_checked);
   EXPECT_TRUE(guessed.report.oriented);
   EXPECT_TRUE(believed.report.ray_checked);
@@ -417,7 +411,7 @@ TEST(ConsistentModel, GuessedOriginsMakeNoRays) {
   // The same disks as without any origin, but for the side that they face.
   PointCloud bare = cloud;
   bare.sensor_positions.clear();
-  const SplatModel plain = build(bare, 2, quick_options()).model;
+  const SplatModel plain = build_consistent(bare, 2, quick_options()).model;
   ASSERT_EQ(guessed.model.size(), plain.size());
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_TRUE(guessed.model.disks[i].center == plain.disks[i].center);
@@ -427,10 +421,10 @@ TEST(ConsistentModel, GuessedOriginsMakeNoRays) {
 
 TEST(ConsistentModel, SomePointsMayLackAnOrigin) {
   PointCloud cloud = thin_room();
-  const std::size_t all = build(cloud, 2, quick_options()).model.size();
+  const std::size_t all = build_consistent(cloud, 2, quick_options()).model.size();
   cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
-  EXPECT_TRUE(same_bytes(build(cloud, 1, quick_options()).model,
-                         build(thin_room(), 2, quick_options()).model));
+  EXPECT_TRUE(same_bytes(build_consistent(cloud, 1, quick_options()).model,
+                         build_consistent(thin_room(), 2, quick_options()).model));
   double middle_m = 0;
   for (const Vec3f p : cloud.positions)
     middle_m += static_cast<double>(p.x) / static_cast<double>(cloud.size());
@@ -443,7 +437,7 @@ TEST(ConsistentModel, SomePointsMayLackAnOrigin) {
   }
   ASSERT_GT(unknown, cloud.size() / 10);
   ASSERT_LT(unknown, cloud.size() - cloud.size() / 10);
-  const Built mixed = build(cloud, 2, quick_options());
+  const Built mixed = build_consistent(cloud, 2, quick_options());
   expect_sound(mixed);
   EXPECT_TRUE(mixed.report.ray_checked);
   EXPECT_FALSE(mixed.report.oriented);
@@ -453,12 +447,13 @@ TEST(ConsistentModel, SomePointsMayLackAnOrigin) {
   EXPECT_GT(mixed.model.size(), all / 2);
   std::vector<std::uint32_t> backward(cloud.size());
   std::iota(backward.rbegin(), backward.rend(), 0U);
-  EXPECT_TRUE(same_bytes(mixed.model, build(gather(cloud, backward), 3, quick_options()).model));
+  EXPECT_TRUE(
+      same_bytes(mixed.model, build_consistent(gather(cloud, backward), 3, quick_options()).model));
 }
 
 std::optional<ErrorKind> kind_of_error(PointCloud cloud, const BuildOptions& options) {
   try {
-    build(std::move(cloud), 1, options);
+    build_consistent(std::move(cloud), 1, options);
   } catch (const Error& error) {
     return error.kind();
   }
@@ -499,24 +494,24 @@ TEST(ConsistentModel, DegenerateCloudsFinish) {
       return cloud;
     };
     // No extent, no radius, no splat.
-    EXPECT_EQ(build(cloud_of({{3, 1, 1}})).model.size(), 0U);
-    EXPECT_EQ(build(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1}))).model.size(), 0U);
+    EXPECT_EQ(build_consistent(cloud_of({{3, 1, 1}})).model.size(), 0U);
+    EXPECT_EQ(build_consistent(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1}))).model.size(), 0U);
     // Points at the sensor itself have no direction.
-    EXPECT_EQ(build(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F}))).model.size(), 0U);
+    EXPECT_EQ(build_consistent(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F}))).model.size(), 0U);
     for (const int n : {2, 7, 9, 500}) {
       std::vector<Vec3f> line, plane;
       for (int i = 0; i < n; ++i) {
         line.push_back({0.05F * static_cast<float>(i), 0, 0});
         plane.push_back({0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0});
       }
-      expect_sound(build(cloud_of(line)));
-      expect_sound(build(cloud_of(plane)));
+      expect_sound(build_consistent(cloud_of(line)));
+      expect_sound(build_consistent(cloud_of(plane)));
       // Outliers far beyond what floats can square.
       plane.insert(plane.end(), {{1e30F, 0, 0}, {0, -3e38F, 0}, {1e12F, 1e12F, 0}});
       if (n < 300) {  // most of the points
-        EXPECT_THROW(build(cloud_of(plane)), Error);
+        EXPECT_THROW(build_consistent(cloud_of(plane)), Error);
       } else {
-        expect_sound(build(cloud_of(plane)));
+        expect_sound(build_consistent(cloud_of(plane)));
       }
     }
   }
@@ -537,7 +532,7 @@ TEST(ConsistentModel, AStationKeepsTheFloorAroundIt) {
   cloud.sensor_positions.assign(cloud.size(), station);
   cloud.origin_kinds.assign(cloud.size(), OriginKind::stated);
   const std::size_t points = cloud.size();
-  const Built built = build(std::move(cloud));
+  const Built built = build_consistent(std::move(cloud));
   ASSERT_TRUE(built.report.consistent);
   EXPECT_EQ(built.report.consistent->rays, points);  // not only those from 2 m on
   std::vector<Ray> rays;
@@ -574,9 +569,9 @@ TEST(ConsistentModel, PointsOutOfRangeAreSkippedWithAWarning) {
   PointCloud cloud = scanned_room();
   const std::size_t points = cloud.size();
   const int few = static_cast<int>(points / 200);
-  const Built expected = build(cloud);
+  const Built expected = build_consistent(cloud);
   add_far_points(few, cloud);
-  const Built built = build(cloud);
+  const Built built = build_consistent(cloud);
   EXPECT_EQ(built.report.points_noise, static_cast<std::size_t>(few));
   EXPECT_EQ(built.report.points_used, points);
   ASSERT_EQ(built.warnings.texts.size(), 1U);
@@ -591,7 +586,7 @@ TEST(ConsistentModel, PointsOutOfRangeAreSkippedWithAWarning) {
 TEST(ConsistentModel, ManyPointsOutOfRangeAreAnError) {
   PointCloud cloud = scanned_room();
   add_far_points(static_cast<int>(cloud.size() / 50), cloud);
-  EXPECT_THROW(build(cloud), Error);
+  EXPECT_THROW(build_consistent(cloud), Error);
 }
 
 /// What the recipe makes of a cloud in canonical order.

@@ -161,7 +161,7 @@ const std::vector<WrongPlaces>& wrong_places() {
   return all;
 }
 
-BuildReport build(const PointCloud& cloud, bool trust_origins = false) {
+BuildReport build_report(const PointCloud& cloud, bool trust_origins = false) {
   BuildOptions options;
   options.trust_origins = trust_origins;
   ProgressSink quiet;
@@ -181,7 +181,7 @@ TEST(OriginCheck, RaysGoThroughFewestSeedsFromWhereTheSensorWas) {
 }
 
 TEST(OriginCheck, WrongSensorPositionsAreAnErrorUnlessTheyAreTrusted) {
-  const BuildReport checked = build(street()), unchecked = build(street(), true);
+  const BuildReport checked = build_report(street()), unchecked = build_report(street(), true);
   const std::optional<ConsistentReport>& right = checked.consistent;
   ASSERT_TRUE(right->origins.has_value());
   EXPECT_EQ(checked.primitives, unchecked.primitives);
@@ -189,14 +189,14 @@ TEST(OriginCheck, WrongSensorPositionsAreAnErrorUnlessTheyAreTrusted) {
   EXPECT_EQ(right->origins->contradicted, check_of(street()).contradicted);
   const PointCloud wrong = moved(street(), wrong_places()[0].place);
   try {
-    build(wrong);
+    build_report(wrong);
     ADD_FAILURE() << "wrong sensor positions are taken";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::data);
     EXPECT_NE(std::string(error.what()).find("sensor positions"), std::string::npos)
         << error.what();
   }
-  EXPECT_FALSE(build(wrong, true).consistent->origins.has_value());
+  EXPECT_FALSE(build_report(wrong, true).consistent->origins.has_value());
 }
 
 // Points are looked at in the order that they have in space, so theirs in the cloud is no matter.

@@ -15,7 +15,7 @@ constexpr float kStep_m = 0.05F;
 constexpr float kSeed_m = 0.06F;
 
 /// The tests' own numbers: the defaults may be tuned.
-CoverOptions tested_options() {
+CoverOptions tested_cover() {
   CoverOptions options;
   options.neighbors = 160;
   options.tolerance_m = 0.015;
@@ -82,7 +82,7 @@ bool is_covered(const Disk& seed, const std::vector<Disk>& chosen, const CoverOp
 void expect_all_covered(const std::vector<Disk>& seeds, const std::vector<Disk>& chosen) {
   std::size_t bare = 0;
   for (const Disk& seed : seeds)
-    if (seed.radius > 0 && !is_covered(seed, chosen, tested_options())) ++bare;
+    if (seed.radius > 0 && !is_covered(seed, chosen, tested_cover())) ++bare;
   EXPECT_EQ(bare, 0U);
 }
 
@@ -92,7 +92,7 @@ TEST(SurfaceCover, FlatPlaneTakesFewLargeDisks) {
   std::vector<Disk> patch;
   add_patch(patch, 60, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Seeds seeds(patch, executor);
-  const SurfaceCover cover(seeds.disks, seeds.index, tested_options(), executor);
+  const SurfaceCover cover(seeds.disks, seeds.index, tested_cover(), executor);
   const std::vector<Disk> chosen = cover.choose(executor);
   ASSERT_EQ(chosen.size(), seeds.disks.size());
   EXPECT_GE(count_chosen(chosen), 3600U / 120);
@@ -112,7 +112,7 @@ TEST(SurfaceCover, NoDiskIsLargerThanAllowed) {
   std::vector<Disk> patch;
   add_patch(patch, 30, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Seeds seeds(patch, executor);
-  CoverOptions options = tested_options();
+  CoverOptions options = tested_cover();
   options.largest_radius_m = 0.2;
   const auto chosen = SurfaceCover(seeds.disks, seeds.index, options, executor).choose(executor);
   float largest_m = 0;
@@ -133,7 +133,7 @@ TEST(SurfaceCover, ParallelPlanesDoNotCoverEachOther) {
     both.insert(both.end(), high.begin(), high.end());
     const Seeds seeds(both, executor);
     const auto chosen =
-        SurfaceCover(seeds.disks, seeds.index, tested_options(), executor).choose(executor);
+        SurfaceCover(seeds.disks, seeds.index, tested_cover(), executor).choose(executor);
     std::vector<Disk> chosen_low, chosen_high;
     for (const Disk& disk : chosen)
       if (disk.radius > 0)
@@ -154,7 +154,7 @@ TEST(SurfaceCover, DisksStopAtACorner) {
   add_patch(corner, 40, {0, 0, 0.5F * kStep_m}, {0, 0, 1}, {0, 1, 0});
   const Seeds seeds(corner, executor);
   const auto chosen =
-      SurfaceCover(seeds.disks, seeds.index, tested_options(), executor).choose(executor);
+      SurfaceCover(seeds.disks, seeds.index, tested_cover(), executor).choose(executor);
   expect_all_covered(seeds.disks, chosen);
   int large = 0;
   for (const Disk& disk : chosen) {
@@ -184,7 +184,7 @@ TEST(SurfaceCover, CurvedSurfaceKeepsSmallDisks) {
   }
   const Seeds seeds(tube, executor);
   const auto chosen =
-      SurfaceCover(seeds.disks, seeds.index, tested_options(), executor).choose(executor);
+      SurfaceCover(seeds.disks, seeds.index, tested_cover(), executor).choose(executor);
   expect_all_covered(seeds.disks, chosen);
   for (const Disk& disk : chosen) EXPECT_LT(disk.radius, std::sqrt(2 * kTube_m * 0.015) + 0.04);
 }
@@ -205,7 +205,7 @@ struct GrownPatch {
     add_patch(all, n, {0, 0, 0}, u, v);
     for (const Disk& disk : all)
       if (is_there(x_of(disk), y_of(disk))) patch.push_back(disk);
-    CoverOptions options = tested_options();
+    CoverOptions options = tested_cover();
     options.neighbors = 1000;  // the largest radius limits, not these
     options.overlap = 0;
     options.sectors = sectors;
@@ -279,7 +279,7 @@ TEST(SurfaceCover, WithSectorsEverySeedIsStillCovered) {
   std::vector<Disk> patch;
   add_patch(patch, 30, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Seeds seeds(patch, executor);
-  CoverOptions options = tested_options();
+  CoverOptions options = tested_cover();
   const auto chosen_with = [&](int sectors) {
     options.sectors = sectors;
     return SurfaceCover(seeds.disks, seeds.index, options, executor).choose(executor);
@@ -295,7 +295,7 @@ TEST(SurfaceCover, LimitsHold) {
   std::vector<Disk> patch;
   add_patch(patch, 40, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Seeds seeds(patch, executor);
-  SurfaceCover cover(seeds.disks, seeds.index, tested_options(), executor);
+  SurfaceCover cover(seeds.disks, seeds.index, tested_cover(), executor);
   const std::vector<Disk> before = cover.choose(executor);
   std::vector<Disk> expected = seeds.disks;  // what is left to cover
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -326,7 +326,7 @@ TEST(SurfaceCover, SeedsWithoutRadiusAreIgnored) {
   for (int k = 0; k < 50; ++k)
     patch.push_back({{0.02F * static_cast<float>(k), 0.51F, 0.05F}, 0, {1, 0, 0}});
   const Seeds seeds(patch, executor);
-  CoverOptions options = tested_options();
+  CoverOptions options = tested_cover();
   options.neighbors = 1000;  // of all seeds: absent ones take no one's place
   const auto chosen = SurfaceCover(seeds.disks, seeds.index, options, executor).choose(executor);
   for (std::size_t i = 0; i < chosen.size(); ++i)
@@ -346,7 +346,7 @@ TEST(SurfaceCover, SameBytesForEveryNumberOfThreads) {
   const auto chosen_by = [&](int threads) {
     const Executor executor(threads);
     const Seeds seeds(patch, executor);
-    return SurfaceCover(seeds.disks, seeds.index, tested_options(), executor).choose(executor);
+    return SurfaceCover(seeds.disks, seeds.index, tested_cover(), executor).choose(executor);
   };
   const std::vector<Disk> one = chosen_by(1);
   expect_all_covered(patch, one);
@@ -361,10 +361,9 @@ TEST(SurfaceCover, NoSeedOrOne) {
   const Executor executor(1);
   const Seeds none({}, executor);
   EXPECT_TRUE(
-      SurfaceCover(none.disks, none.index, tested_options(), executor).choose(executor).empty());
+      SurfaceCover(none.disks, none.index, tested_cover(), executor).choose(executor).empty());
   const Seeds one({{{1, 2, 3}, 0.07F, {0, 0, 1}}}, executor);
-  const auto chosen =
-      SurfaceCover(one.disks, one.index, tested_options(), executor).choose(executor);
+  const auto chosen = SurfaceCover(one.disks, one.index, tested_cover(), executor).choose(executor);
   ASSERT_EQ(chosen.size(), 1U);
   EXPECT_EQ(chosen[0].radius, 0.07F);
 }

@@ -47,7 +47,7 @@ std::vector<Disk> random_disks(std::size_t n) {
 }
 
 /// The tests' own numbers: the defaults may be tuned.
-EvidenceOptions tested_options() {
+EvidenceOptions evidence_options() {
   EvidenceOptions options;
   options.range_margin_m = 0.15F;
   options.height_margin_m = 0.03F;
@@ -165,7 +165,7 @@ TEST(CollectEvidence, EqualsBruteForce) {
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
   for (const std::uint32_t part : {0U, 3U}) {
-    EvidenceOptions options = tested_options();
+    EvidenceOptions options = evidence_options();
     options.parts = 4;
     options.part = part;
     const RayEvidence found = collect_evidence(disks, one(rays), options, executor);
@@ -183,7 +183,7 @@ TEST(CollectEvidence, PartsAreAllRaysTogetherAndThreadsDoNotMatter) {
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
   const std::vector<Disk> disks = random_disks(20);
-  EvidenceOptions options = tested_options();
+  EvidenceOptions options = evidence_options();
   const RayEvidence all = collect_evidence(disks, one(rays), options, executor);
   expect_equal_but(40, all.confirmed, by_brute_force(disks, rays, options).confirmed);
   for (const int threads : {1, 3}) {
@@ -234,13 +234,13 @@ TEST(CollectEvidence, DisksWithoutRadiusAreIgnored) {
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
   std::vector<Disk> disks = random_disks(40);
-  const RayEvidence before = collect_evidence(disks, one(rays), tested_options(), executor);
+  const RayEvidence before = collect_evidence(disks, one(rays), evidence_options(), executor);
   const Disk absent = {{0, 0, 0}, 0, {0, 0, 1}};
   Disk not_a_number = absent, negative = absent;
   not_a_number.radius = std::numeric_limits<float>::quiet_NaN();
   negative.radius = -1;
   disks.insert(disks.begin(), {absent, not_a_number, negative});
-  const RayEvidence after = collect_evidence(disks, one(rays), tested_options(), executor);
+  const RayEvidence after = collect_evidence(disks, one(rays), evidence_options(), executor);
   constexpr std::ptrdiff_t kFirst = 3 * RayEvidence::kBins;
   for (const auto& [a, b] : {std::pair(&before.confirmed, &after.confirmed),
                              std::pair(&before.contradicted, &after.contradicted)}) {
@@ -248,12 +248,12 @@ TEST(CollectEvidence, DisksWithoutRadiusAreIgnored) {
     EXPECT_TRUE(std::all_of(b->begin(), b->begin() + kFirst, [](auto n) { return n == 0; }));
   }
   const RayEvidence none =
-      collect_evidence(std::span(disks).first(3), one(rays), tested_options(), executor);
+      collect_evidence(std::span(disks).first(3), one(rays), evidence_options(), executor);
   EXPECT_EQ(none.confirmed, std::vector<std::uint32_t>(3 * RayEvidence::kBins));
-  EXPECT_TRUE(collect_evidence({}, one(rays), tested_options(), executor).confirmed.empty());
+  EXPECT_TRUE(collect_evidence({}, one(rays), evidence_options(), executor).confirmed.empty());
   const PointCloud empty;
   const MeasuredRays no_rays(empty, 2, executor);
-  EXPECT_EQ(total(collect_evidence(disks, one(no_rays), tested_options(), executor).contradicted),
+  EXPECT_EQ(total(collect_evidence(disks, one(no_rays), evidence_options(), executor).contradicted),
             0U);
 }
 
@@ -274,7 +274,7 @@ TEST(CollectEvidence, RingsAndMarginByHand) {
   measure(-0.9F, 60);      // bin 12, goes on
   measure(1.01F, 60);      // passes it
   measure(0.995F, 10.3F);  // bin 15, goes on
-  const EvidenceOptions options = tested_options();
+  const EvidenceOptions options = evidence_options();
   const Executor executor(1);
   const MeasuredRays rays(cloud, 2, executor);
   const RayEvidence evidence = collect_evidence(disk, one(rays), options, executor);
@@ -322,7 +322,7 @@ TEST(CollectEvidence, EmptyBeamsContradictAllThatTheyCross) {
                                    {{10.01F, 0, 0}, 1, {1, 0, 0}},
                                    {{20, 0, 0}, 1, {1, 0, 0}}};
   const RayEvidence evidence =
-      collect_evidence(disks, {{&rays, &empty}}, tested_options(), executor);
+      collect_evidence(disks, {{&rays, &empty}}, evidence_options(), executor);
   const auto no = [&](std::size_t i) {
     const DiskEvidence own = evidence_of(evidence, i);
     return total({own.contradicted.begin(), own.contradicted.end()});
@@ -352,7 +352,7 @@ TEST(CollectEvidence, SeesEveryDiskOfARay) {
   cloud.sensor_positions.resize(3);
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
-  const EvidenceOptions options = tested_options();
+  const EvidenceOptions options = evidence_options();
   for (const int count : {1, 47, 48, 49, 192, 193, 1000}) {
     for (const float step_m : {0.01F, 0.0F}) {
       std::vector<Disk> disks;

@@ -206,7 +206,7 @@ TEST(StrictRadius, KnownAnswers) {
 }
 
 /// The tests' own numbers: the defaults may be tuned.
-SettleOptions tested_options() {
+SettleOptions settle_options() {
   SettleOptions options;
   options.reach_m = 0.4;
   options.scale_m = 0.08;
@@ -254,7 +254,7 @@ TEST(SettleDisks, APlaneThatIsOffComesBack) {
     const Executor executor(2);
     const MeasuredRays rays(floor.cloud, 2, executor);
     const std::vector<Disk> before = floor.disks;
-    settle_disks(floor.disks, rays, tested_options(), executor);
+    settle_disks(floor.disks, rays, settle_options(), executor);
     for (std::size_t i = 0; i < floor.disks.size(); ++i) {
       EXPECT_LT(std::fabs(floor.disks[i].center.z), 0.003F);
       EXPECT_LE(std::fabs(floor.disks[i].center.z), std::fabs(height_m) + 1e-6F);
@@ -279,7 +279,7 @@ TEST(SettleDisks, PriorCountsAsRays) {
     const Executor executor(1);
     const MeasuredRays rays(cloud, 2, executor);
     std::vector<Disk> disks = {{{0, 0, 0.03F}, 0.1F, {0, 0, -1}}, {{0, 0, 0.1F}, 0, {0, 0, 1}}};
-    settle_disks(disks, rays, tested_options(), executor);
+    settle_disks(disks, rays, settle_options(), executor);
     const double share = n < 4 ? 0 : static_cast<double>(n) / static_cast<double>(n + 3);
     EXPECT_NEAR(disks[0].center.z, 0.03 - 0.03 * share, 1e-6) << n;
     EXPECT_EQ(disks[1].center.z, 0.1F);  // no radius: not there, hides nothing, does not move
@@ -292,7 +292,7 @@ TEST(SettleDisks, LimitsTheShiftAndIgnoresRaysOutOfReach) {
     Floor floor(4000, height_m);
     const Executor executor(1);
     const MeasuredRays rays(floor.cloud, 2, executor);
-    settle_disks(floor.disks, rays, tested_options(), executor);
+    settle_disks(floor.disks, rays, settle_options(), executor);
     const float moved_m = std::fabs(height_m) > 0.4F ? 0.0F : 0.1F;
     const Disk& middle = floor.disks[floor.disks.size() / 2];
     EXPECT_NEAR(middle.center.z, height_m - std::copysign(moved_m, height_m), 1e-6F);
@@ -304,7 +304,7 @@ TEST(SettleDisks, SameBytesForEveryNumberOfThreads) {
   const auto settled = [&](int threads) {
     std::vector<Disk> disks = floor.disks;
     const Executor executor(threads);
-    settle_disks(disks, MeasuredRays(floor.cloud, 2, executor), tested_options(), executor);
+    settle_disks(disks, MeasuredRays(floor.cloud, 2, executor), settle_options(), executor);
     return disks;
   };
   const std::vector<Disk> one = settled(1);
@@ -317,10 +317,10 @@ TEST(SettleDisks, SameBytesForEveryNumberOfThreads) {
 TEST(SettleDisks, NoDisksOrNoRays) {
   const Floor floor(100, 0.02F);
   const Executor executor(1);
-  settle_disks({}, MeasuredRays(floor.cloud, 2, executor), tested_options(), executor);
+  settle_disks({}, MeasuredRays(floor.cloud, 2, executor), settle_options(), executor);
   std::vector<Disk> disks = floor.disks;
   const PointCloud empty;
-  settle_disks(disks, MeasuredRays(empty, 2, executor), tested_options(), executor);
+  settle_disks(disks, MeasuredRays(empty, 2, executor), settle_options(), executor);
   EXPECT_EQ(std::memcmp(disks.data(), floor.disks.data(), disks.size() * sizeof(Disk)), 0);
 }
 

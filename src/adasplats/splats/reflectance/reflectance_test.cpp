@@ -8,10 +8,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <numeric>
 #include <sstream>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/splats/model/splat_model.h"
@@ -20,8 +20,6 @@
 
 namespace adasplats {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A square of ground, dim for x < 0 and bright for x > 0. Disks do not overlap: of two in one
 /// plane the first alone is met.
@@ -117,7 +115,7 @@ TEST(Reflectance, RaysThatEndElsewhereAndIntensitiesNotFiniteDoNotCount) {
     cloud.intensities.push_back(1.0F);
     cloud.sensor_positions.push_back(cloud.sensor_positions[i]);
     cloud.positions.push_back(cloud.positions[i]);
-    cloud.intensities.push_back(kNan);
+    cloud.intensities.push_back(kNaN);
   }
   expect_truth(disks, measure(disks, cloud));
 }
@@ -173,7 +171,7 @@ TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
   disks.push_back({{50, 50, 0}, 0.5F, {0, 0, 1}});
   EXPECT_EQ(measure(disks, measured_ground(20000)).values.back(), 0.5F);
   // No information: the mean of the model is used.
-  const float usual = measure(disks, measured_ground(20000), 2, kNan).values.back();
+  const float usual = measure(disks, measured_ground(20000), 2, kNaN).values.back();
   EXPECT_GT(usual, 0.2F);
   EXPECT_LT(usual, 0.6F);
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/table.h"
 
 /// What the tests of this folder share.
@@ -26,38 +26,6 @@ inline void write_bytes(const std::filesystem::path& path, std::string_view cont
   std::ofstream(path, std::ios::binary)
       .write(content.data(), static_cast<std::streamsize>(content.size()));
 }
-
-/// A folder of its own for a test, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "adasplats-io-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Writes a file of this folder.
-  std::filesystem::path file(const std::string& name, std::string_view content) const {
-    const std::filesystem::path path = path_ / name;
-    write_bytes(path, content);
-    return path;
-  }
-  std::size_t file_count() const {
-    std::size_t count = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++count;
-    return count;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The bytes of a value in this machine's order (little-endian).
 template <class T>
@@ -99,16 +67,6 @@ Error error_of(F&& action) {
   }
   ADD_FAILURE() << "no adasplats::Error was thrown";
   return {ErrorKind::software, ""};
-}
-
-/// Expects an error of the given kind whose message has all of `parts`.
-template <class F>
-void expect_error(ErrorKind kind, const std::vector<std::string>& parts, F&& action) {
-  const Error error = error_of(action);
-  EXPECT_EQ(exit_code(error.kind()), exit_code(kind)) << error.what();
-  for (const std::string& part : parts)
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-        << "'" << part << "' is missing in: " << error.what();
 }
 
 }  // namespace adasplats::io_test
