@@ -115,7 +115,7 @@ class Render(ProgramTest):
         camera.write_text(
             '[[camera]]\nname = "front"\n' + lens + 'model = "brown_conrady"\n'
             "coefficients = [-0.9, 0, 0, 0, 0]\nmount = [0.5, 0, -0.2]\n"
-            '[[camera]]\nname = "rear"\n' + lens + "mount_rotation = [180, 0, 0]\n")
+            '[[camera]]\nname = "rear"\n' + lens + "mount_rotation_deg = [180, 0, 0]\n")
         options = ["--camera", f"{camera}:front", "--trajectory", self.poses]
         layers = ["--layers", "depth,range,class,normal,splat"]
         report = self.report("render", model, "-o", picture, *options, *layers)

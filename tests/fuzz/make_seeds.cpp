@@ -401,7 +401,7 @@ void add_cameras(Seeds& seeds) {
   seeds.add("camera-toml",
             {"[[camera]]\nname = \"a\"\n" + lens +
                  "model = \"brown_conrady\"\ncoefficients = [-0.3, 0.1, 0.001, -0.002, 0]\n"
-                 "mount = [1, 0, 1.5]\nmount_rotation = [90, 0, -5]\n",
+                 "mount = [1, 0, 1.5]\nmount_rotation_deg = [90, 0, -5]\n",
              "[[camera]]\nname = \"a\"\n" + lens +
                  "model = \"fisheye\"\ncoefficients = [0.1, -0.02, 0.003, 0]\n"
                  "mount_quaternion = [0.5, -0.5, 0.5, -0.5]\n",

@@ -35,9 +35,19 @@ constexpr std::pair<std::string_view, Distortion> kDistortions[] = {
     {"equidistant", Distortion::fisheye}};
 
 const TomlKeys& camera_keys() {
-  static const TomlKeys keys = {
-      "name",         "file",  "width",          "height",          "fx", "fy", "cx", "cy", "model",
-      "coefficients", "mount", "mount_rotation", "mount_quaternion"};
+  static const TomlKeys keys = {"name",
+                                "file",
+                                "width",
+                                "height",
+                                "fx",
+                                "fy",
+                                "cx",
+                                "cy",
+                                "model",
+                                "coefficients",
+                                "mount",
+                                "mount_rotation_deg",
+                                "mount_quaternion"};
   return keys;
 }
 
@@ -48,12 +58,12 @@ RigidTransform read_mount(const TomlTable& table) {
   RigidTransform mount;
   if (const std::vector<Vec3d> at = table.points("mount", 1); !at.empty())
     mount.translation = at.front();
-  if (table.has("mount_rotation") && table.has("mount_quaternion"))
-    throw table.error("mount_rotation", "and mount_quaternion are given, expected one of them");
-  if (table.has("mount_rotation")) {
-    const std::vector<double> angles_rad = table.angles_rad("mount_rotation", -360, 360);
+  if (table.has("mount_rotation_deg") && table.has("mount_quaternion"))
+    throw table.error("mount_rotation_deg", "and mount_quaternion are given, expected one of them");
+  if (table.has("mount_rotation_deg")) {
+    const std::vector<double> angles_rad = table.angles_rad("mount_rotation_deg", -360, 360);
     if (angles_rad.size() != 3)
-      throw table.error("mount_rotation", "is not a list of yaw, pitch and roll, degrees");
+      throw table.error("mount_rotation_deg", "is not a list of yaw, pitch and roll, degrees");
     mount.rotation = rotation_from_yaw_pitch_roll(angles_rad[0], angles_rad[1], angles_rad[2]);
   }
   if (table.has("mount_quaternion")) {
@@ -125,7 +135,7 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     *side = static_cast<int>(table.whole_number(key, 1, kMaxSide));
   }
   result.camera.name = names[chosen];
-  if (!table.has("file") || table.has("mount") || table.has("mount_rotation") ||
+  if (!table.has("file") || table.has("mount") || table.has("mount_rotation_deg") ||
       table.has("mount_quaternion"))
     result.camera.vehicle_from_camera = read_mount(table);
   return result;

@@ -38,7 +38,7 @@ cy = 540.75
 model = "brown_conrady"
 coefficients = [-0.3, 0.1, 0.001, -0.002, -0.01]
 mount = [1.5, 0.25, 1.75]
-mount_rotation = [90, 0, 0]
+mount_rotation_deg = [90, 0, 0]
 
 [[camera]]
 name = "rear"
@@ -97,9 +97,9 @@ TEST(CameraFile, EachFaultOfOurTomlIsOneError) {
   fault("-0.002, -0.01]", "-0.002]  # 4 are fine\nfocal = 3", {"unknown key 'focal'"});
   fault("0.1, 0.001, -0.002, -0.01]", "0.1]", {"2 coefficients of brown_conrady", "expected 5"});
   fault("[1.5, 0.25, 1.75]", "[1.5, 0.25]", {"mount", "[x, y, z]"});
-  fault("[90, 0, 0]", "[90, 0]", {"mount_rotation", "yaw, pitch and roll"});
+  fault("[90, 0, 0]", "[90, 0]", {"mount_rotation_deg", "yaw, pitch and roll"});
   fault("[90, 0, 0]", "[90, 0, 0]\nmount_quaternion = [1, 0, 0, 0]", {"expected one of them"});
-  fault("mount_rotation = [90, 0, 0]", "mount_quaternion = [1, 1, 0, 0]", {"length 1"});
+  fault("mount_rotation_deg = [90, 0, 0]", "mount_quaternion = [1, 1, 0, 0]", {"length 1"});
   fault("\"rear\"", "\"front\"", {"name", "another camera"});
   fault("name = \"rear\"\n", "", {"name", "is missing"});
   fault("[[camera]]", "[camera]", {"cameras.toml"});

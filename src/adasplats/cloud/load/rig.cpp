@@ -186,6 +186,11 @@ bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
 
 Rig parse_rig(std::string_view text, const fs::path& file) {
   const fs::path folder = file.parent_path();
+  if (text.find("sensors") == std::string_view::npos)
+    throw Error(ErrorKind::config,
+                file.string() +
+                    ": describes no rig: it has no [[sensors]] (docs/formats.md, \"Rigs\"; "
+                    "a file of one sensor is for `sensor`)");
   const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors", "body"}, "rig");
   DriveSettings shared;
   const RigValue read_shared(whole, folder);

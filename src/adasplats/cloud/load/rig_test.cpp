@@ -103,10 +103,10 @@ TEST(Rig, WrongFilesGiveOneClearError) {
     parts.push_back("rig.toml");
     expect_error(ErrorKind::config, parts, [&] { parsed(text); });
   };
-  expect_bad("", {"sensors is missing"});
+  expect_bad("", {"describes no rig"});
+  expect_bad("clockwise = true\n", {"describes no rig"});  // a sensor file
   expect_bad("sensors = []", {"is not a list of tables"});
   expect_bad("sensors = 3", {"sensors is not a list of tables"});
-  expect_bad("sensor = 1", {":1:", "unknown key 'sensor'", "did you mean 'sensors'?"});
   expect_bad(with("mout = [0, 0, 1]"), {":3:", "unknown key 'mout'", "did you mean 'mount'?"});
   expect_bad("[[sensors]]\ninput = \"a\"\n", {"name is missing"});
   for (const char* name : {"", "a b", "a/b"})
