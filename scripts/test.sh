@@ -14,6 +14,14 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
 readonly kChecks="names layers scripts format doxygen packages build tidy tests asan fuzz install"
+# Cases that take up to five minutes with sanitizers each; shorter ones run the same code.
+readonly kSlowCases="OriginCheck.RaysGoThroughFewestSeedsFromWhereTheSensorWas:\
+OriginCheck.WrongSensorPositionsAreAnErrorUnlessTheyAreTrusted:\
+RoundTrip.DeskewedScansKeepTheirPointsAndOrigins:RoundTrip.MovingScansAreReadWhereTheyWereMeasured:\
+CalibrateWindows.MatchASingleSolve:Mount.TheSameOnAnyNumberOfThreads:\
+ScanSynthCity.SectionsInMemoryDoNotGrowWithTheDrive:PointIndex.MillionEqualPointsFinish:\
+Realism.ScansOfOneProcessAreIndistinguishable:Realism.SameForAnyNumberOfThreads:\
+Backends/ComparedScene.AMillionRaysMatchEmbree/*"
 readonly logs=$root/build/test-logs
 readonly skipped_checks=$logs/skipped_checks.tsv # name, tab, reason
 
@@ -184,7 +192,7 @@ else
   fi
   if wanted asan && check asan-build build_asan; then
     check one-definition tools/check_one_definition.py build/asan
-    UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
+    UBSAN_OPTIONS=print_stacktrace=1 GTEST_FILTER="-$kSlowCases" run_tests asan build/asan
   fi
   wanted fuzz && check fuzz scripts/fuzz.sh && sed -n '$s/^/         /p' "$logs/fuzz.log"
   check_skipped
