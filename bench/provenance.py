@@ -12,11 +12,12 @@ import tempfile
 
 def provenance_of(program):
     """Version, commit, date, machine and device from the program's reports, with the command of the
-    running script."""
+    running script; folders of the machine are left out."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         subprocess.run([program, "sensors", "--report", str(report)], check=True,
                        stdout=subprocess.DEVNULL)
         provenance = json.loads(report.read_text())["provenance"]
-    words = [os.path.basename(sys.argv[0]), *sys.argv[1:]]
+    words = [os.path.basename(word) if os.path.isabs(word) else word for word in sys.argv[1:]]
+    words.insert(0, os.path.basename(sys.argv[0]))
     return {**provenance, "command": shlex.join(words)}
