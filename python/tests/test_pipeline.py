@@ -364,7 +364,7 @@ def test_cameras_are_those_of_the_program(street, scene, poses, tmp_path):
     file.write_text('[[camera]]\nname = "left"\nwidth = 70\nheight = 45\nfx = 50\nfy = 51\n'
                     'cx = 33.1\ncy = 22.7\nmodel = "brown_conrady"\n'
                     "coefficients = [-0.3, 0.1, 0.01, -0.005, 0]\nmount = [0.5, -0.25, 0.75]\n"
-                    "mount_rotation = [90, 0, 0]\n")
+                    "mount_rotation_deg = [90, 0, 0]\n")
     run_program("render", street.model, "-o", tmp_path / "cli.png", "--camera", f"{file}:left",
                 "--trajectory", street.sequence, "--pose", 1, "--layers", "depth,class,normal,splat")
     made = adasplats.Camera.from_matrix(MATRIX, **CAMERA, model="plumb_bob", mount=MOUNT,

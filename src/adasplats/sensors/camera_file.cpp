@@ -123,7 +123,11 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
       if (table.has(key)) throw table.error(key, "is given, and file, which has it");
     const auto [other, name] = split((file.parent_path() / table.text("file", "")).string());
     if (other.extension() == ".toml") throw table.error("file", "is another TOML file");
-    result = read_camera(other, name);
+    try {
+      result = read_camera(other, name);
+    } catch (const Error& error) {
+      throw Error(error.kind(), file.string() + ": camera " + names[chosen] + ": " + error.what());
+    }
   } else {
     read_lens(table, result);
   }

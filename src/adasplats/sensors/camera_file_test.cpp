@@ -242,6 +242,9 @@ TEST(CameraFile, ReadsKittiOdometry) {
                "[[camera]]\nname = \"left\"\nfile = \"calib.txt:P2\"\n"
                "width = 1242\nheight = 375\n");
   EXPECT_EQ(load_camera((folder.path() / "kitti.toml").string()).lens.width, 1242);
+  folder.write("other.toml", "[[camera]]\nname = \"left\"\nfile = \"absent.txt\"\n");
+  expect_error(ErrorKind::no_input, {"other.toml: camera left", "absent.txt"},
+               [&] { load_camera((folder.path() / "other.toml").string()); });
   folder.write("image_2/000000.png", kPng);
   const MountedCamera camera = load_camera(file + ":P2");
   EXPECT_EQ(camera.lens.width, 1241);
