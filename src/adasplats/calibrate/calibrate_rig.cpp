@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/calibrate/thin_to_map.h"
 #include "adasplats/cloud/load/join_clouds.h"
 #include "adasplats/cloud/points/beam_cells.h"
 #include "adasplats/core/error.h"
@@ -198,13 +199,16 @@ class RigCalibrator {
       with.free_scans = window.scan_poses.size();
       return calibrate_cloud_(with_map(window, map_), with);
     };
-    auto [fine, report] = calibrate_drives(part, own, windows_, against_map, executor_, progress_);
+    auto [fine, report] = calibrate_drives(thinned_to_map(part, map_), own, windows_, against_map,
+                                           executor_, progress_);
     if (fine.poses.empty()) fine.poses = unchanged(part.scan_poses);
     fine.lasers.cells = cells;
     const Calibration relative = fine;
     apply(relative, part, executor_);
     fine.lasers.range_m.resize(number_of_lasers(part));
     fine.lasers.elevation_rad.resize(fine.lasers.range_m.size());
+    if (!fine.lasers.azimuth_rad.empty())
+      fine.lasers.azimuth_rad.resize(fine.lasers.range_m.size());
     for (double& range_m : fine.lasers.range_m) range_m += start.range_m;
     const MapAlignment aligned = refined(fine.lasers, start, std::move(with_given_lasers));
     fine.mount = aligned.mount;
