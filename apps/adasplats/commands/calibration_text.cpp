@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/calibration_text.h"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "adasplats/core/constants.h"
 #include "cli/text_table.h"
 
@@ -64,13 +68,19 @@ namespace {
 /// Of one sensor of a rig but the first.
 std::string sensor_text(const CalibrationReport& report) {
   const MapAlignment& aligned = *report.aligned;
+  const auto largest = [](Vec3d v) { return std::max({v.x, v.y, v.z}); };
   std::string text = report.sensor + ": mount turned by " +
-                     fixed(length(aligned.mount.rotation_rad) / kDegree, 3) +
-                     " deg and shifted by " + centimetres(length(aligned.mount.shift_m)) +
-                     ", clock " + fixed(1e3 * aligned.clock_s, 1) + " ms; " +
-                     fixed(100 * aligned.share, 1) +
+                     fixed(length(aligned.mount.rotation_rad) / kDegree, 3) + " deg (sd " +
+                     fixed(largest(aligned.rotation_sd_rad) / kDegree, 3) + ") and shifted by " +
+                     centimetres(length(aligned.mount.shift_m)) + " (sd " +
+                     centimetres(largest(aligned.shift_sd_m)) + "), clock " +
+                     fixed(1e3 * aligned.clock_s, 1) + " ms (sd " +
+                     fixed(1e3 * aligned.clock_sd_s, 1) + "); " + fixed(100 * aligned.share, 1) +
                      " % of its points are near surfaces of the sensors before it (" +
                      fixed(100 * aligned.given_share, 1) + " % as given)";
+  const std::vector<std::string> not_observed = aligned.not_observed();
+  for (const std::string& name : not_observed)
+    text += (&name == &not_observed.front() ? "; not observed and unchanged: " : ", ") + name;
   if (!report.objection.empty())
     return text + "; poses and lasers as given: " + report.objection + "\n";
   return text + "; held-out points are " + centimetres(report.calibrated_m) + " from planes (" +

@@ -29,6 +29,7 @@ struct RigSensorFaults {
   double range_m = 0;  ///< added to what it measures
   bool has_lasers = true;
   double half_width_deg = 180;
+  bool is_parked = false;  ///< the car
 };
 
 /// Adds the scans of a sensor to a cloud.
@@ -37,8 +38,9 @@ void add_sensor(const std::string& name, const RigSensorFaults& faults, PointClo
   cloud.sensors.push_back({name, kRigScans, true});
   for (std::uint32_t scan = 0; scan < kRigScans; ++scan) {
     const double time_s = kStep_s * scan;
-    const RigidTransform pose = car_at(time_s + faults.clock_s) * faults.mount;
-    const RigidTransform given = car_at(time_s) * faults.given_mount;
+    const auto car = [&](double at_s) { return car_at(faults.is_parked ? 0 : at_s); };
+    const RigidTransform pose = car(time_s + faults.clock_s) * faults.mount;
+    const RigidTransform given = car(time_s) * faults.given_mount;
     cloud.scan_poses.push_back({time_s, given});
     for (std::size_t laser = 0; laser < kHallLasers; ++laser) {
       for (std::size_t column = 0; column < kHallColumns; ++column) {
@@ -99,6 +101,27 @@ TEST(CalibrateRig, FindsTheMountAndTheClockOfAnUpsideDownSensor) {
   EXPECT_NEAR(found.clock_s, faults.clock_s, 0.001);
   EXPECT_LT(found.given_share, 0.5);
   EXPECT_GT(found.share, 0.95);
+  EXPECT_TRUE(found.not_observed().empty());
+  EXPECT_LT(std::fabs(found.clock_s - faults.clock_s), 4 * found.clock_sd_s);
+  EXPECT_LT(found.clock_sd_s, 0.001);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(found.shift_sd_m[axis], 0.02);
+    EXPECT_LT(found.rotation_sd_rad[axis] / kDegree, 0.05);
+  }
+}
+
+// Oracle: a car that stands still has the same poses at all times.
+TEST(CalibrateRig, TheClockOfAParkedCarIsNotObserved) {
+  PointCloud cloud;
+  RigSensorFaults faults;
+  faults.is_parked = true;
+  add_sensor("top", faults, cloud);
+  faults.mount = faults.given_mount = mount_of(20, 8, 0, {0.6, 0.3, -0.4});
+  add_sensor("left", faults, cloud);
+  const auto [calibration, report] = calibrated(cloud);
+  const MapAlignment& found = *report.others.at(0).aligned;
+  EXPECT_EQ(found.not_observed(), std::vector<std::string>{"clock"});
+  EXPECT_NEAR(found.clock_s, 0, 1e-3);
 }
 
 // Oracle: the ranges that were put in. The sensor looks ahead only; its lasers are unknown.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -180,11 +181,12 @@ class Aligner {
     double share = 0;
   };
 
-  /// Gauss-Newton steps against planes of one cell size; every `stride`-th point.
+  /// Gauss-Newton steps against planes of one cell size; every `stride`-th point, without those of
+  /// the scans `left_out`.
   void refine(const MapPlanes& planes, double width_m, int steps, std::size_t stride,
-              Estimate& estimate) const {
+              Estimate& estimate, ScanSpan left_out = {}) const {
     for (int step = 0; step < steps; ++step) {
-      AlignmentSums sums = sums_of(planes, width_m, stride, estimate);
+      AlignmentSums sums = sums_of(planes, width_m, stride, estimate, left_out);
       add_priors(estimate, sums);
       Matrix l = sums.matrix;
       factor<kUnknowns>(l);
@@ -200,15 +202,49 @@ class Aligner {
   }
 
   AlignmentSums sums_of(const MapPlanes& planes, double width_m, std::size_t stride,
-                        const Estimate& estimate) const {
+                        const Estimate& estimate, ScanSpan left_out = {}) const {
     const std::size_t count = (in_sensor_.size() + stride - 1) / stride;
     return executor_.sum_chunks(count, kCoarseGrain, AlignmentSums{},
                                 [&](std::size_t begin, std::size_t end) {
                                   AlignmentSums sums;
-                                  for (std::size_t k = begin; k < end; ++k)
-                                    add(planes, width_m, k * stride, estimate, sums);
+                                  for (std::size_t k = begin; k < end; ++k) {
+                                    const std::uint32_t scan = scans_[k * stride];
+                                    if (scan < left_out.begin || scan >= left_out.end)
+                                      add(planes, width_m, k * stride, estimate, sums);
+                                  }
                                   return sums;
                                 });
+  }
+
+  /// Standard deviations of the unknowns (MapAlignment).
+  Unknowns deviations(const MapPlanes& planes, double width_m, const Estimate& estimate) const {
+    constexpr std::size_t kParts = 5;
+    constexpr int kSteps = 4;
+    std::array<Unknowns, kParts> estimates;
+    Unknowns mean{};
+    for (std::size_t part = 0; part < kParts; ++part) {
+      Estimate without = estimate;
+      refine(planes, width_m, kSteps, 1, without,
+             {poses_.size() * part / kParts, poses_.size() * (part + 1) / kParts});
+      estimates[part] = unknowns_of(without);
+      for (std::size_t u = 0; u < kUnknowns; ++u) mean[u] += estimates[part][u] / kParts;
+    }
+    AlignmentSums sums = sums_of(planes, width_m, 1, estimate);
+    add_priors(estimate, sums);
+    Matrix l = sums.matrix;
+    factor<kUnknowns>(l);
+    const Unknowns sigmas = expected_errors();
+    Unknowns result{};
+    for (std::size_t u = 0; u < kUnknowns; ++u) {
+      Unknowns unit{};
+      unit[u] = 1;
+      const double prior_share = prior_weight(sigmas[u]) * solved<kUnknowns>(l, unit)[u];
+      double square = 0;
+      for (const Unknowns& without : estimates) square += std::pow(without[u] - mean[u], 2);
+      const double spread = std::sqrt(square * (kParts - 1) / kParts);  // delete-a-group jackknife
+      result[u] = std::hypot(spread, prior_share * sigmas[u]);
+    }
+    return result;
   }
 
  private:
@@ -247,20 +283,30 @@ class Aligner {
     sums.weight += weight;
   }
 
-  void add_priors(const Estimate& estimate, AlignmentSums& sums) const {
+  static Unknowns unknowns_of(const Estimate& estimate) {
+    const auto& [turn, shift] = estimate.mount;
+    return {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, estimate.clock_s, estimate.range_m};
+  }
+
+  /// Standard deviations of the priors.
+  Unknowns expected_errors() const {
+    const double turn = options_.rotation_rad, shift = options_.shift_m;
+    return {
+        turn, turn, turn, shift, shift, shift, options_.clock_s, std::max(1e-6, options_.range_m)};
+  }
+
+  static double prior_weight(double sigma) {
     constexpr double kResidual_m = 0.05;
-    const auto add_one = [&](std::size_t unknown, double sigma, double value) {
-      const double weight = std::pow(kResidual_m / sigma, 2);
-      sums.matrix[unknown * (kUnknowns + 1)] += weight;
-      sums.right[unknown] -= weight * value;
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto unknown = static_cast<std::size_t>(axis);
-      add_one(unknown, options_.rotation_rad, estimate.mount.rotation_rad[axis]);
-      add_one(unknown + 3, options_.shift_m, estimate.mount.shift_m[axis]);
+    return std::pow(kResidual_m / sigma, 2);
+  }
+
+  void add_priors(const Estimate& estimate, AlignmentSums& sums) const {
+    const Unknowns values = unknowns_of(estimate), sigmas = expected_errors();
+    for (std::size_t u = 0; u < kUnknowns; ++u) {
+      const double weight = prior_weight(sigmas[u]);
+      sums.matrix[u * (kUnknowns + 1)] += weight;
+      sums.right[u] -= weight * values[u];
     }
-    add_one(6, options_.clock_s, estimate.clock_s);
-    add_one(7, std::max(1e-6, options_.range_m), estimate.range_m);
   }
 
   const MapAlignmentOptions& options_;
@@ -280,6 +326,20 @@ bool MapAlignment::fits(const MapAlignmentOptions& expected) const {
          length(mount.shift_m) <= kFactor * expected.shift_m &&
          std::fabs(clock_s) <= kFactor * expected.clock_s &&
          std::fabs(range_m) <= kFactor * expected.range_m + 1e-3;
+}
+
+std::vector<std::string> MapAlignment::not_observed() const {
+  constexpr double kMaxShare = 0.5;  // of the expected errors
+  const MapAlignmentOptions expected;
+  std::vector<std::string> names;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    if (rotation_sd_rad[axis] > kMaxShare * expected.rotation_rad)
+      names.push_back("rotation about " + name);
+    if (shift_sd_m[axis] > kMaxShare * expected.shift_m) names.push_back("shift along " + name);
+  }
+  if (clock_sd_s > kMaxShare * expected.clock_s) names.push_back("clock");
+  return names;
 }
 
 void apply(const MapAlignment& alignment, PointCloud& sensor) {
@@ -327,7 +387,13 @@ MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
   aligner.refine(fine, 0.15, 6, 1, best);
   aligner.refine(fine, 0.06, 8, 1, best);
   const double given_share = aligner.sums_of(fine, 0.1, 1, {}).share();
-  return {best.mount, best.clock_s, best.range_m, given_share, best.share};
+  MapAlignment result;
+  result.mount = best.mount;
+  result.clock_s = best.clock_s;
+  result.range_m = best.range_m;
+  result.given_share = given_share;
+  result.share = best.share;
+  return result;
 }
 
 MapAlignment refine_alignment(const PointCloud& sensor, const PointCloud& map,
@@ -341,7 +407,17 @@ MapAlignment refine_alignment(const PointCloud& sensor, const PointCloud& map,
   Aligner::Estimate estimate{start.mount, start.clock_s, start.range_m};
   aligner.refine(fine, 0.06, 6, 1, estimate);
   aligner.refine(fine, 0.03, 6, 1, estimate);
-  return {estimate.mount, estimate.clock_s, estimate.range_m, start.given_share, estimate.share};
+  const auto sd = Aligner(sensor, options, executor).deviations(fine, 0.03, estimate);
+  MapAlignment result;
+  result.mount = estimate.mount;
+  result.clock_s = estimate.clock_s;
+  result.range_m = estimate.range_m;
+  result.given_share = start.given_share;
+  result.share = estimate.share;
+  result.rotation_sd_rad = {sd[0], sd[1], sd[2]};
+  result.shift_sd_m = {sd[3], sd[4], sd[5]};
+  result.clock_sd_s = sd[6];
+  return result;
 }
 
 RigidTransform mount_between(const Trajectory& first, const Trajectory& second) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/cloud/sequence/calibration.h"
@@ -25,6 +27,13 @@ struct MapAlignment {
   /// Share of the points that are near surfaces of the map, of those in cells around it: with the
   /// given mount and clock, and with the found ones.
   double given_share = 0, share = 0;
+  // Standard deviations, of refine_alignment(): the spread of estimates without one fifth of the
+  // drive each, and the expected errors times the share that the surfaces leave to these.
+  Vec3d rotation_sd_rad, shift_sd_m;  ///< about and along the axes of the sensor
+  double clock_sd_s = 0;
+
+  /// What the surfaces do not determine; it stays near the given values.
+  std::vector<std::string> not_observed() const;
 
   /// Whether half of the points are near surfaces, by corrections up to twice the expected errors.
   bool fits(const MapAlignmentOptions& expected) const;
@@ -37,7 +46,8 @@ struct MapAlignment {
 MapAlignment align_with_map(const PointCloud& sensor, const PointCloud& map,
                             const MapAlignmentOptions& options, const Executor& executor);
 
-/// The same from a good estimate, with more points: for a sensor whose lasers are calibrated.
+/// The same from a good estimate, with more points and with standard deviations: for a sensor whose
+/// lasers are calibrated.
 MapAlignment refine_alignment(const PointCloud& sensor, const PointCloud& map,
                               const MapAlignment& start, const MapAlignmentOptions& options,
                               const Executor& executor);

@@ -63,6 +63,12 @@ nlohmann::ordered_json to_json(std::span<const RigMount> mounts, const Calibrati
     if (k > 0) {
       const CalibrationReport& own = report.others[k - 1];
       const Calibration& found = calibration.others[k - 1];
+      const Vec3d turn_sd_deg = own.aligned->rotation_sd_rad / kDegree;
+      const Vec3d shift_sd_m = own.aligned->shift_sd_m;
+      json["rotation_sd_deg"] = {turn_sd_deg.x, turn_sd_deg.y, turn_sd_deg.z};
+      json["shift_sd_m"] = {shift_sd_m.x, shift_sd_m.y, shift_sd_m.z};
+      json["clock_sd_s"] = own.aligned->clock_sd_s;
+      json["not_observed"] = own.aligned->not_observed();
       json["near_map_given"] = own.aligned->given_share;
       json["near_map"] = own.aligned->share;
       json["correction"] = calibration_json(own, found);
