@@ -112,6 +112,15 @@ std::vector<RigBox> read_boxes(const TomlTable& table) {
   return boxes;
 }
 
+/// `path` as seen from a folder. Relative paths of the working directory have no relation to an
+/// absolute folder.
+std::string relative_path(const fs::path& path, const fs::path& folder) {
+  const fs::path from_root = folder.is_absolute() ? fs::absolute(path) : path;
+  return from_root.lexically_normal()
+      .lexically_proximate(folder.lexically_normal())
+      .generic_string();
+}
+
 /// Writes "key = value" for values that differ from the default.
 class RigText {
  public:
@@ -122,7 +131,7 @@ class RigText {
     put(key, toml_string(value));
   }
   void operator()(const char* key, const fs::path& value) const {
-    if (!value.empty()) (*this)(key, value.lexically_proximate(folder_).generic_string());
+    if (!value.empty()) (*this)(key, relative_path(value, folder_));
   }
   void operator()(const char* key, const Vec3d& value) const {
     if (value != Vec3d{}) put(key, "[" + numbers(value) + "]");
@@ -241,7 +250,7 @@ std::string rig_toml(const Rig& rig) {
     put("body", sensor.body);
     std::error_code ignored;
     if (fs::is_regular_file(sensor.packets_of, ignored))
-      sensor.packets_of = fs::path(sensor.packets_of).lexically_proximate(folder).generic_string();
+      sensor.packets_of = relative_path(sensor.packets_of, folder);
     visit_rig_settings(sensor, put);
   }
   for (const MountedCamera& camera : rig.cameras) text += "\n" + camera_toml(camera);

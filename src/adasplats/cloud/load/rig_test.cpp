@@ -153,6 +153,15 @@ TEST(Rig, CamerasAndBoxesMoveToTheFrameOfASensor) {
             1e-12);
 }
 
+// A rig file by a relative path is written to an absolute folder, and the other way round.
+TEST(Rig, PathsAreRelativeToItsFolder) {
+  Rig rig = parse_rig(with("input = \"../scans/top\""), "car/rig.toml");
+  rig.file = std::filesystem::absolute("found/rig.toml");
+  EXPECT_NE(rig_toml(rig).find("input = \"../scans/top\""), std::string::npos) << rig_toml(rig);
+  rig.file = "other/deep/rig.toml";
+  EXPECT_NE(rig_toml(rig).find("input = \"../../scans/top\""), std::string::npos);
+}
+
 TEST(Rig, WrongFilesGiveOneClearError) {
   const auto expect_bad = [](const std::string& text, std::vector<std::string> parts) {
     parts.push_back("rig.toml");
