@@ -44,11 +44,12 @@ DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
   if (job.format == ScanFormat::pcap) return reading;
   constexpr std::array kTimed = {ScanFormat::ply, ScanFormat::npz, ScanFormat::pcd,
                                  ScanFormat::las, ScanFormat::laz, ScanFormat::mcap};
-  const bool has_times =
-      sensor.writing.drive.turn_s > 0 && std::ranges::find(kTimed, job.format) != kTimed.end();
-  if (has_times)
-    reading.sweep_points =
-        job.scan.frame == PointFrame::raw ? SweepPoints::measured : SweepPoints::compensated;
+  // Motion without times remains unstated: such scans cannot be calibrated as a rig.
+  const bool is_raw = sensor.writing.drive.turn_s > 0 && job.scan.frame == PointFrame::raw;
+  if (!is_raw)
+    reading.sweep_points = SweepPoints::compensated;
+  else if (std::ranges::find(kTimed, job.format) != kTimed.end())
+    reading.sweep_points = SweepPoints::measured;
   if (job.format == ScanFormat::mcap)
     reading.topic = "/" + sensor.name + "/points";
   else
