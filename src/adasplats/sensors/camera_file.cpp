@@ -160,7 +160,8 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
   const TomlTable whole = parse_toml(text, file, keys, "camera");
   if (!whole.has("camera"))
-    throw camera_fault(file, "has no camera: [[camera]] (docs/pictures.md, \"Real cameras\")");
+    throw camera_fault(
+        file, "describes no camera: it has no [[camera]] (docs/pictures.md, \"Real cameras\")");
   const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
   return read_camera_table(tables[choose_camera(names_of(tables), wanted, file)], file);
 }
