@@ -17,6 +17,7 @@ void fields(Archive& archive, CloudSensor& sensor) {
   archive("name", sensor.name);
   archive("scans", sensor.scans);
   archive("is_in_model", sensor.is_in_model);
+  archive("unknown_sweep_m", sensor.unknown_sweep_m);
 }
 
 template <class Archive>

@@ -11,6 +11,8 @@ class Usage(ProgramTest):
         self.run_bad(64, "model", self.cloud, "-o", "m.ply", "--neigbors", "20",
                      says=["--neigbors", "did you mean '--neighbors'"])
         self.run_bad(64, "simulate", "--trajektory=x", says=["did you mean '--trajectory'"])
+        for command in ("render", "simulate"):  # --mount has fewer differences
+            self.run_bad(64, command, "--out", "x", says=["did you mean '--output'"])
 
     def test_option_before_the_subcommand(self):
         self.run_bad(64, "--threads", "2", "info", self.cloud, says=["must follow the subcommand"])

@@ -3,6 +3,7 @@
 """calibrate and model with rigs: mounts and clocks that were put in are found, wrong rigs are errors."""
 import json
 import math
+import struct
 import tomllib
 import unittest
 
@@ -13,6 +14,18 @@ POSES = 16
 # Name: sensor, mount, yaw, pitch and roll in degrees.
 SENSORS = {"top": ("velodyne-vlp-32c", [0.5, 0.0, 0.2], [0, 0, 0]),
            "left": ("velodyne-vlp-16", [1.4, 0.8, 0.0], [70, 10, 0])}
+CAMERA = '''
+[[camera]]
+name = "wide"
+width = 64
+height = 48
+fx = 30
+fy = 30
+cx = 31.5
+cy = 23.5
+mount = [1.5, 0.25, 1.0]
+mount_rotation_deg = [30, 10, 0]
+'''
 
 
 def rig_text(sensors):
@@ -46,12 +59,12 @@ class RigCalibration(ProgramTest):
         for text in says:
             self.assertIn(text, last)
 
-    def simulated(self, form):
+    def simulated(self, form, *words):
         """Simulates the rig; its folder and the sensors of the rig file in it."""
         out = self.folder / form
         self.go("simulate", self.folder / "hall.obj", "--rig", self.folder / "rig.toml",
                       "--trajectory", self.folder / "drive.csv", "--rolling-shutter", "--format",
-                      form, "-o", out)
+                      form, "-o", out, "--overwrite", *words)
         return out, tomllib.loads((out / "rig.toml").read_text())["sensors"]
 
     def test_finds_mount_and_clock(self):
@@ -72,9 +85,49 @@ class RigCalibration(ProgramTest):
         report = json.loads((found / "report.json").read_text())
         self.assertEqual([sensor["name"] for sensor in report["sensors"]], ["top", "left"])
         # The calibrated rig is read again, and nothing is left to correct.
-        self.go("calibrate", found / "rig.toml", "-o", self.folder / "again")
+        result = run("calibrate", "found/rig.toml", "-o", "again", cwd=self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
         again = tomllib.loads((self.folder / "again" / "rig.toml").read_text())["sensors"][1]
         self.assertLess(math.dist(again["mount"], calibrated["mount"]), 0.03)
+        self.assertEqual((self.folder / "again" / again["input"]).resolve(), (out / "left").resolve())
+
+    def test_cameras_stay_where_they_are(self):
+        """Pictures by the given rig and by the calibrated one, whose mounts have another frame."""
+        with (self.folder / "rig.toml").open("a") as file:
+            file.write(CAMERA)
+        out, _ = self.simulated("ply")
+        found = self.folder / "found"
+        self.go("calibrate", out / "rig.toml", "-o", found)
+        depths = []
+        for rig, trajectory in ((self.folder / "rig.toml", self.folder / "drive.csv"),
+                                (out / "rig.toml", self.folder / "drive.csv"),
+                                (found / "rig.toml", found / "top" / "trajectory.csv")):
+            picture = self.folder / "wide.png"
+            self.go("render", self.folder / "hall.obj", "-o", picture, "--camera", f"{rig}:wide",
+                    "--trajectory", trajectory, "--pose", 7, "--layers", "range")
+            data = (self.folder / "wide.range.npy").read_bytes()
+            depths.append(struct.unpack("<3072f", data[-4 * 3072:]))
+        self.assertEqual(depths[0], depths[1])
+        near = sum(abs(a - b) < 0.1 for a, b in zip(depths[0], depths[2]))
+        self.assertGreater(near, 0.95 * 3072)
+        (out / "bad.toml").write_text((out / "rig.toml").read_text().replace("fx = 30", "fx = 0"))
+        self.fail_with(78, "calibrate", out / "bad.toml", "-o", self.folder / "none",
+                       says=["bad.toml:", "camera wide", "fx is 0"])
+
+    def test_scans_without_times(self):
+        """Points as measured need times; compensated ones do not."""
+        out, _ = self.simulated("semantickitti")
+        for words in (["calibrate", out / "rig.toml", "-o", self.folder / "found"],
+                      ["model", out / "rig.toml", "-o", self.folder / "m.ply"]):
+            self.fail_with(65, *words, says=["'top'", "within a scan", "no times", "compensated"])
+        self.assertFalse((self.folder / "m.ply").exists())
+        out, sensors = self.simulated("semantickitti", "--points", "deskewed")
+        self.assertEqual(sensors[1]["sweep_points"], "compensated")
+        self.go("calibrate", out / "rig.toml", "-o", self.folder / "found")
+        left = tomllib.loads((self.folder / "found" / "rig.toml").read_text())["sensors"][1]
+        self.assertAlmostEqual(left["time_offset_s"], 0, delta=0.003)
+        difference = [a - b for a, b in zip(SENSORS["left"][1], SENSORS["top"][1])]
+        self.assertLess(math.dist(left["mount"], difference), 0.03)
 
     def test_recording_to_evaluated_model(self):
         out, _ = self.simulated("mcap")

@@ -98,6 +98,7 @@ void read_rig_text(const Input& input) {
   const Rig back = parse_rig(rig_toml(rig), input.file);
   require(!rig.sensors.empty() && back.sensors.size() == rig.sensors.size(), "sensors");
   require(back.body.size() == rig.body.size(), "the same body in the text of the rig");
+  require(back.cameras.size() == rig.cameras.size(), "the same cameras in the text of the rig");
   for (std::size_t k = 0; k < rig.sensors.size(); ++k) {
     const RigSensor &one = rig.sensors[k], &other = back.sensors[k];
     require(is_finite(one.mount.value_or(Vec3d{})), "mounts that are finite");

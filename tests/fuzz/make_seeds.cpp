@@ -431,7 +431,10 @@ void add_settings(Seeds& seeds) {
              "name = \"a\"\ninput = \"a/\"\nsensor = \"velodyne-vlp-16\"\ntopic = \"/t\"\n"
              "mount = [1, -2, 0.5]\nmount_rotation_deg = [90, 5, 180]\ntime_offset_s = -0.02\n"
              "in_model = false\n[[sensors]]\nname = \"b\"\npoints_in = \"world\"\n"
-             "sweep_points = \"measured\"\nbody = [[0, 0, 0, 1, 1, 1], [1, 2, 3, 4, 5, 6]]\n"});
+             "sweep_points = \"measured\"\nbody = [[0, 0, 0, 1, 1, 1], [1, 2, 3, 4, 5, 6]]\n"
+             "[[camera]]\nname = \"c\"\nwidth = 64\nheight = 48\nfx = 30\nfy = 30\ncx = 32\n"
+             "cy = 24\nmodel = \"fisheye\"\ncoefficients = [0.1, 0.01, 0, 0]\nmount = [1, 0, 2]\n"
+             "mount_rotation_deg = [90, 0, 0]\n"});
   for (const LibraryLidar& lidar : lidar_library())
     if (lidar.toml.size() < 1500) seeds.add("sensor-toml", {std::string(lidar.toml)});
   seeds.add("sensor-toml",

@@ -152,6 +152,7 @@ class RigCalibrator {
         progress_(progress) {}
 
   std::pair<Calibration, CalibrationReport> run() {
+    for (const CloudSensor& sensor : cloud_.sensors) require_known_motion(sensor);
     std::size_t begin = 0;
     for (const CloudSensor& sensor : cloud_.sensors) {
       PointCloud part =
@@ -244,6 +245,20 @@ class RigCalibrator {
     MapAlignment found = refine_alignment(part, map_, start, expected, executor_);
     found.range_m = range_m;
     return found;
+  }
+
+  /// The times of points within a scan are part of the clock, and their motion of the mount.
+  void require_known_motion(const CloudSensor& sensor) const {
+    constexpr double kStill_m = 0.02;
+    if (cloud_.sensors.size() < 2 || !(sensor.unknown_sweep_m > kStill_m)) return;
+    std::array<char, 500> text{};
+    std::snprintf(text.data(), text.size(),
+                  "sensor '%s': points at 10 m move by %.2f m within a scan, but have no times, so "
+                  "mounts and clocks would be wrong; use a format with point times (PLY, PCD, LAS, "
+                  "MCAP, packets), or, if the scans are motion-compensated, state sweep_points = "
+                  "\"compensated\" for this sensor in the rig file",
+                  sensor.name.c_str(), sensor.unknown_sweep_m);
+    throw Error(ErrorKind::data, text.data());
   }
 
   Error misfit(const CloudSensor& sensor, const MapAlignment& found) const {

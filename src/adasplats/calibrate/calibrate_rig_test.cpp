@@ -164,6 +164,22 @@ TEST(CalibrateRig, OtherSensorsDoNotChangeTheFirst) {
     EXPECT_EQ(found.poses[scan].shift_m, expected.poses[scan].shift_m);
 }
 
+TEST(CalibrateRig, RejectsScansOfUnknownMotion) {
+  PointCloud cloud;
+  add_sensor("top", {}, cloud);
+  add_sensor("left", upside_down(), cloud);
+  cloud.sensors[1].unknown_sweep_m = 0.5;
+  try {
+    calibrated(cloud);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::data);
+    EXPECT_NE(std::string(error.what()).find("sensor 'left': points at 10 m move by 0.50 m"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(CalibrateRig, RejectsASensorThatFitsNowhere) {
   PointCloud cloud;
   add_sensor("top", {}, cloud);

@@ -3,6 +3,7 @@
 #include "adasplats/core/error.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <system_error>
 
@@ -65,24 +66,40 @@ std::string bare(const std::string& word) {
   return letters;
 }
 
-std::vector<std::string> words_containing(const std::string& word,
-                                          const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMinLetters = 2;
-  constexpr std::size_t kMaxWords = 6;  // that a user reads on one line
-  const std::string part = bare(word);
+constexpr std::size_t kMinLetters = 2;  // of a part of a word
+
+/// The candidates that `fits`, the shortest first; none if a user could not read them on one line.
+template <class Fits>
+std::vector<std::string> words_that(const Fits& fits, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kMaxWords = 6;
   std::vector<std::string> found;
-  if (part.size() < kMinLetters) return found;
-  for (const std::string& candidate : candidates)
-    if (bare(candidate).find(part) != std::string::npos) found.push_back(candidate);
+  std::ranges::copy_if(candidates, std::back_inserter(found), fits);
   if (found.size() > kMaxWords) found.clear();
   std::ranges::stable_sort(found, {}, &std::string::size);
   return found;
+}
+
+std::vector<std::string> words_containing(const std::string& word,
+                                          const std::vector<std::string>& candidates) {
+  const std::string part = bare(word);
+  if (part.size() < kMinLetters) return {};
+  return words_that(
+      [&](const std::string& each) { return bare(each).find(part) != std::string::npos; },
+      candidates);
+}
+
+std::vector<std::string> words_beginning_with(const std::string& word,
+                                              const std::vector<std::string>& candidates) {
+  if (bare(word).size() < kMinLetters) return {};
+  return words_that([&](const std::string& each) { return each.starts_with(word); }, candidates);
 }
 
 }  // namespace
 
 std::vector<std::string> similar_words(const std::string& word,
                                        const std::vector<std::string>& candidates) {
+  if (std::vector<std::string> longer = words_beginning_with(word, candidates); !longer.empty())
+    return longer;
   std::optional<std::string> best;
   // More edits than half the letters of the word make another word, not a typo.
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;

@@ -57,6 +57,16 @@ TEST(NearestWord, EmptyWordsAndTies) {
   EXPECT_EQ(nearest_word("cat", {"bat", "rat"}), "bat");  // the first of equals
 }
 
+TEST(NearestWord, ABeginningIsNoTypo) {
+  const std::vector<std::string> options = {"--mount", "--output", "--output-format", "--rate"};
+  EXPECT_EQ(nearest_word("--out", options), "--output");
+  EXPECT_EQ(did_you_mean("--out", options), ", did you mean '--output' or '--output-format'?");
+  EXPECT_EQ(nearest_word("--moun", options), "--mount");
+  EXPECT_EQ(nearest_word("--rat", {"--rats-a", "--rats-b", "--rats-c", "--rats-d", "--rats-e",
+                                   "--rats-f", "--rats-g", "--bat"}),
+            "--bat");  // too many to list
+}
+
 TEST(NearestWord, FindsNamesByAPartOfThem) {
   const std::vector<std::string> sensors = {"hdl-64-paper", "ouster-os1-64", "velodyne-hdl-64e-s2",
                                             "velodyne-vlp-16"};

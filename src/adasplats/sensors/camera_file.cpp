@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/core/maths/yaw_pitch_roll.h"
 #include "adasplats/core/words.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -95,7 +96,10 @@ std::pair<fs::path, std::string> split(const std::string& file_and_name) {
 /// The lens that the keys of a table give.
 void read_lens(const TomlTable& table, FileCamera& result) {
   Lens& lens = result.camera.lens;
-  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) table.require(key);
+  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"})
+    if (!table.has(key))
+      throw Error(ErrorKind::config,
+                  result.place + ": camera " + table.text("name", "") + ": " + key + " is missing");
   lens.fx = table.number("fx", 0, -kMaxPixels, kMaxPixels);
   lens.fy = table.number("fy", 0, -kMaxPixels, kMaxPixels);
   lens.cx = table.number("cx", 0, -kMaxPixels, kMaxPixels);
@@ -104,10 +108,8 @@ void read_lens(const TomlTable& table, FileCamera& result) {
   result.coefficients = table.numbers("coefficients", -kMaxPixels, kMaxPixels);
 }
 
-FileCamera read_toml_camera(std::string_view text, const fs::path& file,
-                            const std::string& wanted) {
-  const std::vector<TomlTable> tables =
-      parse_toml(text, file, {"camera"}, "camera").tables("camera", camera_keys());
+/// Their names, which must differ.
+std::vector<std::string> names_of(const std::vector<TomlTable>& tables) {
   std::vector<std::string> names;
   for (const TomlTable& table : tables) {
     table.require("name");
@@ -115,9 +117,13 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     if (std::ranges::count(names, names.back()) > 1)
       throw table.error("name", "is that of another camera, too");
   }
-  const std::size_t chosen = choose_camera(names, wanted, file);
-  const TomlTable& table = tables[chosen];
+  return names;
+}
+
+FileCamera read_camera_table(const TomlTable& table, const fs::path& file) {
+  const std::string own_name = table.text("name", "");
   FileCamera result;
+  result.place = table.place("name");
   if (table.has("file")) {
     for (const char* key : {"fx", "fy", "cx", "cy", "model", "coefficients"})
       if (table.has(key)) throw table.error(key, "is given, and file, which has it");
@@ -126,8 +132,9 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     try {
       result = read_camera(other, name);
     } catch (const Error& error) {
-      throw Error(error.kind(), file.string() + ": camera " + names[chosen] + ": " + error.what());
+      throw Error(error.kind(), result.place + ": camera " + own_name + ": " + error.what());
     }
+    result.place = table.place("name");
   } else {
     read_lens(table, result);
   }
@@ -138,11 +145,38 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     if (*side != 0) throw table.error(key, "is given, and file, which has it");
     *side = static_cast<int>(table.whole_number(key, 1, kMaxSide));
   }
-  result.camera.name = names[chosen];
+  result.camera.name = own_name;
   if (!table.has("file") || table.has("mount") || table.has("mount_rotation_deg") ||
       table.has("mount_quaternion"))
     result.camera.vehicle_from_camera = read_mount(table);
   return result;
+}
+
+FileCamera read_toml_camera(std::string_view text, const fs::path& file,
+                            const std::string& wanted) {
+  TomlKeys keys = {"camera"};
+  // Of a rig the tables of its cameras alone are read.
+  if (text.find("sensors") != std::string_view::npos)
+    keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
+  const TomlTable whole = parse_toml(text, file, keys, "camera");
+  if (!whole.has("camera"))
+    throw camera_fault(
+        file, "describes no camera: it has no [[camera]] (docs/pictures.md, \"Real cameras\")");
+  const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
+  return read_camera_table(tables[choose_camera(names_of(tables), wanted, file)], file);
+}
+
+/// The camera with a complete lens.
+MountedCamera checked(FileCamera read, const fs::path& file) {
+  const std::string where =
+      (read.place.empty() ? file.string() : read.place) + ": camera " + read.camera.name;
+  if (read.camera.lens.width == 0 || read.camera.lens.height == 0)
+    throw Error(ErrorKind::config,
+                where +
+                    ": the file states no size of the picture; name it in a TOML camera: "
+                    "[[camera]], name, file, width, height");
+  read.camera.lens = distorted_lens(read.camera.lens, read.model, read.coefficients, where);
+  return read.camera;
 }
 
 FileCamera read_camera(const fs::path& file, const std::string& wanted) {
@@ -239,15 +273,46 @@ Lens distorted_lens(Lens lens, const std::string& model, const std::vector<doubl
 
 MountedCamera load_camera(const std::string& file_and_name) {
   const auto [file, name] = split(file_and_name);
-  FileCamera read = read_camera(file, name);
-  const std::string where = file.string() + ": camera " + read.camera.name;
-  if (read.camera.lens.width == 0 || read.camera.lens.height == 0)
-    throw Error(ErrorKind::config,
-                where +
-                    ": the file states no size of the picture; name it in a TOML camera: "
-                    "[[camera]], name, file, width, height");
-  read.camera.lens = distorted_lens(read.camera.lens, read.model, read.coefficients, where);
-  return read.camera;
+  return checked(read_camera(file, name), file);
+}
+
+std::vector<MountedCamera> cameras_of(const TomlTable& whole, const fs::path& file) {
+  std::vector<MountedCamera> cameras;
+  if (!whole.has("camera")) return cameras;
+  const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
+  names_of(tables);
+  for (const TomlTable& table : tables)
+    cameras.push_back(checked(read_camera_table(table, file), file));
+  return cameras;
+}
+
+std::string camera_toml(const MountedCamera& camera) {
+  const auto list = [](std::initializer_list<double> values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "[" : ", ") + exact_text(value);
+    return text + "]\n";
+  };
+  const Lens& lens = camera.lens;
+  const double* const k = lens.k;
+  std::string text = "[[camera]]\nname = " + toml_string(camera.name) +
+                     "\nwidth = " + std::to_string(lens.width) +
+                     "\nheight = " + std::to_string(lens.height);
+  for (const auto& [key, value] :
+       {std::pair{"fx", lens.fx}, {"fy", lens.fy}, {"cx", lens.cx}, {"cy", lens.cy}})
+    text += "\n" + std::string(key) + " = " + exact_text(value);
+  text += "\n";
+  if (lens.is_fisheye)
+    text += "model = \"fisheye\"\ncoefficients = " + list({k[0], k[1], k[2], k[3]});
+  else if (k[3] != 0 || k[4] != 0 || k[5] != 0)
+    text += "model = \"rational\"\ncoefficients = " +
+            list({k[0], k[1], lens.p1, lens.p2, k[2], k[3], k[4], k[5]});
+  else if (k[0] != 0 || k[1] != 0 || k[2] != 0 || lens.p1 != 0 || lens.p2 != 0)
+    text +=
+        "model = \"brown_conrady\"\ncoefficients = " + list({k[0], k[1], lens.p1, lens.p2, k[2]});
+  const Vec3d at = camera.vehicle_from_camera.translation;
+  const Vec3d turn_deg = yaw_pitch_roll_deg(camera.vehicle_from_camera.rotation);
+  return text + "mount = " + list({at.x, at.y, at.z}) +
+         "mount_rotation_deg = " + list({turn_deg.x, turn_deg.y, turn_deg.z});
 }
 
 }  // namespace adasplats

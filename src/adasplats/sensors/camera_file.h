@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -11,6 +12,8 @@
 #include "adasplats/sensors/camera.h"
 
 namespace adasplats {
+
+class TomlTable;
 
 /// A camera on a vehicle.
 struct MountedCamera {
@@ -24,7 +27,7 @@ struct MountedCamera {
 
 /// Reads a camera from "FILE" or, if the file has several, "FILE:NAME". The formats, told apart by
 /// their content (docs/pictures.md describes them):
-/// - TOML of [[camera]] tables;
+/// - TOML of [[camera]] tables, also in a rig file;
 /// - CameraInfo of ROS as YAML or JSON, and the YAML of OpenCV;
 /// - KITTI's calib.txt of odometry sequences (P0 to P3), mounted on the LiDAR by its line Tr; the
 ///   size is that of the pictures next to it;
@@ -33,6 +36,15 @@ struct MountedCamera {
 /// Errors: no_input, io, config (content that is invalid or inconsistent), usage (a name that the
 /// file does not have, or none of several).
 MountedCamera load_camera(const std::string& file_and_name);
+
+/// The other keys of a file of a rig (cloud/load/rig.h), which may have cameras.
+inline constexpr std::array kRigKeys = {"trajectory", "boxes", "sensors", "body"};
+
+/// All [[camera]] tables of a TOML file. Errors: those of load_camera(), with the line.
+std::vector<MountedCamera> cameras_of(const TomlTable& whole, const std::filesystem::path& file);
+
+/// The [[camera]] table of a camera, without references to other files.
+std::string camera_toml(const MountedCamera& camera);
 
 /// A lens with the focal lengths and the principal point of a matrix fx 0 cx, 0 fy cy, 0 0 1 by
 /// rows. Errors: config, with `name` of the matrix (another matrix).

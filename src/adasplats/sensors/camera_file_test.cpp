@@ -81,6 +81,39 @@ TEST(CameraFile, ReadsOurToml) {
   EXPECT_EQ(camera.width, 1920);
 }
 
+TEST(CameraFile, ReadsTheCamerasOfARigFile) {
+  const TemporaryFolder folder;
+  const std::string rig = "trajectory = \"p.csv\"\nbody = []\n[[sensors]]\nname = \"top\"\n";
+  const std::string file = folder.write("rig.toml", rig + kToml).string();
+  EXPECT_EQ(load_camera(file + ":front").lens.fx, 1000.5);
+  folder.write("rig.toml", rig);
+  expect_error(ErrorKind::config, {"rig.toml", "describes no camera"}, [&] { load_camera(file); });
+  folder.write("rig.toml", rig + changed(kToml, "fx = 1000.5", "fx = 0"));
+  expect_error(ErrorKind::config, {"rig.toml:7: camera front", "fx is 0"},
+               [&] { load_camera(file + ":front"); });
+}
+
+// Oracle: round trip; each model of distortion.
+TEST(CameraFile, ItsTextIsReadBack) {
+  const TemporaryFolder folder;
+  const std::string ideal =
+      "[[camera]]\nname = \"a\"\nwidth = 4\nheight = 3\nfx = 2\nfy = 2\n"
+      "cx = 1.5\ncy = 1\n";
+  for (const std::string& text :
+       {kToml, ideal,
+        ideal + "model = \"rational\"\ncoefficients = [0.1, 0, 0, 0, 0, 0, 0.2, 0]\n"}) {
+    const std::string name = text.starts_with("[") ? "" : ":rear";
+    const MountedCamera camera = load_camera(folder.write("a.toml", text).string() + name);
+    const MountedCamera back = load_camera(folder.write("b.toml", camera_toml(camera)).string());
+    EXPECT_EQ(back.name, camera.name);
+    EXPECT_EQ(back.lens.is_fisheye, camera.lens.is_fisheye);
+    EXPECT_EQ(back.lens.cx, camera.lens.cx);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(back.lens.k[i], camera.lens.k[i]) << i;
+    expect_near(back.vehicle_from_camera * Vec3d{1, 2, 3},
+                camera.vehicle_from_camera * Vec3d{1, 2, 3});
+  }
+}
+
 TEST(CameraFile, EachFaultOfOurTomlIsOneError) {
   const TemporaryFolder folder;
   const auto fault = [&](const std::string& from, const std::string& to,
@@ -88,7 +121,7 @@ TEST(CameraFile, EachFaultOfOurTomlIsOneError) {
     const std::string file = folder.write("cameras.toml", changed(kToml, from, to)).string();
     expect_error(ErrorKind::config, parts, [&] { load_camera(file + ":front"); });
   };
-  fault("width = 1920\n", "", {"cameras.toml", "width", "is missing"});
+  fault("width = 1920\n", "", {"cameras.toml:3: camera front", "width", "is missing"});
   fault("width = 1920", "width = 0", {"width", "1 to 32768"});
   fault("fx = 1000.5", "fx = 0", {"camera front", "fx is 0"});
   fault("fx = 1000.5", "fx = nan", {"fx is not a number"});
@@ -243,7 +276,7 @@ TEST(CameraFile, ReadsKittiOdometry) {
                "width = 1242\nheight = 375\n");
   EXPECT_EQ(load_camera((folder.path() / "kitti.toml").string()).lens.width, 1242);
   folder.write("other.toml", "[[camera]]\nname = \"left\"\nfile = \"absent.txt\"\n");
-  expect_error(ErrorKind::no_input, {"other.toml: camera left", "absent.txt"},
+  expect_error(ErrorKind::no_input, {"other.toml:2: camera left", "absent.txt"},
                [&] { load_camera((folder.path() / "other.toml").string()); });
   folder.write("image_2/000000.png", kPng);
   const MountedCamera camera = load_camera(file + ":P2");

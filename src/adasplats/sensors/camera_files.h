@@ -27,6 +27,7 @@ struct FileCamera {
   MountedCamera camera;
   std::string model = "none";
   std::vector<double> coefficients;
+  std::string place;  ///< "FILE:LINE" of a TOML camera
 };
 
 FileCamera read_ros_camera(std::string_view text, const std::filesystem::path& file,

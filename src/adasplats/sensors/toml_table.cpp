@@ -13,12 +13,29 @@ namespace adasplats {
 
 namespace {
 
+std::string place_of(const std::filesystem::path& path, const toml::source_region& at) {
+  return path.string() + ":" + std::to_string(at.begin.line);
+}
+
 Error config_error(const std::filesystem::path& path, const toml::source_region& at,
                    const std::string& message) {
-  return {ErrorKind::config, path.string() + ":" + std::to_string(at.begin.line) + ": " + message};
+  return {ErrorKind::config, place_of(path, at) + ": " + message};
 }
 
 }  // namespace
+
+std::string toml_string(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f)
+      quoted += std::string("\\u00") + kDigits[byte / 16] + kDigits[byte % 16];
+    else
+      (c == '"' || c == '\\' ? quoted += '\\' : quoted) += c;
+  }
+  return quoted + '"';
+}
 
 TomlTable parse_toml(std::string_view text, const std::filesystem::path& path,
                      const TomlKeys& known, const char* kind) {
@@ -62,6 +79,10 @@ Error TomlTable::error(std::string_view key, const std::string& message) const {
 
 Error TomlTable::error_at(const toml::node& node, const std::string& message) const {
   return config_error(path_, node.source(), message);
+}
+
+std::string TomlTable::place(std::string_view key) const {
+  return place_of(path_, find(key)->source());
 }
 
 TomlTable TomlTable::table(std::string_view key, const TomlKeys& known) const {

@@ -38,6 +38,8 @@ class TomlTable {
   /// The error "<key> <message>" at the line of the key.
   Error error(std::string_view key, const std::string& message) const;
   Error error_at(const toml::node& node, const std::string& message) const;
+  /// "FILE:LINE" of an existing key.
+  std::string place(std::string_view key) const;
 
   /// The table under an existing key.
   TomlTable table(std::string_view key, const TomlKeys& known) const;
@@ -75,6 +77,9 @@ class TomlTable {
   std::filesystem::path path_;
   std::shared_ptr<const toml::table> table_;
 };
+
+/// A TOML string of any text.
+std::string toml_string(std::string_view text);
 
 /// Parses a file of a `kind`, such as "sensor", that may hold the keys `known`. Errors: config.
 TomlTable parse_toml(std::string_view text, const std::filesystem::path& path,

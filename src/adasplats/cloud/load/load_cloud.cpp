@@ -23,6 +23,7 @@
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/memory.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/point_files.h"
@@ -544,13 +545,36 @@ std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
   return loaded;
 }
 
+namespace {
+
+/// CloudSensor::unknown_sweep_m of a drive. Most scans last 0.1 s.
+double unknown_sweep_m(const KittiSequence& drive, SweepPoints stated) {
+  const bool is_unknown = drive.facts.is_motion_assumed || !drive.reader;
+  if (!is_unknown || stated == SweepPoints::compensated || drive.trajectory.size() < 2) return 0;
+  if (drive.beams.from_hdl64) return drive.beams.unknown_sweep_m;
+  constexpr double kScan_s = 0.1, kLever_m = 10;
+  std::vector<double> moved_m;
+  for (std::size_t k = 1; k < drive.trajectory.size(); ++k) {
+    const TimedPose &from = drive.trajectory[k - 1], &to = drive.trajectory[k];
+    const RigidTransform way = from.world_from_sensor.inverse() * to.world_from_sensor;
+    const double share = std::min(1.0, kScan_s / (to.time_s - from.time_s));
+    moved_m.push_back(share *
+                      (length(way.translation) + kLever_m * angle_between(way.rotation, Mat3d{})));
+  }
+  return upper_median_of(std::move(moved_m));
+}
+
+}  // namespace
+
 std::pair<PointCloud, LoadReport> OpenInputs::load_sensors(const Executor& executor,
                                                            ProgressSink& progress) const {
   std::vector<PointCloud> clouds;
   std::vector<CloudSensor> sensors;
   LoadReport report;
   for (std::size_t k = 0; k < inputs_.size(); ++k) {
-    sensors.push_back({rig_->sensors[k].name, 0, rig_->sensors[k].is_in_model});
+    const RigSensor& sensor = rig_->sensors[k];
+    sensors.push_back({sensor.name, 0, sensor.is_in_model,
+                       unknown_sweep_m(*inputs_[k].sequence, sensor.sweep_points)});
     auto [cloud, loaded] = load({k}, executor, progress);
     clouds.push_back(std::move(cloud));
     report.add(std::move(loaded));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -111,18 +112,13 @@ std::vector<RigBox> read_boxes(const TomlTable& table) {
   return boxes;
 }
 
-/// A basic string of TOML.
-std::string quoted(const std::string& value) {
-  std::string text = "\"";
-  for (const char c : value) {
-    constexpr std::string_view kDigits = "0123456789ABCDEF";
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f)
-      text += std::string("\\u00") + kDigits[byte / 16] + kDigits[byte % 16];
-    else
-      (c == '"' || c == '\\' ? text += '\\' : text) += c;
-  }
-  return text + '"';
+/// `path` as seen from a folder. Relative paths of the working directory have no relation to an
+/// absolute folder.
+std::string relative_path(const fs::path& path, const fs::path& folder) {
+  const fs::path from_root = folder.is_absolute() ? fs::absolute(path) : path;
+  return from_root.lexically_normal()
+      .lexically_proximate(folder.lexically_normal())
+      .generic_string();
 }
 
 /// Writes "key = value" for values that differ from the default.
@@ -132,10 +128,10 @@ class RigText {
 
   void operator()(const char* key, const std::string& value) const {
     if (value.empty()) return;
-    put(key, quoted(value));
+    put(key, toml_string(value));
   }
   void operator()(const char* key, const fs::path& value) const {
-    if (!value.empty()) (*this)(key, value.lexically_proximate(folder_).generic_string());
+    if (!value.empty()) (*this)(key, relative_path(value, folder_));
   }
   void operator()(const char* key, const Vec3d& value) const {
     if (value != Vec3d{}) put(key, "[" + numbers(value) + "]");
@@ -191,13 +187,15 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
                 file.string() +
                     ": describes no rig: it has no [[sensors]] (docs/formats.md, \"Rigs\"; "
                     "a file of one sensor is for `sensor`)");
-  const TomlTable whole = parse_toml(text, file, {"trajectory", "boxes", "sensors", "body"}, "rig");
+  TomlKeys keys = {"camera"};
+  keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
+  const TomlTable whole = parse_toml(text, file, keys, "rig");
   DriveSettings shared;
   const RigValue read_shared(whole, folder);
   read_shared("trajectory", shared.trajectory);
   read_shared("boxes", shared.boxes);
   whole.require("sensors");
-  Rig rig{file, {}, read_boxes(whole)};
+  Rig rig{file, {}, read_boxes(whole), cameras_of(whole, file)};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
     sensor.is_rig_sensor = true;
@@ -252,10 +250,28 @@ std::string rig_toml(const Rig& rig) {
     put("body", sensor.body);
     std::error_code ignored;
     if (fs::is_regular_file(sensor.packets_of, ignored))
-      sensor.packets_of = fs::path(sensor.packets_of).lexically_proximate(folder).generic_string();
+      sensor.packets_of = relative_path(sensor.packets_of, folder);
     visit_rig_settings(sensor, put);
   }
+  for (const MountedCamera& camera : rig.cameras) text += "\n" + camera_toml(camera);
   return text;
+}
+
+bool move_to_frame_of(const RigidTransform& vehicle_from_sensor, Rig& rig) {
+  const RigidTransform sensor_from_vehicle = vehicle_from_sensor.inverse();
+  for (MountedCamera& camera : rig.cameras)
+    camera.vehicle_from_camera = sensor_from_vehicle * camera.vehicle_from_camera;
+  constexpr double kMaxTurn_rad = kDegree;  // 4 cm at the end of a car
+  const bool is_turned = angle_between(sensor_from_vehicle.rotation, {}) > kMaxTurn_rad;
+  bool are_complete = true;
+  const auto move = [&](std::vector<RigBox>& boxes) {
+    if (is_turned && !boxes.empty()) are_complete = false;
+    if (is_turned) boxes.clear();
+    for (RigBox& box : boxes) box.center_m = sensor_from_vehicle * box.center_m;
+  };
+  move(rig.body);
+  for (RigSensor& sensor : rig.sensors) move(sensor.body);
+  return are_complete;
 }
 
 KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,

@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/sensors/camera_file.h"
 
 namespace adasplats {
 
@@ -43,6 +44,8 @@ struct RigSensor : DriveInput {
 ///     mount_rotation_deg = [0, 5, 0]     # yaw, pitch, roll
 ///     time_offset_s = -0.02
 ///     in_model = false
+///     [[camera]]                         # of pictures: see load_camera()
+///     name = "windscreen"
 ///
 /// The other keys are those of DriveSettings: boxes, points_in, sweep_points, scan_times,
 /// poses_topic, scene. A sensor has a `body`, too.
@@ -50,6 +53,8 @@ struct Rig {
   std::filesystem::path file;
   std::vector<RigSensor> sensors;  ///< at least one; names differ
   std::vector<RigBox> body = {};   ///< of the vehicle
+  /// `vehicle`: the frame of the mounts of sensors; without these that of the first sensor.
+  std::vector<MountedCamera> cameras = {};
 
   /// Its index. Errors: usage (no such name; lists those of the rig).
   std::size_t index_of(std::string_view name) const;
@@ -69,6 +74,11 @@ Rig parse_rig(std::string_view text, const std::filesystem::path& file);
 /// The text of a rig file that parse_rig() reads as `rig` from `rig.file`. Paths are relative to
 /// its folder.
 std::string rig_toml(const Rig& rig);
+
+/// Expresses the mounts of the cameras and the boxes in the frame of a sensor instead of that of
+/// the vehicle. Boxes are parallel to the axes: if the sensor is turned, they are left out, and the
+/// result is false.
+bool move_to_frame_of(const RigidTransform& vehicle_from_sensor, Rig& rig);
 
 /// Opens the drive of a sensor. Errors: those of open_drive() and open_kitti_sequence(); data for
 /// an input that is no drive. They name the sensor.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
@@ -98,6 +99,69 @@ TEST(Rig, FilesOfSensorsAreNextToIt) {
   EXPECT_NE(rig_toml(rig).find("sensor = \"mine.toml\""), std::string::npos) << rig_toml(rig);
 }
 
+constexpr const char* kCamera = R"([[camera]]
+name = "wide \"1\""
+width = 640
+height = 480
+fx = 300.5
+fy = 301
+cx = 320
+cy = 240
+model = "rational"
+coefficients = [0.1, 0.2, 0.001, -0.002, 0.03, 0.04, 0.05, 0.06]
+mount = [1.5, 0.25, 1.75]
+mount_rotation_deg = [30, 90, 0]
+)";
+
+// Oracle: the values in the text, and round trip.
+TEST(Rig, HasCameras) {
+  const Rig rig = parsed(with("") + kCamera), back = parsed(rig_toml(rig));
+  for (const Rig& each : {rig, back}) {
+    ASSERT_EQ(each.cameras.size(), 1U);
+    const MountedCamera& camera = each.cameras[0];
+    const double k[] = {0.1, 0.2, 0.03, 0.04, 0.05, 0.06};
+    EXPECT_EQ(camera.name, "wide \"1\"");
+    EXPECT_EQ(camera.lens.width * 1000 + camera.lens.height, 640480);
+    EXPECT_EQ(camera.lens.fx, 300.5);
+    EXPECT_EQ(camera.lens.fy, 301);
+    EXPECT_EQ(camera.lens.cx, 320);
+    EXPECT_EQ(camera.lens.cy, 240);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(camera.lens.k[i], k[i]) << i;
+    EXPECT_EQ(camera.lens.p1, 0.001);
+    EXPECT_EQ(camera.lens.p2, -0.002);
+    EXPECT_EQ(camera.vehicle_from_camera.translation, (Vec3d{1.5, 0.25, 1.75}));
+    const Mat3d down = rotation_from_yaw_pitch_roll(kDegree * 30, kDegree * 90, 0);
+    EXPECT_LT(angle_between(camera.vehicle_from_camera.rotation, down), 1e-9);
+  }
+}
+
+// Oracle: where the camera and the boxes are in the world.
+TEST(Rig, CamerasAndBoxesMoveToTheFrameOfASensor) {
+  const Rig rig = parsed("body = [[1, 2, 3, 4, 5, 6]]\n" + with("") + kCamera);
+  const RigidTransform turned{rotation_from_yaw_pitch_roll(0.4, 0.1, 3), {1, -2, 3}};
+  const RigidTransform shifted{{}, {1, -2, 3}};
+  Rig moved = rig;
+  EXPECT_TRUE(move_to_frame_of(shifted, moved));
+  EXPECT_EQ(moved.body.at(0).center_m, (Vec3d{0, 4, 0}));
+  EXPECT_EQ(moved.body[0].size_m, (Vec3d{4, 5, 6}));
+  moved = rig;
+  EXPECT_FALSE(move_to_frame_of(turned, moved));
+  EXPECT_TRUE(moved.body.empty());
+  const Vec3d point{7, 8, 9};
+  EXPECT_LT(length(turned * (moved.cameras[0].vehicle_from_camera * point) -
+                   rig.cameras[0].vehicle_from_camera * point),
+            1e-12);
+}
+
+// A rig file by a relative path is written to an absolute folder, and the other way round.
+TEST(Rig, PathsAreRelativeToItsFolder) {
+  Rig rig = parse_rig(with("input = \"../scans/top\""), "car/rig.toml");
+  rig.file = std::filesystem::absolute("found/rig.toml");
+  EXPECT_NE(rig_toml(rig).find("input = \"../scans/top\""), std::string::npos) << rig_toml(rig);
+  rig.file = "other/deep/rig.toml";
+  EXPECT_NE(rig_toml(rig).find("input = \"../../scans/top\""), std::string::npos);
+}
+
 TEST(Rig, WrongFilesGiveOneClearError) {
   const auto expect_bad = [](const std::string& text, std::vector<std::string> parts) {
     parts.push_back("rig.toml");
@@ -126,6 +190,12 @@ TEST(Rig, WrongFilesGiveOneClearError) {
   expect_bad(with("body = [[1, 2, 3, 4, 5, 0]]"), {":3:", "height is not positive"});
   expect_bad(with("body = [[1, 2, 300, 4, 5, 1]]"), {":3:", "body", "100"});
   expect_bad(with("mount = ["), {":"});
+  expect_bad(with("[[camera]]\nwidth = 3"), {"name is missing"});
+  expect_bad(with(std::string(kCamera) + kCamera), {"name is that of another camera"});
+  expect_bad(with(std::string(kCamera) + "focal = 3"), {":15:", "unknown key 'focal'"});
+  expect_bad(
+      with("[[camera]]\nname = \"a\"\nwidth = 4\nheight = 3\nfx = 0\nfy = 1\ncx = 1\ncy = 1"),
+      {":4: camera a", "fx is 0"});
 }
 
 TEST(Rig, InputsMustExist) {

@@ -325,11 +325,15 @@ SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
   finding.sensor = residuals.best;
   if (frames.sensor) finding.sensor = Recognition{*frames.sensor, {}, 0, 0, 0};
   finding.scan_poses = frames.poses.of_scans;
-  if (ways.front().points == SweepPoints::found) {
-    if (stated != SweepPoints::found)
+  if (ways.front().points == SweepPoints::found) {  // no times
+    if (stated == SweepPoints::measured)
       throw Error(ErrorKind::usage,
                   frames.files.front().parent_path().string() +
-                      ": `sweep_points` needs scans with times for points and poses");
+                      ": `sweep_points` measured needs times of points and poses");
+    if (stated == SweepPoints::compensated) {
+      finding.motion = "already compensated in the points, as stated";
+      return finding;
+    }
     finding.motion = std::string("unknown, since the ") +
                      (frames.times.kind == PointTimes::Kind::none
                           ? "points have no times"
@@ -453,7 +457,7 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   SweepFinding finding;
   finding.scan_poses = frames.poses.of_scans;
   progress.begin_step("recognise the sensor", 0);
-  if (!drive.beams_from_poses && !has_point_times && drive.sweep_points == SweepPoints::found)
+  if (!drive.beams_from_poses && !has_point_times && drive.sweep_points != SweepPoints::measured)
     sequence.beams = recognize_beams(sequence, executor);
   if (drive.beams_from_poses) {
     sequence.facts.motion = "not analysed: beams start at the poses";
@@ -464,7 +468,8 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   } else {
     finding = analyze_sweeps(frames, drive.sweep_points, executor);
     sequence.facts.motion = finding.motion;
-    sequence.facts.is_motion_assumed = finding.way == SweepPoints::found;
+    sequence.facts.is_motion_assumed =
+        finding.way == SweepPoints::found && drive.sweep_points == SweepPoints::found;
     sequence.trajectory = finding.scan_poses;
     if (finding.sensor) {
       sequence.beams.sensor = finding.sensor->cones.sensor;

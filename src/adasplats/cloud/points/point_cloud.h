@@ -38,6 +38,9 @@ struct CloudSensor {
   std::string name;
   std::size_t scans = 0;
   bool is_in_model = true;  ///< its points become part of models
+  /// How far it moves within a scan if the points have no times and nothing shows that they are
+  /// motion-compensated, m, with rotations seen at 10 m.
+  double unknown_sweep_m = 0;
 };
 
 /// Points of one or many scans, as a structure of arrays. World coordinates are origin +

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/maths/yaw_pitch_roll.h"
 
 namespace adasplats {
 namespace {
@@ -46,6 +47,20 @@ TEST(Rotation, AsEigen) {
       expect_near(by_angles.rows[r], row, 1e-14);
       expect_near(by_quaternion.rows[r], row, 1e-14);
     }
+  }
+}
+
+// Oracle: round trip, also straight up and down, where noise must not decide.
+TEST(Rotation, YawPitchAndRollOfIt) {
+  const Vec3d angles = yaw_pitch_roll_deg(rotation_from_yaw_pitch_roll(-2.5, 0.7, 3));
+  expect_near(angles, (180 / kPi) * Vec3d{-2.5, 0.7, 3}, 1e-12);
+  const Mat3d turn = rotation_from_yaw_pitch_roll(0.3, 0.2, 0.1);
+  for (const double pitch_deg : {0.0, 45.0, 89.9, 90.0, -90.0}) {
+    const Mat3d rotation =
+        turn.transposed() * (turn * rotation_from_yaw_pitch_roll(1, pitch_deg * kPi / 180, 2));
+    const Vec3d back = (kPi / 180) * yaw_pitch_roll_deg(rotation);
+    EXPECT_LT(angle_between(rotation_from_yaw_pitch_roll(back.x, back.y, back.z), rotation), 2e-7)
+        << pitch_deg;
   }
 }
 

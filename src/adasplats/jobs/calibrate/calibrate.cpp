@@ -144,7 +144,8 @@ class CalibrationFiles {
 
   void write_rig() {
     write_file(named("rig.toml"),
-               rig_toml(calibrated_rig(*result_.rig, result_.mounts, fs::absolute(output_))));
+               rig_toml(calibrated_rig(*result_.rig, result_.mounts, result_.calibration.mount,
+                                       fs::absolute(output_), progress_)));
   }
 
   void write_lasers() {
@@ -163,6 +164,8 @@ class CalibrationFiles {
 /// Loads all scans; what no window needs is not solved at once.
 void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session& session,
                      CalibrateResult& result) {
+  if (inputs.rig())
+    require_frame_of_cameras(*inputs.rig(), inputs.inputs().front().sequence->facts.points_in);
   auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   result.loaded = std::move(loaded);
   result.sensors = cloud.sensors;

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/calibrate/calibration.h"
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/maths/yaw_pitch_roll.h"
 #include "adasplats/gpu/base/engines.h"
 
 namespace adasplats {
@@ -22,12 +21,6 @@ CalibrateCloud calibrate_on(Session& session) {
     });
     return on_gpu ? result : calibrate(cloud, options, session.executor);
   };
-}
-
-Vec3d yaw_pitch_roll_deg(const Mat3d& rotation) {
-  const Vec3d* const r = rotation.rows;
-  return {std::atan2(r[1].x, r[0].x) / kDegree, std::asin(std::clamp(-r[2].x, -1.0, 1.0)) / kDegree,
-          std::atan2(r[2].y, r[2].z) / kDegree};
 }
 
 namespace {

@@ -14,9 +14,6 @@ namespace adasplats {
 /// user did not ask for fails, warns and continues on the CPU. The session must outlive the result.
 CalibrateCloud calibrate_on(Session& session);
 
-/// Yaw, pitch and roll, as rotation_from_yaw_pitch_roll() takes them, in degrees.
-Vec3d yaw_pitch_roll_deg(const Mat3d& rotation);
-
 /// A calibration for reports: the evidence and the size of the corrections.
 nlohmann::ordered_json calibration_json(const CalibrationReport& report,
                                         const Calibration& calibration);

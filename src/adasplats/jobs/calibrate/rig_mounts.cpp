@@ -9,6 +9,8 @@
 
 #include "adasplats/calibrate/map_alignment.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/error.h"
+#include "adasplats/core/maths/yaw_pitch_roll.h"
 #include "adasplats/jobs/calibrate/calibration.h"
 
 namespace adasplats {
@@ -79,7 +81,17 @@ nlohmann::ordered_json to_json(std::span<const RigMount> mounts, const Calibrati
   return list;
 }
 
-Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const fs::path& folder) {
+Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const MountCorrection& correction,
+                   const fs::path& folder, ProgressSink& progress) {
+  const RigidTransform vehicle_from_first =
+      given.sensors.front().given_mount().value_or(MountSettings{}).transform() *
+      correction.given_from_mounted();
+  if (!move_to_frame_of(vehicle_from_first, given))
+    progress.warn(given.file.string() +
+                  ": the new rig.toml has no `body`: its mounts are in the frame of sensor '" +
+                  given.sensors.front().name +
+                  "', which is turned against the vehicle; for simulation, add boxes along the "
+                  "axes of that frame");
   given.file = folder / "rig.toml";
   for (std::size_t k = 0; k < mounts.size(); ++k) {
     RigSensor& sensor = given.sensors[k];
@@ -91,6 +103,20 @@ Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const fs::path& 
       sensor.time_offset_s = sensor.time_offset_s.value_or(0) + rounded(mounts[k].clock_s);
   }
   return given;
+}
+
+void require_frame_of_cameras(const Rig& rig, const std::string& points_in) {
+  const RigSensor& first = rig.sensors.front();
+  if (rig.cameras.empty() || first.trajectory.empty() || first.given_mount() ||
+      !points_in.starts_with("world"))
+    return;
+  throw Error(ErrorKind::config,
+              rig.file.string() +
+                  ": the mounts of the cameras cannot be converted to the frame of "
+                  "sensor '" +
+                  first.name +
+                  "', whose own mount is not stated; add `mount` to this sensor, or remove the "
+                  "cameras");
 }
 
 }  // namespace adasplats

@@ -12,6 +12,7 @@
 #include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/progress.h"
 
 namespace adasplats {
 
@@ -33,8 +34,13 @@ nlohmann::ordered_json to_json(std::span<const RigMount> mounts, const Calibrati
                                const Calibration& calibration);
 
 /// The rig with these mounts and clocks, for the file `folder`/rig.toml beside
-/// FIRST/trajectory.csv.
-Rig calibrated_rig(Rig given, std::span<const RigMount> mounts,
-                   const std::filesystem::path& folder);
+/// FIRST/trajectory.csv. Cameras stay where they are on the vehicle. Warns of boxes that are left
+/// out (move_to_frame_of()). `correction`: of the mount of the first sensor.
+Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const MountCorrection& correction,
+                   const std::filesystem::path& folder, ProgressSink& progress);
+
+/// Throws config for cameras whose frame is unknown: the mount of the first sensor is not stated,
+/// and its `points_in` (of DriveFacts) are in the world.
+void require_frame_of_cameras(const Rig& rig, const std::string& points_in);
 
 }  // namespace adasplats

@@ -225,7 +225,8 @@ ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolde
   ScanRecorder recorder(*writer, parallel, result.scans_resumed, session);
   const ReportTimes times = record_scans(simulators, plan, done, recorder, result);
   recorder.finish();
-  if (plan.rig) write_written_rig(folder.path(), *plan.rig, plan.job, sensors, *writer);
+  if (plan.rig)
+    write_written_rig(folder.path(), *plan.rig, plan.job, sensors, *writer, session.progress);
   return times;
 }
 

@@ -44,11 +44,12 @@ DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
   if (job.format == ScanFormat::pcap) return reading;
   constexpr std::array kTimed = {ScanFormat::ply, ScanFormat::npz, ScanFormat::pcd,
                                  ScanFormat::las, ScanFormat::laz, ScanFormat::mcap};
-  const bool has_times =
-      sensor.writing.drive.turn_s > 0 && std::ranges::find(kTimed, job.format) != kTimed.end();
-  if (has_times)
-    reading.sweep_points =
-        job.scan.frame == PointFrame::raw ? SweepPoints::measured : SweepPoints::compensated;
+  // Motion without times remains unstated: such scans cannot be calibrated as a rig.
+  const bool is_raw = sensor.writing.drive.turn_s > 0 && job.scan.frame == PointFrame::raw;
+  if (!is_raw)
+    reading.sweep_points = SweepPoints::compensated;
+  else if (std::ranges::find(kTimed, job.format) != kTimed.end())
+    reading.sweep_points = SweepPoints::measured;
   if (job.format == ScanFormat::mcap)
     reading.topic = "/" + sensor.name + "/points";
   else
@@ -81,7 +82,8 @@ std::optional<UdpEndpoint> sender_of(const Rig& rig, std::size_t sensor) {
 }
 
 void write_written_rig(const fs::path& folder, const Rig& rig, const SimulateJob& job,
-                       const std::vector<RigWriterSensor>& sensors, const ScanWriter& writer) {
+                       const std::vector<RigWriterSensor>& sensors, const ScanWriter& writer,
+                       ProgressSink& progress) {
   const fs::path output = fs::absolute(job.output);
   std::vector<UdpEndpoint> senders;
   if (job.format == ScanFormat::pcap) senders = rig_senders(sensors);
@@ -101,6 +103,11 @@ void write_written_rig(const fs::path& folder, const Rig& rig, const SimulateJob
       if (job.format == ScanFormat::pandaset) sensor.folder = sensor.folder.parent_path();
     }
   }
+  // Mounts are those of `rig`, except where the scans contain the poses of each sensor.
+  if (!written.sensors.front().given_mount() && !move_to_frame_of(sensors.front().mount, written))
+    progress.warn((output / "rig.toml").string() +
+                  ": has no `body`: pandaset has the poses of the sensors only, and sensor '" +
+                  written.sensors.front().name + "' is turned against the vehicle");
   write_file_in_place(folder / "rig.toml", rig_toml(written));
 }
 

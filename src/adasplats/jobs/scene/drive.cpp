@@ -43,11 +43,14 @@ void warn_of_poses(const DriveOptions& drive, const Trajectory& poses, ProgressS
   if (drive.trajectory.empty() || poses.size() < kMinPoses) return;
   double reach_m = 0;
   std::vector<double> tilts_deg;
+  // A stated mount may turn the sensor over, if the poses as given are upright.
+  const Vec3d vehicle_axis = drive.mount.rotation.transposed() * Vec3d{0, 0, 1};
   for (const TimedPose& pose : poses) {
     reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
                                        poses.front().world_from_sensor.translation));
-    const Vec3d axis = pose.world_from_sensor.rotation * Vec3d{0, 0, 1};
-    tilts_deg.push_back(std::acos(std::clamp(axis.z, -1.0, 1.0)) / kDegree);
+    const Mat3d& turn = pose.world_from_sensor.rotation;
+    const double up = std::max((turn * Vec3d{0, 0, 1}).z, (turn * vehicle_axis).z);
+    tilts_deg.push_back(std::acos(std::clamp(up, -1.0, 1.0)) / kDegree);
   }
   std::array<char, 300> text{};
   if (reach_m < kStands_m) {

@@ -19,12 +19,13 @@ TEST(DriveAlong, PosesThatStandOrLieOnTheirSideAreReported) {
   };
   const TemporaryFolder folder;
   const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
-  const auto warnings_of = [&](double step_m, const char* rotation) {
+  const auto warnings_of = [&](double step_m, const char* rotation, Vec3d mount_deg = {}) {
     std::string text = "time,x,y,z,qw,qx,qy,qz\n";
     for (int k = 0; k < 12; ++k)
       text += std::to_string(k) + "," + std::to_string(step_m * k) + ",0,0," + rotation + "\n";
     DriveOptions drive;
     drive.trajectory = folder.write("poses.csv", text);
+    drive.mount = MountSettings{{}, mount_deg}.transform();
     Listener listener;
     EXPECT_EQ(scans_along(drive, sensor, listener).size(), 12U);
     return listener.warnings;
@@ -32,6 +33,11 @@ TEST(DriveAlong, PosesThatStandOrLieOnTheirSideAreReported) {
   EXPECT_EQ(warnings_of(1, "1,0,0,0"), "");
   EXPECT_NE(warnings_of(0, "1,0,0,0").find("its 12 poses span 0.000 m"), std::string::npos);
   EXPECT_NE(warnings_of(1, "0.70710678,0.70710678,0,0").find("is 90 deg from up"),
+            std::string::npos);
+  // A stated mount: upside down on upright poses; upright on poses of a camera; still on its side.
+  EXPECT_EQ(warnings_of(1, "1,0,0,0", {0, 5, 180}), "");
+  EXPECT_EQ(warnings_of(1, "0.70710678,0.70710678,0,0", {0, 0, -90}), "");
+  EXPECT_NE(warnings_of(1, "0.70710678,0.70710678,0,0", {90, 0, 0}).find("deg from up"),
             std::string::npos);
 }
 
