@@ -38,10 +38,12 @@ void require_sensor(const DataTree& tree, const DriveInput& drive) {
   if (drive.topic.empty() || std::ranges::count(tree.sensors, drive.topic) > 0) return;
   std::string names;
   for (const std::string_view name : tree.sensors) (names += names.empty() ? "" : " or ") += name;
-  throw Error(ErrorKind::usage, drive.folder.string() + ": is a " + tree.name +
-                                    (names.empty() ? "; `topic` does not apply"
-                                                   : " without a sensor '" + drive.topic +
-                                                         "'; expected `topic` " + names));
+  const std::string of = drive.folder.string() + ": ";
+  throw Error(ErrorKind::usage,
+              names.empty()
+                  ? of + "is a " + tree.name + ", which has one LiDAR; `topic` does not apply"
+                  : of + "has no sensor '" + drive.topic + "'; the `topic` of this " + tree.name +
+                        " can be " + names);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "adasplats/jobs/calibrate/rig_mounts.h"
 
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -78,6 +79,8 @@ Rig calibrated_rig(Rig given, std::span<const RigMount> mounts, const fs::path& 
   for (std::size_t k = 0; k < mounts.size(); ++k) {
     RigSensor& sensor = given.sensors[k];
     const RigidTransform& mount = mounts[k].first_from_sensor;
+    for (fs::path* const path : {&sensor.folder, &sensor.boxes, &sensor.scan_times})
+      if (!path->empty()) *path = fs::absolute(*path).lexically_normal();
     sensor.trajectory = folder / mounts.front().name / "trajectory.csv";
     sensor.mount = rounded(mount.translation);
     sensor.mount_rotation_deg = rounded(yaw_pitch_roll_deg(mount.rotation));
