@@ -243,8 +243,9 @@ WorldFrames world_frames_of(const DriveInput& drive, std::size_t sensor) {
   frames.vehicle = read_panda_poses(lidar);
   frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
   // The poses are at one end of the Pandar64's sweeps; the PandarGT begins half a sweep earlier.
-  constexpr std::array kBeyond_s = {0.1, 0.2};
-  frames.vehicle = with_extrapolated_ends(std::move(frames.vehicle), kBeyond_s[sensor]);
+  constexpr double kSweep_s = 0.1;
+  for (std::size_t sweep = 0; sweep <= sensor; ++sweep)
+    frames.vehicle = with_extrapolated_ends(std::move(frames.vehicle), kSweep_s);
   for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
   frames.is_stated = drive.given_mount().has_value();
   frames.others =
