@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adasplats/cloud/load/av2_drive.h"
@@ -73,7 +74,11 @@ void open_pandaset(const Input& input) {
   DriveInput drive;
   drive.folder = input.folder;
   ProgressSink quiet;
-  require_sound(open_pandaset_drive(drive, Executor(1), quiet));
+  is_pandaset_rig(input.folder);
+  for (const std::string_view sensor : kPandaSetSensors) {
+    drive.topic = sensor;
+    require_sound(open_pandaset_drive(drive, Executor(1), quiet));
+  }
 }
 
 void open_av2(const Input& input) {
@@ -81,6 +86,10 @@ void open_av2(const Input& input) {
   drive.folder = input.folder;
   ProgressSink quiet;
   require_sound(open_av2_drive(drive, Executor(1), quiet));
+  for (const std::string_view sensor : kAv2Sensors) {
+    drive.topic = sensor;
+    require_sound(open_av2_drive(drive, Executor(1), quiet));
+  }
 }
 
 void open_nuscenes(const Input& input) {

@@ -354,6 +354,23 @@ FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
   return facts;
 }
 
+/// A drive of a data set, with the names of its LiDARs.
+FileFacts tree_facts(const KittiSequence& sequence, const DataTree& tree,
+                     const std::optional<LabelScheme>& scheme, const LoadOptions& options,
+                     Session& session) {
+  FileFacts facts = sequence_facts(sequence, tree.name, scheme, options, session);
+  const bool is_rig = tree.is_rig != nullptr && tree.is_rig(sequence.folder);
+  if (tree.sensors.empty() || (tree.is_rig != nullptr && !is_rig)) return facts;
+  std::string names;
+  for (const std::string_view name : tree.sensors) {
+    (names += names.empty() ? "" : ", ") += name;
+    facts.json["lidars"].push_back(name);
+  }
+  if (is_rig) names += "; these facts are of one, models are of all";
+  facts.rows.emplace_back("LiDARs", names + " (choose one: --topic)");
+  return facts;
+}
+
 /// The sources of packets in a capture or recording, and what is understood of it as a drive.
 FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
                        const std::optional<LabelScheme>& scheme, const LoadOptions& options,
@@ -481,9 +498,9 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   if (tree != nullptr || !options.trajectory.empty()) {
     const auto scheme = label_scheme_for(labels, std::span(&input, 1));
     const auto drive = open_drive(drive_of(input, options), session.executor, session.progress);
-    if (drive)
-      return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name, scheme,
-                            options, session);
+    if (drive && tree == nullptr)
+      return sequence_facts(*drive, "folder of scans", scheme, options, session);
+    if (drive) return tree_facts(*drive, *tree, scheme, options, session);
   }
   const fs::path resolved = resolve_cloud_input(input);
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1), options.label_field);

@@ -268,7 +268,7 @@ class RigCalibrator {
         "sensor '%s': its points do not fit those of '%s' with any mount within about 5 "
         "degrees and 0.5 m and any clock within 50 ms of the given ones (%.0f %% are near "
         "their surfaces as given); check its input, its mount (degrees, not radians) and "
-        "its time offset",
+        "its time offset, or choose another sensor (`topic`)",
         sensor.name.c_str(), cloud_.sensors.front().name.c_str(), 100 * found.given_share);
     return {ErrorKind::data, text.data()};
   }

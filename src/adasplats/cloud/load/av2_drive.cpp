@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +34,6 @@ namespace fs = std::filesystem;
 constexpr double kNanosecond_s = 1e-9;
 constexpr std::size_t kLasersOfUnit = 32;
 constexpr const char* kUnitModel = "velodyne-vlp-32c";  // both LiDARs
-constexpr std::array<const char*, 2> kUnitNames = {"up_lidar", "down_lidar"};
 
 /// The beam of each laser number, topmost 0 in the frame of its LiDAR: points of a laser lie on
 /// this beam's cone of the sensor's table.
@@ -130,10 +130,10 @@ std::array<RigidTransform, 2> read_av2_mounts(const fs::path& folder) {
   const auto names = table.texts.find("sensor_name");
   if (names == table.texts.end()) throw av2_fault(file, "has no column of text 'sensor_name'");
   std::array<RigidTransform, 2> of_units;
-  for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
-    const auto row = std::ranges::find(names->second, kUnitNames[unit]);
+  for (std::size_t unit = 0; unit < kAv2Sensors.size(); ++unit) {
+    const auto row = std::ranges::find(names->second, kAv2Sensors[unit]);
     if (row == names->second.end())
-      throw av2_fault(file, std::string("has no row for the sensor '") + kUnitNames[unit] + "'");
+      throw av2_fault(file, "has no row for the sensor '" + std::string(kAv2Sensors[unit]) + "'");
     of_units[unit] = mounts[static_cast<std::size_t>(row - names->second.begin())];
   }
   return of_units;
@@ -145,7 +145,8 @@ struct Av2Sweep {
   std::vector<std::size_t> lasers;
 };
 
-Av2Sweep read_av2_sweep(const fs::path& file) {
+/// `unit`: that LiDAR alone.
+Av2Sweep read_av2_sweep(const fs::path& file, std::optional<std::size_t> unit) {
   const ArrowTable table = read_arrow_file(file);
   const Column& x = av2_column(file, table, "x");
   const Column& y = av2_column(file, table, "y");
@@ -164,6 +165,7 @@ Av2Sweep read_av2_sweep(const fs::path& file) {
     if (!(std::fabs(offset_s) <= kMaxOffset_s))
       throw av2_fault(file, "offset_ns" + where + exact_text(offset_ns.as_double(row)) +
                                 ", expected at most a second (1e9)");
+    if (unit && static_cast<std::size_t>(number) / kLasersOfUnit != *unit) continue;
     sweep.points.positions.push_back({x.as_double(row), y.as_double(row), z.as_double(row)});
     sweep.points.intensities.push_back(static_cast<float>(intensity.as_double(row)));
     sweep.points.times.push_back(offset_s);
@@ -174,17 +176,30 @@ Av2Sweep read_av2_sweep(const fs::path& file) {
 
 class Av2Points final : public ScanSource {
  public:
-  FileScan read(const fs::path& file) const override { return read_av2_sweep(file).points; }
+  explicit Av2Points(std::optional<std::size_t> unit) : unit_(unit) {}
+  FileScan read(const fs::path& file) const override { return read_av2_sweep(file, unit_).points; }
+
+ private:
+  std::optional<std::size_t> unit_;
+};
+
+/// The LiDARs of a log, and which of them is read; nothing: both.
+struct Av2Units {
+  std::array<RigidTransform, 2> vehicle_from_unit;
+  std::optional<std::size_t> chosen;
+
+  /// Mount of the frame of scans.
+  RigidTransform mount() const { return chosen ? vehicle_from_unit[*chosen] : RigidTransform{}; }
 };
 
 /// Reads sweeps, with the beams of their points.
 class Av2Reader final : public ScanReader {
  public:
-  Av2Reader(Trajectory track, std::map<fs::path, TimedPose> poses,
-            std::array<RigidTransform, 2> mounts, IntensityScale scale, MovingBoxes boxes)
+  Av2Reader(Trajectory track, std::map<fs::path, TimedPose> poses, const Av2Units& units,
+            IntensityScale scale, MovingBoxes boxes)
       : track_(std::move(track)),
         poses_(std::move(poses)),
-        mounts_(mounts),
+        units_(units),
         scale_(scale),
         boxes_(std::move(boxes)) {
     for (SensorCones& cones : library_cones())
@@ -192,15 +207,17 @@ class Av2Reader final : public ScanReader {
   }
 
   KittiScan read(const fs::path& file) const override {
-    Av2Sweep sweep = read_av2_sweep(file);
+    Av2Sweep sweep = read_av2_sweep(file, units_.chosen);
     const TimedPose& pose = poses_.at(file);
+    const RigidTransform scan_from_vehicle = units_.mount().inverse();
     KittiScan scan;
     for (std::size_t i = 0; i < sweep.lasers.size(); ++i) {
       const Vec3d point = sweep.points.positions[i];
       const double time_s = pose.time_s + sweep.points.times[i];
       const AtFiring at = at_firing(pose, time_s, point, sweep.lasers[i]);
-      scan.positions.push_back(vec_cast<float>(point));
-      scan.origins.push_back(vec_cast<float>(at.vehicle_from_unit * at.origin));
+      scan.positions.push_back(vec_cast<float>(scan_from_vehicle * point));
+      scan.origins.push_back(
+          vec_cast<float>(scan_from_vehicle * (at.vehicle_from_unit * at.origin)));
       scan.lasers.push_back(at.ring);
       scan.times_s.push_back(time_s);
       if (!boxes_.empty())
@@ -214,7 +231,7 @@ class Av2Reader final : public ScanReader {
   std::vector<double> residuals_rad(const fs::path& file) const {
     constexpr std::size_t kEvery = 17;
     constexpr double kNear_m = 8;  // coordinates of 16 bits are too coarse for near points
-    const Av2Sweep sweep = read_av2_sweep(file);
+    const Av2Sweep sweep = read_av2_sweep(file, units_.chosen);
     const TimedPose& pose = poses_.at(file);
     std::vector<double> angles_rad;
     for (std::size_t i = 0; i < sweep.lasers.size(); i += kEvery) {
@@ -241,21 +258,22 @@ class Av2Reader final : public ScanReader {
     const std::size_t unit = laser / kLasersOfUnit;
     const std::uint16_t beam = kBeamOfLaser[laser % kLasersOfUnit];
     AtFiring at;
-    at.vehicle_from_unit =
-        pose.world_from_sensor.inverse() * interpolate(track_, time_s) * mounts_[unit];
+    at.vehicle_from_unit = pose.world_from_sensor.inverse() * interpolate(track_, time_s) *
+                           units_.vehicle_from_unit[unit];
     at.point = at.vehicle_from_unit.inverse() * point;
     if (is_finite(point)) at.origin = cones_.origin_of(beam, at.point);
     at.beam = beam;
     // down_lidar is mounted upside down: its topmost beam points down.
-    const bool is_upright = mounts_[unit].rotation.rows[2].z > 0;
+    const bool is_upright = units_.vehicle_from_unit[unit].rotation.rows[2].z > 0;
     const auto from_top = static_cast<std::uint16_t>(is_upright ? beam : kLasersOfUnit - 1 - beam);
-    at.ring = static_cast<std::uint16_t>(unit * kLasersOfUnit + from_top);
+    const std::size_t first = units_.chosen ? 0 : unit * kLasersOfUnit;
+    at.ring = static_cast<std::uint16_t>(first + from_top);
     return at;
   }
 
   Trajectory track_;
-  std::map<fs::path, TimedPose> poses_;
-  std::array<RigidTransform, 2> mounts_;
+  std::map<fs::path, TimedPose> poses_;  ///< of the vehicle
+  Av2Units units_;
   IntensityScale scale_;
   MovingBoxes boxes_;
   SensorCones cones_;
@@ -319,6 +337,14 @@ MovingBoxes boxes_of_sweeps(const DriveInput& drive, const Trajectory& sweeps) {
   return boxes;
 }
 
+Av2Units units_of_log(const DriveInput& drive) {
+  Av2Units units{read_av2_mounts(drive.folder), {}};
+  const auto* const chosen = std::ranges::find(kAv2Sensors, drive.topic);
+  if (chosen != kAv2Sensors.end())
+    units.chosen = static_cast<std::size_t>(chosen - kAv2Sensors.begin());
+  return units;
+}
+
 }  // namespace
 
 bool is_av2_log(const fs::path& folder) {
@@ -339,26 +365,28 @@ KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
                                       ": is an Argoverse 2 log, which defines mounts and times; "
                                       "`mount` and `time_offset` do not apply");
   const Av2Poses poses = read_av2_poses(drive.folder);
+  const Av2Units units = units_of_log(drive);
   KittiSequence sequence;
   sequence.folder = drive.folder;
-  sequence.track = poses.track;
+  sequence.track = mounted(poses.track, units.mount());
   std::map<fs::path, TimedPose> pose_of_file;
   for (auto& [file, pose] : sweeps_of_log(drive.folder, poses)) {
     sequence.scans.push_back(file);
     sequence.trajectory.push_back(pose);
     pose_of_file.emplace(file, pose);
   }
-  const IntensityScale scale = scale_of_scans(Av2Points(), sequence.scans);
-  const auto reader = std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file),
-                                                  read_av2_mounts(drive.folder), scale,
-                                                  boxes_of_sweeps(drive, sequence.trajectory));
+  sequence.trajectory = mounted(std::move(sequence.trajectory), units.mount());
+  const IntensityScale scale = scale_of_scans(Av2Points(units.chosen), sequence.scans);
+  const auto reader =
+      std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file), units, scale,
+                                  boxes_of_sweeps(drive, sequence.trajectory));
   const double median_rad = require_beams(drive, *reader, sequence.scans);
   sequence.reader = reader;
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(),
-                "up_lidar and down_lidar (two %s; points %.3f deg from the cones of their beams, "
-                "each at its own time)",
-                kUnitModel, median_rad / kDegree);
+                "%s%s%s; points %.3f deg from the cones of their beams, each at its own time)",
+                units.chosen ? drive.topic.c_str() : "up_lidar and down_lidar",
+                units.chosen ? " (" : " (two ", kUnitModel, median_rad / kDegree);
   sequence.beams.recognised = text.data();
   sequence.facts.points_in = "vehicle's frame (as Argoverse 2 has them)";
   sequence.facts.poses = "of city_SE3_egovehicle at the stamps of the sweeps";

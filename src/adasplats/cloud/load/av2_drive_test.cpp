@@ -161,6 +161,31 @@ TEST(Av2Drive, PointsInTheCityAndBeamsOfTwoLidars) {
   EXPECT_NE(report.drives[0].facts.points_in.find("Argoverse 2"), std::string::npos);
 }
 
+// Oracle: the beams of one LiDAR among those that were cast, in their order.
+TEST(Av2Drive, ATopicIsOneLidar) {
+  const Av2Court court(2);
+  LoadOptions options;
+  options.topic = "down_lidar";
+  const auto [cloud, report] = court.load(options);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < court.world.size(); ++k) {
+    if (court.lasers[k] < 32) continue;
+    ASSERT_LT(i, cloud.size());
+    EXPECT_LT(length(cloud.world(i) - court.world[k]), 1e-4) << k;
+    const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[i]);
+    EXPECT_LT(length(origin - court.origins[k]), 2e-3) << k;
+    EXPECT_EQ(cloud.lasers[i++], court.lasers[k] - 32) << k;
+  }
+  EXPECT_EQ(i, cloud.size());
+  const RigidTransform second = Av2Court::vehicle_at(kFirst_ns + kSweep_ns) * kDown;
+  EXPECT_LT(length(cloud.scan_poses[1].world_from_sensor.translation - second.translation), 1e-6);
+  options.topic = "up_lidar";
+  EXPECT_EQ(court.load(options).first.size(), court.world.size() - i);
+  options.topic = "top";
+  expect_error(ErrorKind::usage, {"no sensor 'top'", "up_lidar or down_lidar"},
+               [&] { court.load(options); });
+}
+
 TEST(Av2Drive, IncompleteLogs) {
   const auto reject = [](ErrorKind kind, const std::vector<std::string>& parts,
                          const std::function<void(Av2Court&)>& change) {

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array kDataTrees = {
     DataTree{"PandaSet sequence", &is_pandaset_sequence, &open_pandaset_drive,
-             &pandaset_class_names},
+             &pandaset_class_names, kPandaSetSensors, &is_pandaset_rig},
     DataTree{"nuScenes scene", &is_nuscenes_root, &open_nuscenes_drive, &nuscenes_class_names},
-    DataTree{"Argoverse 2 log", &is_av2_log, &open_av2_drive, &av2_class_names}};
+    DataTree{"Argoverse 2 log", &is_av2_log, &open_av2_drive, &av2_class_names, kAv2Sensors}};
 
 /// The first class that a scheme does not have under that name.
 const ClassNames::value_type* first_other(const ClassNames& names, const LabelScheme& scheme) {
@@ -33,6 +33,19 @@ ClassNames class_names_in(const std::filesystem::path& path) {
   return tree == nullptr ? ClassNames() : tree->class_names(path);
 }
 
+/// Throws usage for a `topic` that is not a sensor of the data set.
+void require_sensor(const DataTree& tree, const DriveInput& drive) {
+  if (drive.topic.empty() || std::ranges::count(tree.sensors, drive.topic) > 0) return;
+  std::string names;
+  for (const std::string_view name : tree.sensors) (names += names.empty() ? "" : " or ") += name;
+  const std::string of = drive.folder.string() + ": ";
+  throw Error(ErrorKind::usage,
+              names.empty()
+                  ? of + "is a " + tree.name + ", which has one LiDAR; `topic` does not apply"
+                  : of + "has no sensor '" + drive.topic + "'; the `topic` of this " + tree.name +
+                        " can be " + names);
+}
+
 }  // namespace
 
 const DataTree* data_tree_of(const std::filesystem::path& path) {
@@ -46,14 +59,14 @@ const DataTree* data_tree_of(const std::filesystem::path& path) {
 KittiSequence open_data_tree(const DataTree& tree, const DriveInput& drive,
                              const Executor& executor, ProgressSink& progress) {
   const bool states_others = !drive.trajectory.empty() || !drive.scan_times.empty() ||
-                             !drive.topic.empty() || !drive.poses_topic.empty() ||
-                             drive.points_in != PointsIn::found ||
+                             !drive.poses_topic.empty() || drive.points_in != PointsIn::found ||
                              drive.sweep_points != SweepPoints::found;
   if (states_others)
     throw Error(ErrorKind::usage,
                 drive.folder.string() + ": is a " + tree.name +
                     ", which contains poses, times and frames; `trajectory`, `scan_times`, "
-                    "`topic`, `poses_topic`, `points_in` and `sweep_points` do not apply");
+                    "`poses_topic`, `points_in` and `sweep_points` do not apply");
+  require_sensor(tree, drive);
   return tree.open(drive, executor, progress);
 }
 

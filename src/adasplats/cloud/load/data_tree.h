@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,9 @@ struct DataTree {
   KittiSequence (*open)(const DriveInput& drive, const Executor& executor, ProgressSink& progress);
   /// Empty without labels.
   ClassNames (*class_names)(const std::filesystem::path& folder);
+  std::span<const std::string_view> sensors = {};  ///< its LiDARs if `topic` can choose one
+  /// Whether each of them has points in a folder, so that it is a rig; null: it is one drive.
+  bool (*is_rig)(const std::filesystem::path& folder) = nullptr;
 };
 
 /// The data set that a path belongs to; null: none.

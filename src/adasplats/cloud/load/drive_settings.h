@@ -57,7 +57,7 @@ struct DriveSettings {
   SweepPoints sweep_points = SweepPoints::found;
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
   /// Topics of a recording with the scans and with the poses; empty: chosen automatically. For a
-  /// capture `topic` is the sensor, "192.168.1.201:2368".
+  /// capture `topic` is the sensor, "192.168.1.201:2368"; for a data set DataTree::sensors.
   std::string topic, poses_topic;
   std::string scene;  ///< of a nuScenes data root; empty: its only scene
   /// The sensor that sent the packets of a capture or recording (load_lidar_model()).
@@ -120,7 +120,8 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
         drive.scan_times);
   visit(Setting{.name = "topic",
                 .help = "MCAP, ROS bag: topic of the points or packets; PCAP: sensor by "
-                        "ADDRESS:PORT (default: the only one)",
+                        "ADDRESS:PORT; PandaSet, Argoverse 2: LiDAR (default: the only one, or "
+                        "all)",
                 .value = "NAME",
                 .group = group},
         drive.topic);

@@ -14,7 +14,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
-#include "adasplats/cloud/load/rig_of_recording.h"
+#include "adasplats/cloud/load/rig_of_drive.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
@@ -36,13 +36,13 @@ std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths
   return inputs;
 }
 
-/// The rig of a file with the sensor that `topic` names or all, or of a recording of several
-/// sensors; nothing for other inputs.
+/// The rig of a file with the sensor that `topic` names or all, or of a drive of several sensors
+/// (rig_of_drive()); nothing for other inputs.
 std::optional<Rig> rig_of(const std::filesystem::path& input, const LoadOptions& options,
                           ProgressSink& progress) {
   if (!is_rig(input)) {
-    if (!options.topic.empty() || !is_recording(input)) return std::nullopt;
-    return rig_of_recording(input, options, progress);
+    if (!options.topic.empty()) return std::nullopt;
+    return rig_of_drive(input, options, progress);
   }
   Rig rig = read_rig(input);
   require_no_settings(rig, options);
@@ -150,15 +150,21 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
       inputs, [](const OpenInput& input) { return is_recording(input.input.path); });
   if (!options.poses_topic.empty() && !any_recording)
     throw usage("`poses_topic` needs a recording (MCAP, ROS bag); no input is one");
+  const auto tree_of = [](const OpenInput& input) { return data_tree_of(input.input.path); };
   const bool any_tree = std::ranges::any_of(
-      inputs, [](const OpenInput& input) { return data_tree_of(input.input.path) != nullptr; });
+      inputs, [&](const OpenInput& input) { return tree_of(input) != nullptr; });
   if (!options.scene.empty() && !any_tree)
     throw usage("`scene` needs a nuScenes data root; no input is one");
   const bool has_packets = any_recording || std::ranges::any_of(inputs, [](const OpenInput& input) {
                              return is_capture(input.input.path);
                            });
-  if (!options.topic.empty() && !has_packets)
-    throw usage("`topic` needs a recording or a packet capture; no input is one");
+  const bool any_sensors = std::ranges::any_of(inputs, [&](const OpenInput& input) {
+    return tree_of(input) != nullptr && !tree_of(input)->sensors.empty();
+  });
+  if (!options.topic.empty() && !has_packets && !any_sensors)
+    throw usage(
+        "`topic` needs a recording, a packet capture or a data set of several LiDARs; no input is "
+        "one");
   if (!options.packets_of.empty() && !has_packets)
     throw usage("`packet_sensor` needs a packet capture or a recording; no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);

@@ -3,8 +3,13 @@
 #include "adasplats/cloud/load/pandaset_drive.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +29,8 @@ namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kPandar64 = 0, kPandarGt = 1;  // indices in kPandaSetSensors
 
 Error panda_fault(const fs::path& file, const std::string& what) {
   return {ErrorKind::data, file.string() + ": " + what};
@@ -102,13 +109,27 @@ Trajectory read_panda_poses(const fs::path& lidar) {
   return poses;
 }
 
-/// Reads the points of the spinning LiDAR.
+/// The number of each row's LiDAR: 0 (Pandar64) or 1 (PandarGT).
+std::vector<std::size_t> sensors_of_rows(const fs::path& file, const Table& table) {
+  const Column& sensor = panda_column(file, table, "d");
+  std::vector<std::size_t> sensors;
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    const double number = sensor.as_double(row);
+    if (number != 0 && number != 1)
+      throw panda_fault(file, "column 'd' of point " + std::to_string(row) + " is " +
+                                  exact_text(number) + ", expected 0 (Pandar64) or 1 (PandarGT)");
+    sensors.push_back(number == 0 ? kPandar64 : kPandarGt);
+  }
+  return sensors;
+}
+
+/// Reads the points of one LiDAR.
 class PandaFrames final : public ScanSource {
  public:
   /// `classes`: the label file of each frame; empty: no labels.
-  explicit PandaFrames(std::map<fs::path, fs::path> classes) : classes_(std::move(classes)) {}
-  PandaFrames(std::map<fs::path, fs::path> classes, const IntensityScale& scale)
-      : classes_(std::move(classes)), scale_(scale) {}
+  explicit PandaFrames(std::size_t sensor, std::map<fs::path, fs::path> classes = {},
+                       std::optional<IntensityScale> scale = {})
+      : sensor_(sensor), classes_(std::move(classes)), scale_(std::move(scale)) {}
 
   FileScan read(const fs::path& file) const override {
     const Table table = read_data_frame(file);
@@ -117,7 +138,7 @@ class PandaFrames final : public ScanSource {
     const Column& z = panda_column(file, table, "z");
     const Column& intensity = panda_column(file, table, "i");
     const Column& time = panda_column(file, table, "t");
-    const std::vector<std::size_t> rows = rows_of_spinning(file, table);
+    const std::vector<std::size_t> rows = own_rows(file, table);
     FileScan scan;
     scan.left_out = table.rows - rows.size();
     for (const std::size_t row : rows) {
@@ -131,16 +152,11 @@ class PandaFrames final : public ScanSource {
   }
 
  private:
-  static std::vector<std::size_t> rows_of_spinning(const fs::path& file, const Table& table) {
-    const Column& sensor = panda_column(file, table, "d");
+  std::vector<std::size_t> own_rows(const fs::path& file, const Table& table) const {
+    const std::vector<std::size_t> sensors = sensors_of_rows(file, table);
     std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < table.rows; ++row) {
-      const double number = sensor.as_double(row);
-      if (number != 0 && number != 1)
-        throw panda_fault(file, "column 'd' of point " + std::to_string(row) + " is " +
-                                    exact_text(number) + ", expected 0 (Pandar64) or 1 (PandarGT)");
-      if (number == 0) rows.push_back(row);
-    }
+    for (std::size_t row = 0; row < sensors.size(); ++row)
+      if (sensors[row] == sensor_) rows.push_back(row);
     return rows;
   }
 
@@ -163,6 +179,7 @@ class PandaFrames final : public ScanSource {
     return classes;
   }
 
+  std::size_t sensor_;
   std::map<fs::path, fs::path> classes_;
   std::optional<IntensityScale> scale_;
 };
@@ -183,7 +200,74 @@ std::map<fs::path, fs::path> class_files_of(const DriveInput& drive,
   return classes;
 }
 
+/// From the frame of the PandarGT (x forward) to that of the Pandar64 (x right, y forward), as in
+/// docs/static_extrinsic_calibration.yaml of pandaset-devkit 59be180 (front_gt). There the axes of
+/// the Pandar64 are turned by half a turn about z.
+RigidTransform pandar64_from_pandargt() {
+  return MountSettings{{0.000451, 0.605646, -0.301525}, {90, 0, 0}}.transform();
+}
+
+/// Sets the mount of the PandarGT; its description.
+std::string mount_pandargt(const DriveInput& drive, WorldFrames& frames, const Executor& executor,
+                           ProgressSink& progress) {
+  WorldFrames spinning = frames;
+  spinning.source = std::make_shared<PandaFrames>(kPandar64);
+  const std::optional<Recognition> pandar64 = recognize_in_world(spinning, executor, progress);
+  if (!pandar64)
+    progress.warn(drive.folder.string() +
+                  ": the Pandar64 is not recognised, so the poses are assumed to be its own, and "
+                  "the mount of the PandarGT is relative to them; if they are not, give `mount`");
+  frames.own_mount = pandar64_from_pandargt();
+  if (pandar64) frames.own_mount = pandar64->vehicle_from_sensor * *frames.own_mount;
+  frames.is_stated = true;
+  const Vec3d at = frames.own_mount->translation;
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "pandargt at %.3f, %.3f, %.3f m in the trajectory's frame (mounted on %s as "
+                "PandaSet's devkit publishes, each point at its own time)",
+                at.x, at.y, at.z,
+                pandar64 ? pandar64->cones.sensor.c_str() : "a Pandar64 at the poses");
+  return text.data();
+}
+
+/// The LiDAR that `topic` names, or else the Pandar64.
+std::size_t sensor_of(const DriveInput& drive) {
+  return drive.topic == kPandaSetSensors[kPandarGt] ? kPandarGt : kPandar64;
+}
+
+/// Scans of a LiDAR without classes, and its mount on the vehicle unless it is to be recognised.
+WorldFrames world_frames_of(const DriveInput& drive, std::size_t sensor) {
+  const fs::path lidar = drive.folder / "lidar";
+  WorldFrames frames;
+  frames.poses_file = lidar / "poses.json";
+  frames.vehicle = read_panda_poses(lidar);
+  frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
+  // The poses are at one end of the Pandar64's sweeps; the PandarGT begins half a sweep earlier.
+  constexpr double kSweep_s = 0.1;
+  for (std::size_t sweep = 0; sweep <= sensor; ++sweep)
+    frames.vehicle = with_extrapolated_ends(std::move(frames.vehicle), kSweep_s);
+  for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
+  frames.is_stated = drive.given_mount().has_value();
+  frames.others =
+      sensor == kPandar64 ? "points of the PandarGT (d = 1)" : "points of the Pandar64 (d = 0)";
+  frames.own_mount = drive.given_mount().value_or(MountSettings{}).transform();
+  return frames;
+}
+
 }  // namespace
+
+bool is_pandaset_rig(const fs::path& folder) {
+  constexpr std::ptrdiff_t kMinPoints = 1000;
+  const std::map<std::size_t, fs::path> frames = numbered_frames(folder / "lidar");
+  if (frames.empty()) return false;
+  for (const std::size_t k : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
+    const fs::path& file = std::next(frames.begin(), static_cast<std::ptrdiff_t>(k))->second;
+    const std::vector<std::size_t> sensors = sensors_of_rows(file, read_data_frame(file));
+    for (const std::size_t sensor : {kPandar64, kPandarGt})
+      if (std::ranges::count(sensors, sensor) < kMinPoints) return false;
+  }
+  return true;
+}
 
 bool is_pandaset_sequence(const fs::path& folder) {
   std::error_code ignored;  // an unreadable folder is not a sequence
@@ -207,24 +291,19 @@ ClassNames pandaset_class_names(const fs::path& folder) {
 
 KittiSequence open_pandaset_drive(const DriveInput& drive, const Executor& executor,
                                   ProgressSink& progress) {
-  const fs::path lidar = drive.folder / "lidar";
-  WorldFrames frames;
-  frames.poses_file = lidar / "poses.json";
-  frames.vehicle = read_panda_poses(lidar);
-  frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
-  // The poses are at one end of the sweeps.
-  constexpr double kSweep_s = 0.1;
-  frames.vehicle = with_extrapolated_ends(std::move(frames.vehicle), kSweep_s);
-  for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
-  frames.is_stated = drive.given_mount().has_value();
-  frames.others = "points of the PandarGT (d = 1)";
-  frames.own_mount = drive.given_mount().value_or(MountSettings{}).transform();
+  const std::size_t sensor = sensor_of(drive);
+  WorldFrames frames = world_frames_of(drive, sensor);
+  std::string mounted;
+  if (sensor == kPandarGt && !frames.is_stated)
+    mounted = mount_pandargt(drive, frames, executor, progress);
 
   std::map<fs::path, fs::path> classes = class_files_of(drive, frames.files);
   const bool has_classes = !classes.empty();
-  const IntensityScale scale = scale_of_scans(PandaFrames({}), frames.files);
-  frames.source = std::make_shared<PandaFrames>(std::move(classes), scale);
+  const IntensityScale scale = scale_of_scans(PandaFrames(sensor), frames.files);
+  frames.source = std::make_shared<PandaFrames>(sensor, std::move(classes), scale);
   auto sequence = open_world_frames(drive, frames, executor, progress);
+  if (!mounted.empty()) sequence->beams.recognised = mounted;
+  if (!drive.topic.empty()) sequence->facts.left_out.clear();  // as chosen
   sequence->facts.points_in = "world (as PandaSet has them)";
   sequence->facts.intensities = scale.description();
   sequence->facts.labels = has_classes ? "of all scans" : "none";

@@ -22,6 +22,8 @@ namespace adasplats {
 namespace {
 
 constexpr double kPandaSweep_s = 0.1;
+/// The PandarGT from the Pandar64: pandaset-devkit, docs/static_extrinsic_calibration.yaml.
+constexpr Vec3d kPandarGtAt = {0.000451, 0.605646, -0.301525};
 const RigidTransform kPandaMount = {rotation_from_yaw_pitch_roll(0, 0.01, 0.02), {0.1, 1.1, 1.9}};
 
 nlohmann::json panda_pose(const RigidTransform& pose) {
@@ -31,10 +33,12 @@ nlohmann::json panda_pose(const RigidTransform& pose) {
           {"heading", {{"w", q.w}, {"x", q.x}, {"y", q.y}, {"z", q.z}}}};
 }
 
-/// A sequence of a Pandar64 in the court; one point a frame is of the other LiDAR, in the sky.
+/// A sequence of a Pandar64 in the court; one point a frame is of the other LiDAR, in the sky. Or
+/// with both LiDARs.
 class PandaCourt {
  public:
-  explicit PandaCourt(std::size_t scans = 5, bool is_mounted = true) {
+  explicit PandaCourt(std::size_t scans = 5, bool is_mounted = true, bool has_both = false)
+      : has_both_(has_both) {
     const LidarModel sensor = load_lidar_model("hesai-pandar64");
     const std::vector<Firing> firings = firings_of(sensor);
     nlohmann::json poses = nlohmann::json::array(), times = poses;
@@ -65,7 +69,8 @@ class PandaCourt {
     return load_cloud(std::span(&folder_.path(), 1), options, Executor(2), quiet);
   }
 
-  std::vector<Vec3d> world, origins;
+  std::vector<Vec3d> world, origins;        ///< of the Pandar64
+  std::vector<Vec3d> gt_world, gt_origins;  ///< of the PandarGT
 
  private:
   void write_scan(const LidarModel& sensor, const std::vector<Firing>& firings, std::size_t scan) {
@@ -91,7 +96,13 @@ class PandaCourt {
       world.push_back(pose.translation + *range_m * way);
       origins.push_back(pose.translation);
       add(world.back(), time_s, 0);
-      if (i == 0 || x.size() == 1) add({0, 0, 50}, time_s, 1);
+      if (!has_both_ && (i == 0 || x.size() == 1)) add({0, 0, 50}, time_s, 1);
+      const Vec3d gt_origin = pose * kPandarGtAt;
+      const auto gt_range_m = range_in_court(gt_origin, way);
+      if (!has_both_ || !gt_range_m || i % 2 != 0) continue;
+      gt_world.push_back(gt_origin + *gt_range_m * way);
+      gt_origins.push_back(gt_origin);
+      add(gt_world.back(), time_s, 1);
     }
     const std::string name = "0" + std::to_string(scan) + ".pkl.gz";
     put_frame("annotations/semseg/" + name, {{"class", std::move(classes)}});
@@ -103,6 +114,7 @@ class PandaCourt {
                                 {"d", std::move(sensors)}});
   }
 
+  bool has_both_;
   TemporaryFolder folder_;
 };
 
@@ -174,6 +186,94 @@ TEST(PandaSetDrive, StatedMount) {
   const std::size_t last = cloud.size() - 1;
   const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[last]);
   EXPECT_LT(length(origin - court.origins[last]), 0.05);
+}
+
+void expect_beams(const PointCloud& cloud, std::size_t begin, const std::vector<Vec3d>& world,
+                  const std::vector<Vec3d>& origins) {
+  ASSERT_LE(begin + world.size(), cloud.size());
+  for (std::size_t k = 0; k < world.size(); k += 11) {
+    const std::size_t i = begin + k;
+    EXPECT_LT(length(cloud.world(i) - world[k]), 1e-4) << k;
+    const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[i]);
+    EXPECT_LT(length(origin - origins[k]), 0.05) << k;
+    EXPECT_EQ(cloud.classes[i], world[k].z < 0.1 ? 7 : 41) << k;
+  }
+}
+
+// Oracle: the origins of the beams that were cast, with the published mount on the Pandar64.
+TEST(PandaSetDrive, BothLidarsAreARig) {
+  const PandaCourt court(5, false, true);
+  ASSERT_TRUE(is_pandaset_rig(court.path()));
+  const auto [cloud, report] = court.load();
+  ASSERT_EQ(cloud.size(), court.world.size() + court.gt_world.size());
+  ASSERT_EQ(cloud.sensors.size(), 2U);
+  EXPECT_EQ(cloud.sensors[0].name, "pandar64");
+  EXPECT_EQ(cloud.sensors[1].name, "pandargt");
+  EXPECT_EQ(cloud.scan_poses.size(), 10U);
+  expect_beams(cloud, 0, court.world, court.origins);
+  expect_beams(cloud, court.world.size(), court.gt_world, court.gt_origins);
+  ASSERT_EQ(report.drives.size(), 2U);
+  EXPECT_EQ(report.drives[0].sensor, "hesai-pandar64");
+  EXPECT_TRUE(report.drives[1].sensor.empty());
+  EXPECT_TRUE(report.drives[0].facts.left_out.empty());
+}
+
+TEST(PandaSetDrive, ATopicIsOneLidar) {
+  const PandaCourt court(5, false, true);
+  LoadOptions options;
+  options.topic = "pandargt";
+  const auto [forward, report] = court.load(options);
+  ASSERT_EQ(forward.size(), court.gt_world.size());
+  EXPECT_TRUE(forward.sensors.empty());
+  expect_beams(forward, 0, court.gt_world, court.gt_origins);
+  options.topic = "pandar64";
+  const auto [spinning, other] = court.load(options);
+  ASSERT_EQ(spinning.size(), court.world.size());
+  expect_beams(spinning, 0, court.world, court.origins);
+  options.topic = "front";
+  expect_error(ErrorKind::usage, {"no sensor 'front'", "pandar64 or pandargt"},
+               [&] { court.load(options); });
+}
+
+// A mount is that of one sensor: of the chosen one, or of the Pandar64.
+TEST(PandaSetDrive, StatedMountOfOneLidar) {
+  const PandaCourt court(2, true, true);
+  LoadOptions options;
+  options.mount = kPandaMount.translation;
+  const auto [spinning, report] = court.load(options);
+  EXPECT_EQ(spinning.size(), court.world.size());
+  EXPECT_NE(report.drives[0].facts.left_out.find("points of the PandarGT"), std::string::npos);
+  options.topic = "pandargt";
+  options.mount = kPandaMount * kPandarGtAt;
+  const auto [forward, other] = court.load(options);
+  ASSERT_EQ(forward.size(), court.gt_world.size());
+  expect_beams(forward, 0, court.gt_world, court.gt_origins);
+}
+
+TEST(PandaSetDrive, FewPointsOfALidarAreNoRig) {
+  const PandaCourt few(2), both(2, true, true);
+  EXPECT_FALSE(is_pandaset_rig(few.path()));
+  EXPECT_FALSE(is_pandaset_rig(few.path() / "lidar"));
+  const std::vector<double> one = {1.0};
+  both.put_frame("lidar/01.pkl.gz", {{"x", one},
+                                     {"y", one},
+                                     {"z", one},
+                                     {"i", one},
+                                     {"t", one},
+                                     {"d", std::vector<std::int64_t>{1}}});
+  EXPECT_FALSE(is_pandaset_rig(both.path()));
+  LoadOptions options;
+  options.topic = "pandargt";
+  const PandaCourt alone(1);
+  alone.put_frame("annotations/semseg/00.pkl.gz", {{"class", std::vector<std::int64_t>{7}}});
+  alone.put_frame("lidar/00.pkl.gz", {{"x", one},
+                                      {"y", one},
+                                      {"z", one},
+                                      {"i", one},
+                                      {"t", one},
+                                      {"d", std::vector<std::int64_t>{0}}});
+  expect_error(ErrorKind::data, {"scans are empty", "1 points of the Pandar64 (d = 0)"},
+               [&] { alone.load(options); });
 }
 
 TEST(PandaSetDrive, LabelSchemeIsThatOfTheNames) {

@@ -120,13 +120,20 @@ struct Overview {
   }
 };
 
+constexpr std::size_t kFramesToRecognize = 5;
+
+/// Whether the sensor is recognised from points of a file, by its index.
+bool is_sampled(std::size_t k, std::size_t files) {
+  const std::size_t stride = std::max<std::size_t>(1, files / kFramesToRecognize);
+  return k % stride == stride / 2;
+}
+
 Overview survey_frames(const WorldFrames& frames, const Executor& executor,
                        ProgressSink& progress) {
   const std::vector<std::filesystem::path>& files = frames.files;
-  constexpr std::size_t kFramesToRecognize = 5, kEveryPoint = 7;
+  constexpr std::size_t kEveryPoint = 7;
   Overview overview;
   overview.times_s.resize(files.size());
-  const std::size_t stride = std::max<std::size_t>(1, files.size() / kFramesToRecognize);
   overview.sample.resize(files.size());
   progress.begin_step("times of scans", files.size());
   std::mutex mutex;
@@ -140,8 +147,8 @@ Overview survey_frames(const WorldFrames& frames, const Executor& executor,
       first = bounds.min;
       last = bounds.max;
     }
-    for (std::size_t i = 0; k % stride == stride / 2 && i < frame.positions.size();
-         i += kEveryPoint)
+    const bool is_chosen = is_sampled(k, files.size());
+    for (std::size_t i = 0; is_chosen && i < frame.positions.size(); i += kEveryPoint)
       overview.sample[k].push_back({frame.positions[i], frame.times[i]});
     const std::lock_guard lock(mutex);
     overview.taken += frame.size();
@@ -276,16 +283,21 @@ void check_clock(const DriveInput& drive, const Overview& overview, const Trajec
   facts.is_clock_checked = resolved_s != 0;
 }
 
+std::optional<Recognition> recognized(const WorldFrames& frames, const Overview& overview,
+                                      const Executor& executor, ProgressSink& progress) {
+  progress.begin_step("recognise the sensor", 0);
+  auto found =
+      recognize_sensor(overview.vehicle_points(frames.vehicle, 0), library_cones(), executor);
+  progress.end_step();
+  return found;
+}
+
 /// Finds the sensor and its mount; nothing if both are unknown.
 std::optional<WorldSensor> find_sensor(const DriveInput& drive, const WorldFrames& frames,
                                        const Overview& overview, KittiSequence& sequence,
                                        const Executor& executor, ProgressSink& progress) {
   std::optional<Recognition> found;
-  if (!frames.is_stated) {
-    progress.begin_step("recognise the sensor", 0);
-    found = recognize_sensor(overview.vehicle_points(frames.vehicle, 0), library_cones(), executor);
-    progress.end_step();
-  }
+  if (!frames.is_stated) found = recognized(frames, overview, executor, progress);
   if (found) {
     check_clock(drive, overview, frames.vehicle, *found, sequence.facts, progress);
     sequence.beams.recognised = description_of(*found);
@@ -334,8 +346,12 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
     sequence.trajectory.push_back({middle_s, reader->pose_at(middle_s)});
   }
   if (sequence.scans.empty())
-    throw Error(ErrorKind::data, drive.folder.string() + ": all of its " +
-                                     std::to_string(frames.files.size()) + " scans are empty");
+    throw Error(ErrorKind::data,
+                drive.folder.string() + ": all of its " + std::to_string(frames.files.size()) +
+                    " scans are empty" +
+                    (overview.left_out == 0
+                         ? ""
+                         : " without " + std::to_string(overview.left_out) + " " + frames.others));
   if (overview.left_out > 0)
     sequence.facts.left_out = std::to_string(overview.left_out) + " " + frames.others + " of " +
                               std::to_string(overview.taken + overview.left_out);
@@ -344,6 +360,15 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
   require_no_jump(sequence);
   sequence.reader = reader;
   return sequence;
+}
+
+std::optional<Recognition> recognize_in_world(const WorldFrames& frames, const Executor& executor,
+                                              ProgressSink& progress) {
+  WorldFrames some = frames;
+  some.files.clear();
+  for (std::size_t k = 0; k < frames.files.size(); ++k)
+    if (is_sampled(k, frames.files.size())) some.files.push_back(frames.files[k]);
+  return recognized(some, survey_frames(some, executor, progress), executor, progress);
 }
 
 }  // namespace adasplats

@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/open_drive.h"
+#include "adasplats/cloud/sequence/recognize_sensor.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 
@@ -32,5 +33,10 @@ struct WorldFrames {
 /// that pose all the time.
 std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const WorldFrames& frames,
                                                const Executor& executor, ProgressSink& progress);
+
+/// The sensor of the scans and its mount on the vehicle, as open_world_frames() recognises it from
+/// a few of them; nothing if it is not recognised.
+std::optional<Recognition> recognize_in_world(const WorldFrames& frames, const Executor& executor,
+                                              ProgressSink& progress);
 
 }  // namespace adasplats

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
@@ -142,7 +143,15 @@ class CalibrationFiles {
                    "were calibrated; trajectory.csv has these");
   }
 
+  /// Data sets define their own poses, so a rig file cannot correct them.
   void write_rig() {
+    for (const RigSensor& sensor : result_.rig->sensors)
+      if (data_tree_of(sensor.folder) != nullptr) {
+        progress_.warn(sensor.folder.string() +
+                       ": is a data set with poses of its own, so no rig.toml is written; "
+                       "report.json has the mounts");
+        return;
+      }
     write_file(named("rig.toml"),
                rig_toml(calibrated_rig(*result_.rig, result_.mounts, result_.calibration.mount,
                                        fs::absolute(output_), progress_)));

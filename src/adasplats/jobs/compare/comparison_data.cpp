@@ -141,6 +141,7 @@ Trajectory poses_at(const std::vector<Vec3d>& positions) {
   return trajectory;
 }
 
+/// The path of the sensor, or of the first one of a rig.
 std::vector<Vec3d> path_of_sensor_positions(const PointCloud& cloud) {
   struct Cell {
     Vec3d sum;
@@ -149,6 +150,7 @@ std::vector<Vec3d> path_of_sensor_positions(const PointCloud& cloud) {
   std::map<std::array<std::int64_t, 3>, Cell> cells;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!is_beam(cloud.origin_kind(i))) continue;
+    if (!cloud.sensors.empty() && cloud.scan_indices[i] >= cloud.sensors.front().scans) continue;
     const Vec3d d = vec_cast<double>(cloud.sensor_positions[i]);
     std::array<std::int64_t, 3> key{};
     for (int axis = 0; axis < 3; ++axis) {

@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
-#include "adasplats/cloud/load/rig_of_recording.h"
+#include "adasplats/cloud/load/rig_of_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/constants.h"
@@ -66,7 +67,8 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
                                      ": beams cannot be cast again, because their origins are "
                                      "unknown; give a folder of scans with a pose each, or points "
                                      "with times of a recognised sensor");
-  if (is_recording(scans.sequence)) drive->rig_sensor = sensor_of_topic(scans.topic);
+  if (is_recording(scans.sequence) || data_tree_of(scans.sequence) != nullptr)
+    drive->rig_sensor = sensor_of_topic(scans.topic);
   return std::move(*drive);
 }
 
@@ -192,7 +194,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   const bool is_drive = !scans.trajectory.empty() || is_self_contained_drive(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage,
-                "`topic` and `poses_topic` are for a recording or a packet capture");
+                "`topic` and `poses_topic` are for a recording, a packet capture or a data set");
   if (!is_drive && !scans.scene.empty())
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
   if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packets_of.empty())
