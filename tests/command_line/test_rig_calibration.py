@@ -48,6 +48,7 @@ class RigCalibration(ProgramTest):
         """Runs the program, which must succeed; drives are reported on stderr."""
         result = run(*words)
         self.assertEqual(result.returncode, 0, (words, result.stderr))
+        return result
 
     def fail_with(self, code, *words, says):
         """The last line on stderr is the error."""
@@ -84,6 +85,10 @@ class RigCalibration(ProgramTest):
         self.assertAlmostEqual(calibrated["time_offset_s"], 0, delta=0.002)
         report = json.loads((found / "report.json").read_text())
         self.assertEqual([sensor["name"] for sensor in report["sensors"]], ["top", "left"])
+        facts = self.go("info", found / "rig.toml").stdout
+        for name in ("top", "left"):
+            self.assertRegex(facts, rf"sensor +{name}\n")
+        self.assertNotIn("left", self.go("info", found / "rig.toml", "--topic", "top").stdout)
         # The calibrated rig is read again, and nothing is left to correct.
         result = run("calibrate", "found/rig.toml", "-o", "again", cwd=self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -5,6 +5,7 @@
 
 #include "adasplats/city/city_levels.h"
 #include "adasplats/city/city_manifest.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/gpu/base/device.h"
@@ -110,12 +111,15 @@ class InfoCommand final : public Command {
         verify_layers(input);
         if (has_levels(input)) CityLevels(input, city).verify();
       }
-      const FileFacts facts = run_info(input, labels_, load_, session);
-      kinds.insert(facts.kind);
-      nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};
-      json.update(facts.json);
-      session.report["files"].push_back(std::move(json));
-      text += (text.empty() ? "" : "\n") + table_of(input, facts);
+      for (const FileFacts& facts : is_rig(input)
+                                        ? run_rig_info(input, labels_, load_, session)
+                                        : std::vector{run_info(input, labels_, load_, session)}) {
+        kinds.insert(facts.kind);
+        nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};
+        json.update(facts.json);
+        session.report["files"].push_back(std::move(json));
+        text += (text.empty() ? "" : "\n") + table_of(input, facts);
+      }
     }
     refuse_what_does_not_fit(kinds);
     print(text);
@@ -130,7 +134,8 @@ class InfoCommand final : public Command {
     if (!kinds.contains("recording")) reject({"--packet-sensor"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
-        kinds.contains("nuScenes scene") || kinds.contains("Argoverse 2 log"))
+        kinds.contains("nuScenes scene") || kinds.contains("Argoverse 2 log") ||
+        kinds.contains("sensor of a rig"))
       return;
     reject(
         {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
@@ -144,7 +149,7 @@ class InfoCommand final : public Command {
   std::vector<std::filesystem::path> all_inputs() const {
     std::vector<std::filesystem::path> all;
     for (const std::filesystem::path& input : inputs_) {
-      if (is_city(input)) {
+      if (is_city(input) || is_rig(input)) {
         all.push_back(input);
         continue;
       }

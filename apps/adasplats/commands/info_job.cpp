@@ -14,6 +14,7 @@
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/packet_drive.h"
 #include "adasplats/cloud/load/recording_drive.h"
+#include "adasplats/cloud/load/rig.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
@@ -486,6 +487,23 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
 }
 
 }  // namespace
+
+std::vector<FileFacts> run_rig_info(const fs::path& rig_file, const std::string& labels,
+                                    const LoadOptions& options, Session& session) {
+  const Rig rig = read_rig(rig_file);
+  require_no_settings(rig, options);
+  const auto scheme = label_scheme_for(labels, std::span(&rig_file, 1));
+  std::vector<FileFacts> sensors;
+  for (std::size_t k = 0; k < rig.sensors.size(); ++k) {
+    if (!options.topic.empty() && rig.index_of(options.topic) != k) continue;
+    const RigSensor& sensor = rig.sensors[k];
+    const KittiSequence drive = open_rig_sensor(sensor, session.executor, session.progress);
+    sensors.push_back(sequence_facts(drive, "sensor of a rig", scheme, options, session));
+    sensors.back().rows.emplace(sensors.back().rows.begin(), "sensor", sensor.name);
+    sensors.back().json["name"] = sensor.name;
+  }
+  return sensors;
+}
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
                    Session& session) {
