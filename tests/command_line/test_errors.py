@@ -105,7 +105,7 @@ class Input(ProgramTest):
                      says=[str(points), str(points - 2)])
 
     def test_config_in_place_of_cloud(self):
-        self.run_bad(65, "info", self.sensor)
+        self.run_bad(78, "info", self.sensor)
 
 
 if __name__ == "__main__":
