@@ -129,7 +129,7 @@ class PandaFrames final : public ScanSource {
   /// `classes`: the label file of each frame; empty: no labels.
   explicit PandaFrames(std::size_t sensor, std::map<fs::path, fs::path> classes = {},
                        std::optional<IntensityScale> scale = {})
-      : sensor_(sensor), classes_(std::move(classes)), scale_(std::move(scale)) {}
+      : sensor_(sensor), classes_(std::move(classes)), scale_(scale) {}
 
   FileScan read(const fs::path& file) const override {
     const Table table = read_data_frame(file);
