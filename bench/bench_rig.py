@@ -16,7 +16,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from provenance import provenance_of
+from provenance import publish
 
 SENSORS = {"top": ("hesai-pandar64", "0,0,1.9", "0,0,0"),
            "left": ("velodyne-vlp-32c", "1.2,0.8,1.7", "40,10,0"),
@@ -63,12 +63,8 @@ def main():
     result = {"format": arguments.format, "device": arguments.device, "runs": arguments.runs,
               "scans": scans, "rays": rays, "seconds": medians,
               "scans_per_second": scans / medians["rig"],
-              "rate_ratio": sum(medians[sensor] for sensor in SENSORS) / medians["rig"],
-              "provenance": provenance_of(arguments.program)}
-    text = json.dumps(result, indent=2)
-    print(text)
-    if arguments.json:
-        arguments.json.write_text(text + "\n", encoding="utf-8")
+              "rate_ratio": sum(medians[sensor] for sensor in SENSORS) / medians["rig"]}
+    publish(result, arguments.program, arguments.json)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from provenance import provenance_of
+from provenance import publish
 
 SENSORS = ("top", "front")
 MOUNTS = {"front": "mount = [0.02, 1.33, 1.59]\nmount_rotation_deg = [90, 0, 0]\npoints_in = \"world\"\n"}
@@ -62,11 +62,7 @@ def main():
                 run(arguments.program, "evaluate", "resimulate", model, rig, "--topic", sensor,
                     "--labels", "pandaset", "--scans", "1:1000:2", "--report", report)
                 result["model_of_" + of]["beams_of_" + sensor] = scores_of(report)
-    result["provenance"] = provenance_of(arguments.program)
-    text = json.dumps(result, indent=2)
-    print(text)
-    if arguments.json:
-        arguments.json.write_text(text + "\n", encoding="utf-8")
+    publish(result, arguments.program, arguments.json)
 
 
 if __name__ == "__main__":

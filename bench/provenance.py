@@ -21,3 +21,11 @@ def provenance_of(program):
     words = [os.path.basename(word) if os.path.isabs(word) else word for word in sys.argv[1:]]
     words.insert(0, os.path.basename(sys.argv[0]))
     return {**provenance, "command": shlex.join(words)}
+
+
+def publish(result, program, file):
+    """Prints a result with its provenance as JSON, and writes it to a file unless that is None."""
+    text = json.dumps({**result, "provenance": provenance_of(program)}, indent=2)
+    print(text)
+    if file:
+        file.write_text(text + "\n", encoding="utf-8")

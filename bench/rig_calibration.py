@@ -19,7 +19,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-from provenance import provenance_of
+from provenance import publish
 
 # Name, sensor, mount (m), yaw, pitch and roll (degrees). The Livox has no rings, so no table of lasers.
 SENSORS = [("top", "hesai-pandar64", (0, 0, 1.9), (0, 0, 0)),
@@ -171,11 +171,7 @@ def main():
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
     result = {case: errors_of_case(arguments.program, *settings) for case, settings in CASES.items()}
-    result["provenance"] = provenance_of(arguments.program)
-    text = json.dumps(result, indent=2)
-    print(text)
-    if arguments.json:
-        arguments.json.write_text(text + "\n", encoding="utf-8")
+    publish(result, arguments.program, arguments.json)
 
 
 if __name__ == "__main__":
