@@ -253,8 +253,10 @@ class RigCalibrator {
     if (cloud_.sensors.size() < 2 || !(sensor.unknown_sweep_m > kStill_m)) return;
     std::array<char, 500> text{};
     std::snprintf(text.data(), text.size(),
-                  "sensor '%s': points at 10 m move by %.2f m within a scan, but have no times, so "
-                  "mounts and clocks would be wrong; use a format with point times (PLY, PCD, LAS, "
+                  "sensor '%s': points at 10 m move by %.2f m within a scan, and nothing shows "
+                  "whether this motion is in them (no times, or these fit neither way), so "
+                  "mounts and clocks would be wrong; check the frame of the points; use a format "
+                  "with point times (PLY, PCD, LAS, "
                   "MCAP, packets), or, if the scans are motion-compensated, state sweep_points = "
                   "\"compensated\" for this sensor in the rig file",
                   sensor.name.c_str(), sensor.unknown_sweep_m);
