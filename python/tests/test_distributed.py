@@ -69,14 +69,19 @@ class Killer(threading.Thread):
 
     def run(self):
         while not self.ends.wait(1):
-            at_work = [worker for worker in list(self.workers.scheduler.workers.values())
-                       if worker.processing]
-            if len(self.workers.scheduler.workers) < 3 or not at_work:
-                continue
-            nanny = self.workers.workers[at_work[self.killed % len(at_work)].name]
-            if nanny.process is not None and nanny.process.pid:
-                os.kill(nanny.process.pid, signal.SIGKILL)
-                self.killed += 1
+            # Dask's thread changes its tables meanwhile, and a worker may end before it is killed.
+            with contextlib.suppress(KeyError, RuntimeError, ProcessLookupError):
+                self.kill_one()
+
+    def kill_one(self):
+        at_work = [worker for worker in list(self.workers.scheduler.workers.values())
+                   if worker.processing]
+        if len(self.workers.scheduler.workers) < 3 or not at_work:
+            return
+        nanny = self.workers.workers[at_work[self.killed % len(at_work)].name]
+        if nanny.process is not None and nanny.process.pid:
+            os.kill(nanny.process.pid, signal.SIGKILL)
+            self.killed += 1
 
 
 @needs_dask
