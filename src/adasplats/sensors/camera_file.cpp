@@ -180,6 +180,7 @@ MountedCamera checked(FileCamera read, const fs::path& file) {
 }
 
 FileCamera read_camera(const fs::path& file, const std::string& wanted) {
+  if (is_nuscenes_calibration(file)) return read_nuscenes_camera(file, wanted);
   const std::string text = read_file(file);
   const std::string extension = lower_case(file.extension().string());
   if (extension == ".toml") return read_toml_camera(text, file, wanted);
@@ -188,7 +189,7 @@ FileCamera read_camera(const fs::path& file, const std::string& wanted) {
     return read_ros_camera(text, file, wanted);
   throw camera_fault(file,
                      "is no camera: expected .toml, .yaml or .json (CameraInfo of ROS), calib.txt "
-                     "or calib_cam_to_cam.txt of KITTI");
+                     "or calib_cam_to_cam.txt of KITTI, or calibrated_sensor.json of nuScenes");
 }
 
 }  // namespace
