@@ -160,8 +160,11 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
   const TomlTable whole = parse_toml(text, file, keys, "camera");
   if (!whole.has("camera"))
-    throw camera_fault(
-        file, "describes no camera: it has no [[camera]] (docs/pictures.md, \"Real cameras\")");
+    throw camera_fault(file, std::string("describes no camera: it has no [[camera]] "
+                                         "(docs/pictures.md, \"Real cameras\")") +
+                                 (whole.has("sensors") ? "; it is a rig file, an input or for "
+                                                         "`rig` of simulate"
+                                                       : ""));
   const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
   return read_camera_table(tables[choose_camera(names_of(tables), wanted, file)], file);
 }

@@ -87,7 +87,8 @@ TEST(CameraFile, ReadsTheCamerasOfARigFile) {
   const std::string file = folder.write("rig.toml", rig + kToml).string();
   EXPECT_EQ(load_camera(file + ":front").lens.fx, 1000.5);
   folder.write("rig.toml", rig);
-  expect_error(ErrorKind::config, {"rig.toml", "describes no camera"}, [&] { load_camera(file); });
+  expect_error(ErrorKind::config, {"rig.toml", "describes no camera", "is a rig file", "`rig`"},
+               [&] { load_camera(file); });
   folder.write("rig.toml", rig + changed(kToml, "fx = 1000.5", "fx = 0"));
   expect_error(ErrorKind::config, {"rig.toml:7: camera front", "fx is 0"},
                [&] { load_camera(file + ":front"); });

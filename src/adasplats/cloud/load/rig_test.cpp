@@ -168,7 +168,9 @@ TEST(Rig, WrongFilesGiveOneClearError) {
     expect_error(ErrorKind::config, parts, [&] { parsed(text); });
   };
   expect_bad("", {"describes no rig"});
-  expect_bad("clockwise = true\n", {"describes no rig"});  // a sensor file
+  expect_bad("clockwise = true\n", {"describes no rig", "`sensor`"});
+  expect_bad(kCamera, {"describes no rig", "is a camera file", "`camera`"});
+  expect_bad("# no sensors\n" + std::string(kCamera), {"describes no rig", "`camera`"});
   expect_bad("sensors = []", {"is not a list of tables"});
   expect_bad("sensors = 3", {"sensors is not a list of tables"});
   expect_bad(with("mout = [0, 0, 1]"), {":3:", "unknown key 'mout'", "did you mean 'mount'?"});
