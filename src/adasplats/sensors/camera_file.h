@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct MountedCamera {
   std::string name;
   Lens lens;
   RigidTransform vehicle_from_camera;  ///< camera: x forward, y left, z up
+  /// If its file calibrates it with a LiDAR, which is the first sensor of a rig.
+  std::optional<RigidTransform> lidar_from_camera = {};
 
   /// The camera with the vehicle (or sensor) at a pose.
   Camera at(const RigidTransform& world_from_vehicle) const;

@@ -75,6 +75,7 @@ class NuscenesCameras {
     const RigidTransform optical_from_camera{kCameraFromOptical.transposed(), {}};
     result.camera.vehicle_from_camera = kSensorFromRightForward * lidar.ego_from_sensor.inverse() *
                                         camera.ego_from_sensor * optical_from_camera;
+    result.camera.lidar_from_camera = result.camera.vehicle_from_camera;
     return result;
   }
 

@@ -263,7 +263,8 @@ std::string rig_toml(const Rig& rig) {
 bool move_to_frame_of(const RigidTransform& vehicle_from_sensor, Rig& rig) {
   const RigidTransform sensor_from_vehicle = vehicle_from_sensor.inverse();
   for (MountedCamera& camera : rig.cameras)
-    camera.vehicle_from_camera = sensor_from_vehicle * camera.vehicle_from_camera;
+    camera.vehicle_from_camera =
+        camera.lidar_from_camera.value_or(sensor_from_vehicle * camera.vehicle_from_camera);
   constexpr double kMaxTurn_rad = kDegree;  // 4 cm at the end of a car
   const bool is_turned = angle_between(sensor_from_vehicle.rotation, {}) > kMaxTurn_rad;
   bool are_complete = true;

@@ -153,6 +153,15 @@ TEST(Rig, CamerasAndBoxesMoveToTheFrameOfASensor) {
             1e-12);
 }
 
+// Oracle: the calibration of the camera with the LiDAR, whose mount was corrected meanwhile.
+TEST(Rig, ACameraStaysOnTheLidarThatItWasCalibratedWith) {
+  const RigidTransform lidar_from_camera{{}, {0.1, 0.2, -0.3}};
+  Rig rig = parsed(with("mount = [0, 0, 2]") + kCamera);
+  rig.cameras[0].lidar_from_camera = lidar_from_camera;
+  move_to_frame_of({rotation_from_yaw_pitch_roll(0.1, 0, 0), {0, 0, 2.5}}, rig);
+  EXPECT_EQ(rig.cameras[0].vehicle_from_camera.translation, lidar_from_camera.translation);
+}
+
 // A rig file by a relative path is written to an absolute folder, and the other way round.
 TEST(Rig, PathsAreRelativeToItsFolder) {
   Rig rig = parse_rig(with("input = \"../scans/top\""), "car/rig.toml");
