@@ -24,14 +24,13 @@ SENSORS = {"top": ("hesai-pandar64", "0,0,1.9", "0,0,0"),
 
 
 def simulate(arguments, folder, words):
-    """Scans, rays and seconds of a run."""
+    """The report of a run."""
     report = folder / "report.json"
     subprocess.run([arguments.program, "simulate", arguments.model, "--trajectory", arguments.poses,
                     "--rolling-shutter", "--format", arguments.format, "--device", arguments.device,
                     "-o", folder / "scans", "--overwrite", "--report", report, *words],
                    check=True, stdout=subprocess.DEVNULL)
-    result = json.loads(report.read_text(encoding="utf-8"))
-    return result["scans"], result["rays"], result["seconds"]["written"]
+    return json.loads(report.read_text(encoding="utf-8"))
 
 
 def main():
@@ -45,7 +44,7 @@ def main():
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
     seconds = {name: [] for name in ("rig", *SENSORS)}
-    scans = rays = 0
+    report = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         rig = folder / "rig.toml"
@@ -53,18 +52,18 @@ def main():
                                f"mount_rotation_deg = [{turn}]\n"
                                for sensor, (model, at, turn) in SENSORS.items()), encoding="utf-8")
         for _ in range(arguments.runs):
-            scans, rays, taken_s = simulate(arguments, folder, ["--rig", rig])
-            seconds["rig"].append(taken_s)
+            report = simulate(arguments, folder, ["--rig", rig])
+            seconds["rig"].append(report["seconds"]["written"])
             for sensor, (model, at, turn) in SENSORS.items():
-                *_, taken_s = simulate(arguments, folder, ["--sensor", model, f"--mount={at}",
-                                                           f"--mount-rotation={turn}"])
-                seconds[sensor].append(taken_s)
+                single = simulate(arguments, folder, ["--sensor", model, f"--mount={at}",
+                                                      f"--mount-rotation={turn}"])
+                seconds[sensor].append(single["seconds"]["written"])
     medians = {name: statistics.median(values) for name, values in seconds.items()}
     result = {"format": arguments.format, "device": arguments.device, "runs": arguments.runs,
-              "scans": scans, "rays": rays, "seconds": medians,
-              "scans_per_second": scans / medians["rig"],
+              "scans": report["scans"], "rays": report["rays"], "seconds": medians,
+              "scans_per_second": report["scans"] / medians["rig"],
               "rate_ratio": sum(medians[sensor] for sensor in SENSORS) / medians["rig"]}
-    publish(result, arguments.program, arguments.json)
+    publish(result, arguments.program, arguments.json, report["provenance"]["device"])
 
 
 if __name__ == "__main__":

@@ -23,9 +23,13 @@ def provenance_of(program):
     return {**provenance, "command": shlex.join(words)}
 
 
-def publish(result, program, file):
-    """Prints a result with its provenance as JSON, and writes it to a file unless that is None."""
-    text = json.dumps({**result, "provenance": provenance_of(program)}, indent=2)
+def publish(result, program, file, device=None):
+    """Prints a result with its provenance as JSON, and writes it to a file unless that is None.
+    `device` is that of a report of the measured runs; without it, the CPU."""
+    provenance = provenance_of(program)
+    if device is not None:
+        provenance["device"] = device
+    text = json.dumps({**result, "provenance": provenance}, indent=2)
     print(text)
     if file:
         file.write_text(text + "\n", encoding="utf-8")

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the command line tests read of pictures."""
+"""What the command line tests read of pictures and their layers."""
+import ast
 import struct
 from pathlib import Path
 
@@ -13,3 +14,13 @@ def png_size(path):
     if head[:8] != PNG_SIGNATURE or head[12:16] != b"IHDR":
         raise AssertionError(f"{path} is no PNG: it begins with {head[:16]!r}")
     return struct.unpack(">II", head[16:24])
+
+
+def npy(path):
+    """Shape and values of a .npy (numpy.lib.format)."""
+    data = path.read_bytes()
+    size = struct.unpack("<H", data[8:10])[0]
+    header = ast.literal_eval(data[10:10 + size].decode())
+    code = {"<f4": "f", "<i4": "i"}[header["descr"]]
+    values = data[10 + size:]
+    return header["shape"], struct.unpack(f"<{len(values) // 4}{code}", values)

@@ -2,27 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and films of 'adasplats render'."""
 
-import ast
 import math
 import re
 import shutil
-import struct
 import unittest
 
-from pictures import png_size
+from pictures import npy, png_size
 from support import ProgramTest, write_cloud, tiny_place
 
 SMALL = ["--width", "96", "--height", "54"]
-
-
-def npy(path):
-    """Shape and values of a .npy (numpy.lib.format)."""
-    data = path.read_bytes()
-    size = struct.unpack("<H", data[8:10])[0]
-    header = ast.literal_eval(data[10:10 + size].decode())
-    code = {"<f4": "f", "<i4": "i"}[header["descr"]]
-    values = data[10 + size:]
-    return header["shape"], struct.unpack(f"<{len(values) // 4}{code}", values)
 
 
 class Render(ProgramTest):

@@ -4,8 +4,10 @@
 import csv
 import json
 import math
+import struct
 import unittest
 
+from pictures import npy
 from support import ProgramTest, run
 
 
@@ -85,6 +87,45 @@ class Trees(ProgramTest):
         classes = pandas.read_pickle(sequence / "annotations" / "semseg" / "03.pkl.gz")
         self.assertEqual(len(classes), len(frame))
         self.assertLess(set(classes["class"]), {0, 40, 50, 80})
+
+    def test_a_camera_of_nuscenes_tables(self):
+        """Points of a scan, projected as the devkit does it, are at the depths of a picture."""
+        tables = self.tree("nuscenes") / "v1.0-mini"
+        rows = {name: json.loads((tables / f"{name}.json").read_text())
+                for name in ("sensor", "calibrated_sensor", "sample_data", "ego_pose")}
+        lidar, scan, ego = (rows[name][0] for name in ("calibrated_sensor", "sample_data", "ego_pose"))
+        self.assertEqual(scan["ego_pose_token"], ego["token"])
+        picture = ["-o", self.folder / "p.png", "--trajectory", self.poses]
+        self.run_bad(78, "render", self.place, *picture, "--camera", f"{tables}:CAM_FRONT",
+                     says=["sensor.json", "has no camera"])
+        camera = {"token": "c", "sensor_token": "s", "translation": [1.4, 0.3, 1.5],
+                  "rotation": [0.5, -0.5, 0.5, -0.5],
+                  "camera_intrinsic": [[60, 0, 79.5], [0, 62, 49.5], [0, 0, 1]]}
+        rows["sensor"].append({"token": "s", "channel": "CAM_FRONT", "modality": "camera"})
+        rows["calibrated_sensor"].append(camera)
+        rows["sample_data"].append({**scan, "token": "d", "calibrated_sensor_token": "c",
+                                    "width": 160, "height": 100})
+        for name, table in rows.items():
+            (tables / f"{name}.json").write_text(json.dumps(table))
+        self.run_good("render", self.place, *picture, "--camera", f"{tables}:CAM_FRONT", "--layers",
+                      "depth")
+        _, depths = npy(self.folder / "p.depth.npy")
+        values = (tables.parent / scan["filename"]).read_bytes()
+        seen = near = 0
+        for point in struct.iter_unpack("<5f", values):
+            x, y, z = (a + b for a, b in zip(turned(lidar["rotation"], point[:3]),
+                                             lidar["translation"]))
+            right, down, ahead = 0.3 - y, 1.5 - z, x - 1.4  # the camera looks along x
+            if ahead < 1:
+                continue
+            column = round(79.5 + 60 * right / ahead)
+            row = round(49.5 + 62 * down / ahead)
+            if 0 <= column < 160 and 0 <= row < 100:
+                seen += 1
+                near += abs(depths[160 * row + column] - ahead) < 0.1
+        self.assertGreater(seen, 100)
+        self.assertGreater(near / seen, 0.75)
+        self.run_drive("info", tables.parent)  # still a drive
 
     def run_drive(self, *arguments):
         """Runs the program, which says on stderr what it understood of a drive."""

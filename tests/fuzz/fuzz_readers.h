@@ -57,6 +57,7 @@ void read_rig_text(const Input& input);
 // settings.cpp
 void read_lidar_file(const Input& input);
 void read_camera_file(const Input& input);
+void read_nuscenes_camera_file(const Input& input);
 void read_ray_drop(const Input& input);
 void read_labels(const Input& input);
 void read_classes_of_network(const Input& input);

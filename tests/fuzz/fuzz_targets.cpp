@@ -86,7 +86,7 @@ constexpr FuzzTarget kTargets[] = {
     {"pandaset",
      "lidar/poses.json lidar/timestamps.json lidar/00.pkl.gz annotations/semseg/classes.json "
      "annotations/semseg/00.pkl.gz",
-     "cloud/load/pandaset_drive.cpp cloud/load/json_rows.cpp", &open_pandaset, 8 * kKiB},
+     "cloud/load/pandaset_drive.cpp io/base/json_table.cpp", &open_pandaset, 8 * kKiB},
     {"av2",
      "city_SE3_egovehicle.feather calibration/egovehicle_SE3_sensor.feather "
      "sensors/lidar/315966265259836000.feather",
@@ -95,7 +95,7 @@ constexpr FuzzTarget kTargets[] = {
      "v1.0-mini/scene.json v1.0-mini/sample.json v1.0-mini/sample_data.json "
      "v1.0-mini/sensor.json v1.0-mini/calibrated_sensor.json v1.0-mini/ego_pose.json "
      "v1.0-mini/lidarseg.json v1.0-mini/category.json",
-     "cloud/load/nuscenes_drive.cpp cloud/load/json_rows.cpp", &open_nuscenes},
+     "cloud/load/nuscenes_drive.cpp io/base/json_table.cpp", &open_nuscenes},
     {"rig", "a.toml", "cloud/load/rig.cpp", &read_rig_text},
     // Settings
     {"sensor-toml", "a.toml",
@@ -113,6 +113,9 @@ constexpr FuzzTarget kTargets[] = {
      &read_camera_file},
     {"camera-odometry", "calib.txt image_0/000000.png", "sensors/camera_kitti.cpp",
      &read_camera_file},
+    {"camera-nuscenes",
+     "calibrated_sensor.json sensor.json sample_data.json scene.json sample.json",
+     "sensors/camera_nuscenes.cpp io/base/json_table.cpp", &read_nuscenes_camera_file},
     {"ray-drop", "a.toml", "sensors/ray_drop_model.cpp", &read_ray_drop},
     {"labels", "a.toml", "cloud/labels/label_scheme_file.cpp", &read_labels},
     {"class-map", "a.txt", "jobs/segment/output_classes.cpp", &read_classes_of_network},

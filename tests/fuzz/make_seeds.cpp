@@ -423,6 +423,17 @@ void add_cameras(Seeds& seeds) {
   seeds.add("camera-odometry",
             {joined({"P0: 50 0 32 4 0 50 24 0.2 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n",
                      std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x40\0\0\0\x30", 24)})});
+  const std::string pose = R"("rotation":[0.5,-0.5,0.5,-0.5],"translation":[1.7,0,1.5],)";
+  seeds.add(
+      "camera-nuscenes",
+      {joined({R"([{"token":"c","sensor_token":"f",)" + pose +
+                   R"("camera_intrinsic":[[50,0,32],[0,51,24],[0,0,1]]},{"token":"l",)"
+                   R"("sensor_token":"t","rotation":[1,0,0,0],"translation":[1,0,2]}])",
+               R"([{"token":"f","channel":"CAM_FRONT","modality":"camera"},)"
+               R"({"token":"t","channel":"LIDAR_TOP","modality":"lidar"}])",
+               R"([{"calibrated_sensor_token":"c","sample_token":"s","width":64,)"
+               R"("height":48},{"calibrated_sensor_token":"l","sample_token":"s"}])",
+               R"([{"token":"A","name":"scene-0001"}])", R"([{"token":"s","scene_token":"A"}])"})});
 }
 
 void add_settings(Seeds& seeds) {

@@ -26,9 +26,9 @@ void read_lidar_file(const Input& input) {
     require(is_finite(firing.direction) && std::isfinite(firing.time_s), "rays that are finite");
 }
 
-void read_camera_file(const Input& input) {
-  const Camera camera = load_camera(input.file.string()).at({});
-  const Lens& lens = *camera.lens;
+namespace {
+
+void check_lens(const Lens& lens) {
   for (int i = 0; i < 9; ++i) {
     const double u = 0.5 * (i % 3) * lens.width, v = 0.5 * static_cast<int>(i / 3) * lens.height;
     const Vec3d direction = lens.direction(u, v);
@@ -38,6 +38,16 @@ void read_camera_file(const Input& input) {
     require(!at || std::fabs(at->x - u) + std::fabs(at->y - v) <= 1e-6 * (lens.fx + lens.fy + 1e3),
             "rays that return to their pixels");
   }
+}
+
+}  // namespace
+
+void read_camera_file(const Input& input) { check_lens(load_camera(input.file.string()).lens); }
+
+void read_nuscenes_camera_file(const Input& input) {
+  const MountedCamera camera = load_camera(input.file.string() + ":scene-0001/CAM_FRONT");
+  require(is_finite(camera.vehicle_from_camera.translation), "mounts that are finite");
+  check_lens(camera.lens);
 }
 
 void read_ray_drop(const Input& input) {

@@ -120,7 +120,14 @@ std::vector<std::string> names_of(const std::vector<TomlTable>& tables) {
   return names;
 }
 
-FileCamera read_camera_table(const TomlTable& table, const fs::path& file) {
+/// Where the first sensor of a rig is in the frame of the mounts; at its origin without a mount.
+RigidTransform first_sensor_mount(const TomlTable& whole) {
+  const std::optional<TomlTable> sensor = whole.first_table("sensors");
+  return sensor ? read_mount(*sensor) : RigidTransform{};
+}
+
+/// `whole`: the file that the table is of.
+FileCamera read_camera_table(const TomlTable& table, const fs::path& file, const TomlTable& whole) {
   const std::string own_name = table.text("name", "");
   FileCamera result;
   result.place = table.place("name");
@@ -147,8 +154,13 @@ FileCamera read_camera_table(const TomlTable& table, const fs::path& file) {
   }
   result.camera.name = own_name;
   if (!table.has("file") || table.has("mount") || table.has("mount_rotation_deg") ||
-      table.has("mount_quaternion"))
+      table.has("mount_quaternion")) {
     result.camera.vehicle_from_camera = read_mount(table);
+    result.camera.lidar_from_camera.reset();
+  } else if (result.camera.lidar_from_camera) {
+    result.camera.vehicle_from_camera =
+        first_sensor_mount(whole) * *result.camera.lidar_from_camera;
+  }
   return result;
 }
 
@@ -160,10 +172,13 @@ FileCamera read_toml_camera(std::string_view text, const fs::path& file,
     keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
   const TomlTable whole = parse_toml(text, file, keys, "camera");
   if (!whole.has("camera"))
-    throw camera_fault(
-        file, "describes no camera: it has no [[camera]] (docs/pictures.md, \"Real cameras\")");
+    throw camera_fault(file, std::string("describes no camera: it has no [[camera]] "
+                                         "(docs/pictures.md, \"Real cameras\")") +
+                                 (whole.has("sensors") ? "; it is a rig file, an input or for "
+                                                         "`rig` of simulate"
+                                                       : ""));
   const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
-  return read_camera_table(tables[choose_camera(names_of(tables), wanted, file)], file);
+  return read_camera_table(tables[choose_camera(names_of(tables), wanted, file)], file, whole);
 }
 
 /// The camera with a complete lens.
@@ -180,6 +195,7 @@ MountedCamera checked(FileCamera read, const fs::path& file) {
 }
 
 FileCamera read_camera(const fs::path& file, const std::string& wanted) {
+  if (is_nuscenes_calibration(file)) return read_nuscenes_camera(file, wanted);
   const std::string text = read_file(file);
   const std::string extension = lower_case(file.extension().string());
   if (extension == ".toml") return read_toml_camera(text, file, wanted);
@@ -188,7 +204,7 @@ FileCamera read_camera(const fs::path& file, const std::string& wanted) {
     return read_ros_camera(text, file, wanted);
   throw camera_fault(file,
                      "is no camera: expected .toml, .yaml or .json (CameraInfo of ROS), calib.txt "
-                     "or calib_cam_to_cam.txt of KITTI");
+                     "or calib_cam_to_cam.txt of KITTI, or calibrated_sensor.json of nuScenes");
 }
 
 }  // namespace
@@ -282,7 +298,7 @@ std::vector<MountedCamera> cameras_of(const TomlTable& whole, const fs::path& fi
   const std::vector<TomlTable> tables = whole.tables("camera", camera_keys());
   names_of(tables);
   for (const TomlTable& table : tables)
-    cameras.push_back(checked(read_camera_table(table, file), file));
+    cameras.push_back(checked(read_camera_table(table, file, whole), file));
   return cameras;
 }
 

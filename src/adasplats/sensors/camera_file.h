@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct MountedCamera {
   std::string name;
   Lens lens;
   RigidTransform vehicle_from_camera;  ///< camera: x forward, y left, z up
+  /// If its file calibrates it with a LiDAR, which is the first sensor of a rig.
+  std::optional<RigidTransform> lidar_from_camera = {};
 
   /// The camera with the vehicle (or sensor) at a pose.
   Camera at(const RigidTransform& world_from_vehicle) const;
@@ -32,9 +35,12 @@ struct MountedCamera {
 /// - KITTI's calib.txt of odometry sequences (P0 to P3), mounted on the LiDAR by its line Tr; the
 ///   size is that of the pictures next to it;
 /// - KITTI's calib_cam_to_cam.txt of raw data (P_rect_00 to P_rect_03), mounted by
-///   calib_velo_to_cam.txt in the same folder.
-/// Errors: no_input, io, config (content that is invalid or inconsistent), usage (a name that the
-/// file does not have, or none of several).
+///   calib_velo_to_cam.txt in the same folder;
+/// - nuScenes: the folder of the tables or its calibrated_sensor.json, with sensor.json and
+///   sample_data.json beside it, mounted on LIDAR_TOP in our axes. NAME is the channel, or
+///   SCENE/CHANNEL, with scene.json and sample.json, if the scenes have different calibrations.
+/// Errors: no_input, io, config or data (content that is invalid or inconsistent), usage (a name
+/// that the file does not have, or none of several).
 MountedCamera load_camera(const std::string& file_and_name);
 
 /// The other keys of a file of a rig (cloud/load/rig.h), which may have cameras.

@@ -87,7 +87,8 @@ TEST(CameraFile, ReadsTheCamerasOfARigFile) {
   const std::string file = folder.write("rig.toml", rig + kToml).string();
   EXPECT_EQ(load_camera(file + ":front").lens.fx, 1000.5);
   folder.write("rig.toml", rig);
-  expect_error(ErrorKind::config, {"rig.toml", "describes no camera"}, [&] { load_camera(file); });
+  expect_error(ErrorKind::config, {"rig.toml", "describes no camera", "is a rig file", "`rig`"},
+               [&] { load_camera(file); });
   folder.write("rig.toml", rig + changed(kToml, "fx = 1000.5", "fx = 0"));
   expect_error(ErrorKind::config, {"rig.toml:7: camera front", "fx is 0"},
                [&] { load_camera(file + ":front"); });
@@ -297,6 +298,32 @@ TEST(CameraFile, ReadsKittiOdometry) {
     EXPECT_NEAR(pixel->y, v, 1e-6);
     EXPECT_NEAR(in_camera.x, w, 1e-9);
   }
+}
+
+// Oracle: a point of the LiDAR is the same point of the camera in either frame: that of the LiDAR
+// without a mount, of the vehicle with one.
+TEST(CameraFile, KittisMountInARigIsOnItsFirstSensor) {
+  const TemporaryFolder folder;
+  folder.write("calib.txt", kOdometry);
+  folder.write("image_2/000000.png", kPng);
+  const std::string camera = "[[camera]]\nname = \"c\"\nfile = \"calib.txt:P2\"\n";
+  const std::string second = "[[sensors]]\nname = \"b\"\nmount = [7, 7, 7]\n";
+  const auto mount_of = [&](const std::string& sensors, const std::string& of_camera = "") {
+    const std::string text = sensors + camera + of_camera;
+    return load_camera(folder.write("rig.toml", text).string()).vehicle_from_camera;
+  };
+  const RigidTransform lidar_from_camera = mount_of("");
+  const RigidTransform same = mount_of("[[sensors]]\nname = \"a\"\n" + second);
+  const RigidTransform vehicle_from_camera = mount_of(
+      "[[sensors]]\nname = \"a\"\nmount = [1, 2, 3]\nmount_rotation_deg = [90, 0, 0]\n" + second);
+  for (const Vec3d in_camera : {Vec3d{10, 2, -1}, Vec3d{30, -8, 0.5}}) {
+    const Vec3d x = lidar_from_camera * in_camera;
+    expect_near(same * in_camera, x);
+    expect_near(vehicle_from_camera * in_camera, {1 - x.y, 2 + x.x, 3 + x.z});
+  }
+  const RigidTransform own =
+      mount_of("[[sensors]]\nname = \"a\"\nmount = [1, 2, 3]\n", "mount = [0.5, 0, 1]\n");
+  expect_near(own * Vec3d{1, 0, 0}, {1.5, 0, 1});
 }
 
 // Oracle: the readme of the raw data: P_rect_02 R_rect_00 [R T] x.

@@ -35,5 +35,9 @@ FileCamera read_ros_camera(std::string_view text, const std::filesystem::path& f
 bool is_kitti_calibration(std::string_view text);
 FileCamera read_kitti_camera(std::string_view text, const std::filesystem::path& file,
                              const std::string& wanted);
+/// A file calibrated_sensor.json of nuScenes, or the folder of one.
+bool is_nuscenes_calibration(const std::filesystem::path& path);
+/// `wanted`: "CHANNEL" or "SCENE/CHANNEL".
+FileCamera read_nuscenes_camera(const std::filesystem::path& path, const std::string& wanted);
 
 }  // namespace adasplats

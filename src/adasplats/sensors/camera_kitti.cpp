@@ -151,6 +151,7 @@ FileCamera read_kitti_camera(std::string_view text, const fs::path& file,
   const RigidTransform camera_from_lidar =
       RigidTransform{kCameraFromOptical, kCameraFromOptical * shift} * first_from_lidar;
   result.camera.vehicle_from_camera = camera_from_lidar.inverse();
+  result.camera.lidar_from_camera = result.camera.vehicle_from_camera;
   return result;
 }
 

@@ -101,6 +101,15 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key, const TomlKeys& k
   return tables;
 }
 
+std::optional<TomlTable> TomlTable::first_table(std::string_view key) const {
+  const toml::node* const list = find(key);
+  if (list == nullptr || !list->is_array_of_tables()) return std::nullopt;
+  const toml::table* const first = list->as_array()->get(0)->as_table();
+  TomlKeys keys;
+  for (const auto& [name, value] : *first) keys.emplace_back(name.str());
+  return TomlTable({table_, first}, path_, keys);
+}
+
 double TomlTable::number(std::string_view key, double otherwise, double low, double high) const {
   const toml::node* node = find(key);
   return node == nullptr ? otherwise : number_of(*node, key, low, high);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,8 @@ class TomlTable {
 
   /// The tables of a list that must be there: [[KEY]].
   std::vector<TomlTable> tables(std::string_view key, const TomlKeys& known) const;
+  /// The first of them, with any keys; nothing if the key is missing or no such list.
+  std::optional<TomlTable> first_table(std::string_view key) const;
 
   double number(std::string_view key, double otherwise, double low, double high) const;
   std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const;

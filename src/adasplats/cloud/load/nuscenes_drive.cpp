@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/json_rows.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/json_table.h"
 
 namespace adasplats {
 

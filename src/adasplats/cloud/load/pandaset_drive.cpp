@@ -15,13 +15,13 @@
 #include <utility>
 
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/json_rows.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/load/world_drive.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/json_table.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/pickle/data_frame.h"
 

@@ -182,11 +182,14 @@ bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
 
 Rig parse_rig(std::string_view text, const fs::path& file) {
   const fs::path folder = file.parent_path();
-  if (text.find("sensors") == std::string_view::npos)
-    throw Error(ErrorKind::config,
-                file.string() +
-                    ": describes no rig: it has no [[sensors]] (docs/formats.md, \"Rigs\"; "
-                    "a file of one sensor is for `sensor`)");
+  const bool has_cameras = text.find("[[camera]]") != std::string_view::npos;
+  const Error no_sensors(ErrorKind::config,
+                         file.string() +
+                             ": describes no rig: it has no [[sensors]] "
+                             "(docs/formats.md, \"Rigs\"); " +
+                             (has_cameras ? "it is a camera file, for `camera` of render"
+                                          : "a file of one sensor is for `sensor`"));
+  if (text.find("sensors") == std::string_view::npos) throw no_sensors;
   TomlKeys keys = {"camera"};
   keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
   const TomlTable whole = parse_toml(text, file, keys, "rig");
@@ -194,7 +197,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
   const RigValue read_shared(whole, folder);
   read_shared("trajectory", shared.trajectory);
   read_shared("boxes", shared.boxes);
-  whole.require("sensors");
+  if (!whole.has("sensors")) throw no_sensors;
   Rig rig{file, {}, read_boxes(whole), cameras_of(whole, file)};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
@@ -260,7 +263,8 @@ std::string rig_toml(const Rig& rig) {
 bool move_to_frame_of(const RigidTransform& vehicle_from_sensor, Rig& rig) {
   const RigidTransform sensor_from_vehicle = vehicle_from_sensor.inverse();
   for (MountedCamera& camera : rig.cameras)
-    camera.vehicle_from_camera = sensor_from_vehicle * camera.vehicle_from_camera;
+    camera.vehicle_from_camera =
+        camera.lidar_from_camera.value_or(sensor_from_vehicle * camera.vehicle_from_camera);
   constexpr double kMaxTurn_rad = kDegree;  // 4 cm at the end of a car
   const bool is_turned = angle_between(sensor_from_vehicle.rotation, {}) > kMaxTurn_rad;
   bool are_complete = true;

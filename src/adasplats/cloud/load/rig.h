@@ -75,9 +75,10 @@ Rig parse_rig(std::string_view text, const std::filesystem::path& file);
 /// its folder.
 std::string rig_toml(const Rig& rig);
 
-/// Expresses the mounts of the cameras and the boxes in the frame of a sensor instead of that of
-/// the vehicle. Boxes are parallel to the axes: if the sensor is turned, they are left out, and the
-/// result is false.
+/// Expresses the mounts of the cameras and the boxes in the frame of the first sensor, whose mount
+/// may have been corrected, instead of that of the vehicle. Cameras that were calibrated with it
+/// stay where they are on it. Boxes are parallel to the axes: if the sensor is turned, they are
+/// left out, and the result is false.
 bool move_to_frame_of(const RigidTransform& vehicle_from_sensor, Rig& rig);
 
 /// Opens the drive of a sensor. Errors: those of open_drive() and open_kitti_sequence(); data for

@@ -153,6 +153,15 @@ TEST(Rig, CamerasAndBoxesMoveToTheFrameOfASensor) {
             1e-12);
 }
 
+// Oracle: the calibration of the camera with the LiDAR, whose mount was corrected meanwhile.
+TEST(Rig, ACameraStaysOnTheLidarThatItWasCalibratedWith) {
+  const RigidTransform lidar_from_camera{{}, {0.1, 0.2, -0.3}};
+  Rig rig = parsed(with("mount = [0, 0, 2]") + kCamera);
+  rig.cameras[0].lidar_from_camera = lidar_from_camera;
+  move_to_frame_of({rotation_from_yaw_pitch_roll(0.1, 0, 0), {0, 0, 2.5}}, rig);
+  EXPECT_EQ(rig.cameras[0].vehicle_from_camera.translation, lidar_from_camera.translation);
+}
+
 // A rig file by a relative path is written to an absolute folder, and the other way round.
 TEST(Rig, PathsAreRelativeToItsFolder) {
   Rig rig = parse_rig(with("input = \"../scans/top\""), "car/rig.toml");
@@ -168,7 +177,9 @@ TEST(Rig, WrongFilesGiveOneClearError) {
     expect_error(ErrorKind::config, parts, [&] { parsed(text); });
   };
   expect_bad("", {"describes no rig"});
-  expect_bad("clockwise = true\n", {"describes no rig"});  // a sensor file
+  expect_bad("clockwise = true\n", {"describes no rig", "`sensor`"});
+  expect_bad(kCamera, {"describes no rig", "is a camera file", "`camera`"});
+  expect_bad("# no sensors\n" + std::string(kCamera), {"describes no rig", "`camera`"});
   expect_bad("sensors = []", {"is not a list of tables"});
   expect_bad("sensors = 3", {"sensors is not a list of tables"});
   expect_bad(with("mout = [0, 0, 1]"), {":3:", "unknown key 'mout'", "did you mean 'mount'?"});

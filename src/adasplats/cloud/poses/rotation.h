@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "adasplats/core/maths/right_forward.h"
 #include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
@@ -23,10 +24,5 @@ double orthonormality_error(const Mat3d& m);
 
 /// The rotation nearest to a matrix that nearly is one (its polar factor).
 Mat3d orthonormalized(const Mat3d& m);
-
-/// From the axes that PandaSet and nuScenes give their LiDARs, x right, y forward, z up, to ours. A
-/// change of axes alone is exact in floating point.
-inline constexpr RigidTransform kSensorFromRightForward = {{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}},
-                                                           {}};
 
 }  // namespace adasplats

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/json_rows.h"
+#include "adasplats/io/base/json_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -100,6 +101,18 @@ Mat3d JsonRow::rotation(const std::array<double, 4>& wxyz, const char* key) cons
     throw fault("the quaternion" + quoted(key) + " is not a rotation: its length is " +
                 exact_text(norm) + ", expected 1");
   return rotation_from_quaternion(w / norm, x / norm, y / norm, z / norm);
+}
+
+std::array<double, 9> JsonRow::matrix(const char* key) const {
+  constexpr std::size_t kSide = 3;
+  const json& rows = member(key);
+  const auto is_row = [](const json& row) { return row.is_array() && row.size() == kSide; };
+  if (!rows.is_array() || rows.size() != kSide || !std::ranges::all_of(rows, is_row))
+    throw fault("expected three rows of three numbers" + quoted(key));
+  std::array<double, 9> numbers{};
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    numbers[k] = finite_real(rows[k / kSide][k % kSide], *this, quoted(key));
+  return numbers;
 }
 
 RigidTransform JsonRow::pose(const char* translation, const char* rotation_key) const {
