@@ -61,6 +61,8 @@ class Killer(threading.Thread):
     """Kills one worker after the other (kill -9), at most one a second, while three of four are there:
     a new one takes seconds to begin."""
 
+    MOST = 8
+
     def __init__(self, workers):
         super().__init__(daemon=True)
         self.workers = workers
@@ -68,7 +70,8 @@ class Killer(threading.Thread):
         self.ends = threading.Event()
 
     def run(self):
-        while not self.ends.wait(1):
+        # Not for ever: on a slow machine every try of the last task would be killed.
+        while self.killed < self.MOST and not self.ends.wait(1):
             # Dask's thread changes its tables meanwhile, and a worker may end before it is killed.
             with contextlib.suppress(KeyError, RuntimeError, ProcessLookupError):
                 self.kill_one()
