@@ -196,9 +196,11 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
       steps.fill_gaps(options);
       report.splats_filled = steps.counts().disks - before;
     }
-    begin_step("refinement", options.refine_rounds);
-    for (int i = 0; i < options.refine_rounds; ++i) steps.refine_extents(options);
-    steps.trim();
+    if (options.refine_rounds > 0) {
+      begin_step("refinement", options.refine_rounds);
+      for (int i = 0; i < options.refine_rounds; ++i) steps.refine_extents(options);
+      steps.trim();
+    }
   }
   report.splats_limited = steps.count_limited();
   return report;
