@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -74,7 +73,7 @@ ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent*
   struct At {
     float radii, rim, opacity, reaches, likelihood;
   };
-  At at[kExtentHits];
+  At at[kExtentHits];  // NOLINT: filled here
   constexpr float kPi = 3.14159265F;
   float reaches = 1;  // probability that the ray passes all disks before
   double likelihood = static_cast<double>(options.stray_per_m);
