@@ -18,6 +18,7 @@ namespace adasplats::gpu {
 namespace {
 
 constexpr std::size_t kMaxRays = std::size_t{1} << 22;  // per batch
+constexpr std::size_t kMaxDeepRays = kMaxRays / 8;      // the same with kExtentHits hits
 constexpr int kPostponeInCheck = 10;                    // as for scans, cuda_scene.cu
 
 /// Adds as unsigned integers, also for signed numbers: the bits are the same.
@@ -51,6 +52,48 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
     for_each(batch, stream, "count rays",
              [first, done, from = rays.data(), found = hits.data(),
               body] __device__(std::uint64_t k) { body(done + k, first[k], from[k], found[k]); });
+  }
+}
+
+/// Adds what `rays` show about the extents of the disks of `scene`.
+void add_extents(const DeviceScene& scene, const Disk* disks, const DiskExtent* extents,
+                 const DeviceRays& rays, const ExtentOptions& options, ExtentSums* sums,
+                 cudaStream_t stream) {
+  const MeasuredPoints points = rays.measured();
+  const bool nowhere = rays.ends() == RayEnds::nowhere;
+  const RayReach reach = {nowhere ? 0 : options.beyond_m};
+  const std::size_t at_once = std::min(rays.size(), kMaxDeepRays);
+  const DeviceBuffer<Ray> batch_rays(at_once, stream);
+  const DeviceBuffer<Hit> hits(at_once * kExtentHits, stream);
+  RaySource source;
+  source.rays = batch_rays.data();
+  for (std::size_t done = 0; done < rays.size(); done += at_once) {
+    const std::size_t batch = std::min(at_once, rays.size() - done);
+    const std::uint32_t* first = rays.points().data() + done;
+    for_each(batch, stream, "make rays",
+             [points, first, reach, to = batch_rays.data()] __device__(std::uint64_t k) {
+               const std::uint32_t point = first[k];
+               to[k] = measured_ray(points.sensors[point], points.positions[point], reach);
+             });
+    scene.cast(source, batch, kExtentHits, hits.data(), stream);
+    for_each(batch, stream, "refine disks",
+             [points, first, nowhere, disks, extents, options, sums, from = batch_rays.data(),
+              found = hits.data()] __device__(std::uint64_t k) {
+               const std::uint32_t point = first[k];
+               const float range_m = nowhere
+                                         ? std::numeric_limits<float>::infinity()
+                                         : length(points.positions[point] - points.sensors[point]);
+               const Hit* own = found + k * kExtentHits;
+               std::size_t count = 0;
+               while (count < kExtentHits && own[count].valid()) ++count;
+               add_extents_of_ray(disks, extents, from[k], range_m, {own, count}, options,
+                                  [sums](std::uint32_t id, const ExtentSums& part) {
+                                    add_to(sums[id].opacity, part.opacity);
+                                    add_to(sums[id].opacity_weight, part.opacity_weight);
+                                    add_to(sums[id].scale, part.scale);
+                                    add_to(sums[id].scale_weight, part.scale_weight);
+                                  });
+             });
   }
 }
 
@@ -161,6 +204,19 @@ std::span<const std::uint32_t> DeviceRays::points_of(std::uint32_t parts,
                                                      std::uint32_t part) const {
   if (parts == 1) return {numbers_.data(), numbers_.size()};
   return {by_part_.data() + begins_.first(parts, part), begins_.count(parts, part)};
+}
+
+DeviceBuffer<ExtentSums> extents_on_device(const Disk* disks, const DiskExtent* extents,
+                                           std::size_t count,
+                                           std::span<const DeviceRays* const> rays,
+                                           const ExtentOptions& options, cudaStream_t stream) {
+  DeviceBuffer<ExtentSums> sums(count, stream);
+  sums.fill_bytes(0);
+  if (!any_present(disks, count, stream)) return sums;
+  const std::unique_ptr<DeviceScene> scene = make_cuda_scene_of_device_disks(disks, count, stream);
+  for (const DeviceRays* cast : rays)
+    add_extents(*scene, disks, extents, *cast, options, sums.data(), stream);
+  return sums;
 }
 
 DeviceEvidence evidence_on_device(const Disk* disks, std::size_t count,

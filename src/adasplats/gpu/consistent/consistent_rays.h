@@ -10,6 +10,7 @@
 #include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/splats/consistent/seed_disk.h"
 #include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/disk_extent.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/splats/reflectance/element_steps.h"
@@ -61,6 +62,12 @@ class DeviceRays {
   DeviceBuffer<std::uint32_t> by_part_;  ///< points of the rays, part by part
   RayPartBegins begins_;
 };
+
+/// sum_extents() on disks [0, count).
+DeviceBuffer<ExtentSums> extents_on_device(const Disk* disks, const DiskExtent* extents,
+                                           std::size_t count,
+                                           std::span<const DeviceRays* const> rays,
+                                           const ExtentOptions& options, cudaStream_t stream);
 
 /// collect_evidence() on disks [0, count).
 DeviceEvidence evidence_on_device(const Disk* disks, std::size_t count,

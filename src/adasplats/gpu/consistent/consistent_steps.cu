@@ -56,6 +56,12 @@ class ConsistentOnGpu : public RaysOnGpu {
                                  const SettleOptions& options) const {
     return rays.shifts(disks.data(), disks.size(), options);
   }
+  DeviceBuffer<ExtentSums> extents(const DeviceBuffer<Disk>& disks,
+                                   const DeviceBuffer<DiskExtent>& extents,
+                                   std::span<const DeviceRays* const> rays,
+                                   const ExtentOptions& options) const {
+    return extents_on_device(disks.data(), extents.data(), disks.size(), rays, options, stream());
+  }
   DeviceBuffer<std::uint8_t> missed(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
                                     std::size_t /*points*/, RayReach reach) const {
     return rays.missed(disks.data(), disks.size(), reach);

@@ -62,8 +62,9 @@ ConsistentOptions ConsistentOptions::scaled(double scale) const {
         &made.cover.largest_radius_m, &made.cover.covered_within_m, &made.settle.reach_m,
         &made.settle.scale_m, &made.settle.max_shift_m})
     *length_m *= scale;
-  for (float* length_m : {&made.judge.min_radius_m, &made.evidence.range_margin_m,
-                          &made.evidence.height_margin_m, &made.missed_m, &made.met_m})
+  for (float* length_m :
+       {&made.judge.min_radius_m, &made.evidence.range_margin_m, &made.evidence.height_margin_m,
+        &made.missed_m, &made.met_m, &made.extent.error_scale_m, &made.extent.beyond_m})
     *length_m *= static_cast<float>(scale);
   return made;
 }
@@ -113,6 +114,9 @@ double fitting_scale(ConsistentSteps& steps, const ConsistentOptions& options) {
   return scale;
 }
 
+/// Minimum share of confirming rays for a seed to be refined. Fewer rays confirm what moved.
+constexpr double kMinConfirmed = 0.2;
+
 std::string millimetres(double length_m) {
   std::ostringstream text;
   text << std::setprecision(2) << 1000 * length_m;
@@ -150,7 +154,9 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
   begin_step("fusion", 0);
   steps.fuse(chosen);
   if (chosen.fit_scale && chosen.has_default_sizes()) report.scale = fitting_scale(steps, chosen);
-  const ConsistentOptions options = chosen.scaled(report.scale);
+  ConsistentOptions options = chosen.scaled(report.scale);
+  // Refinement decides about disks that some rays pass.
+  if (options.refine_rounds > 0) options.judge.min_share = kMinConfirmed;
   report.cell_m = options.cell_m;
   if (steps.counts().points > 0)
     report.spacing_m = options.cell_m / std::sqrt(points_per_cell(steps.counts()));
@@ -189,6 +195,11 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
       const std::size_t before = steps.counts().disks;
       steps.fill_gaps(options);
       report.splats_filled = steps.counts().disks - before;
+    }
+    if (options.refine_rounds > 0) {
+      begin_step("refinement", options.refine_rounds);
+      for (int i = 0; i < options.refine_rounds; ++i) steps.refine_extents(options);
+      steps.trim();
     }
   }
   report.splats_limited = steps.count_limited();

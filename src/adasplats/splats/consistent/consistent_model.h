@@ -14,6 +14,7 @@
 #include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/seed_growth.h"
 #include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/disk_extent.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/surface/adaptive_planes.h"
@@ -39,6 +40,7 @@ namespace adasplats {
 // - choose: select few large disks that cover all seeds [splats/consistent/surface_cover.h]
 // - settle: move disks along their normals to the ends of the rays [splats/rays/disk_shift.h]
 // - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
+// - refine_extents: fit radii to the shares of rays that pass and end [splats/rays/disk_extent.h]
 // Without sensor positions the steps with rays are skipped, and disks stay smaller.
 
 /// Options of the consistent method; docs/research/consistent.md gives the source of each number.
@@ -74,6 +76,8 @@ struct ConsistentOptions {
   bool fill = true;        ///< restore seeds where rays pass between splats...
   float missed_m = 0.15F;  ///< ...if no splat is within this distance behind the ray's end...
   float met_m = 0.4F;      ///< ...and within this distance before it
+  int refine_rounds = 0;   ///< of estimating opacities and radii from rays; 0: not refined
+  ExtentOptions extent;
   /// Scale the default cells and limits for small dense objects; false for tiles of a city, which
   /// share their cells.
   bool fit_scale = true;
@@ -145,6 +149,11 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .help = "Add small splats where measured rays pass through the surface",
                 .group = kGroup},
         consistent.fill);
+  visit(Setting{.name = "refine_rounds",
+                .help = "Rounds of refining the radii of splats by measured rays",
+                .group = kGroup,
+                .min = 0},
+        consistent.refine_rounds);
 }
 
 /// Errors: usage (an option out of range).

@@ -62,6 +62,11 @@ class ConsistentOnCpu : public RaysOnCpu {
                                 const SettleOptions& options) const {
     return sum_shifts(disks, rays, options, executor());
   }
+  std::vector<ExtentSums> extents(std::span<const Disk> disks, std::span<const DiskExtent> extents,
+                                  std::span<const MeasuredRays* const> rays,
+                                  const ExtentOptions& options) const {
+    return sum_extents(disks, extents, rays, options, executor());
+  }
   SurfaceCover cover(std::span<const Disk> seeds, std::span<const std::uint8_t> unchecked,
                      const PointIndex& index, const CoverOptions& options) const {
     return {seeds, index, options, executor(), unchecked};

@@ -71,6 +71,10 @@ class ConsistentSteps {
   virtual void settle(const ConsistentOptions& options) = 0;
   /// Restores seeds where rays pass between disks.
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
+  /// Estimates opacities and radii of chosen disks from the rays that cross them: one round.
+  virtual void refine_extents(const ConsistentOptions& options) = 0;
+  /// Trims chosen disks to the extents of refine_extents().
+  virtual void trim() = 0;
 
   virtual ConsistentCounts counts() const = 0;
   /// Chosen disks whose centres were moved by the maximum and are not on the surface.

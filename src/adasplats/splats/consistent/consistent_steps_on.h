@@ -187,6 +187,31 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     backend_.wait("fill gaps");
   }
 
+  void refine_extents(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = backend_.enter();
+    extent_options_ = options.extent;
+    if (extents_.size() != chosen_.size()) {
+      extents_ = backend_.template array<DiskExtent>(chosen_.size());
+      backend_.for_each(chosen_.size(), "refine disks",
+                        BeginExtent{extents_.data(), options.extent});
+    }
+    auto spread = backend_.template array<Disk>(chosen_.size());
+    backend_.for_each(chosen_.size(), "refine disks",
+                      SpreadDisk{chosen_.data(), extents_.data(), options.extent, spread.data()});
+    const auto sums = backend_.extents(spread, extents_, all_rays(), options.extent);
+    backend_.for_each(chosen_.size(), "refine disks",
+                      RefineExtent{extents_.data(), sums.data(), options.extent});
+    backend_.wait("refine disks");
+  }
+
+  void trim() override {
+    [[maybe_unused]] const auto entered = backend_.enter();
+    backend_.for_each(extents_.size(), "trim disks",
+                      TrimDisk{chosen_.data(), extents_.data(), extent_options_});
+    extents_ = {};
+    backend_.wait("trim disks");
+  }
+
   ConsistentCounts counts() const override {
     [[maybe_unused]] const auto entered = backend_.enter();
     return {cloud_.size(),
@@ -262,11 +287,14 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   }
   MeasuredPoints points() const { return points_of(cloud_); }
 
-  auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
+  std::vector<const typename Backend::Rays*> all_rays() const {
     std::vector<const typename Backend::Rays*> rays = {&*rays_};
     if (empty_rays_) rays.push_back(&*empty_rays_);
     if (passing_rays_) rays.push_back(&*passing_rays_);
-    return backend_.evidence(disks, std::span<const typename Backend::Rays* const>(rays), options);
+    return rays;
+  }
+  auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
+    return backend_.evidence(disks, all_rays(), options);
   }
   /// Counts seeds part by part along the curve.
   template <class PieceOf>
@@ -341,6 +369,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   std::optional<typename Backend::Rays> rays_, empty_rays_, passing_rays_;
   std::optional<typename Backend::Cover> cover_;
   Array<Disk> chosen_;
+  Array<DiskExtent> extents_;  ///< of chosen disks, while they are refined
+  ExtentOptions extent_options_;
 };
 
 }  // namespace adasplats

@@ -217,6 +217,48 @@ struct PutBackSeed {
   }
 };
 
+/// Sets the extent of disks before they are refined.
+struct BeginExtent {
+  DiskExtent* extents;
+  ExtentOptions options;
+
+  ADASPLATS_HD void operator()(std::size_t i) const { extents[i] = {options.first_opacity, 1}; }
+};
+
+/// Disks with their extents, as rays are cast at them.
+struct SpreadDisk {
+  const Disk* disks;
+  const DiskExtent* extents;
+  ExtentOptions options;
+  Disk* spread;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    spread[i] = disks[i];
+    spread[i].radius *= extents[i].scale * options.reach;
+  }
+};
+
+struct RefineExtent {
+  DiskExtent* extents;
+  const ExtentSums* sums;
+  ExtentOptions options;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    extents[i] = refined(extents[i], sums[i], options);
+  }
+};
+
+/// Makes disks opaque where their opacity is large, and removes them elsewhere.
+struct TrimDisk {
+  Disk* disks;
+  const DiskExtent* extents;
+  ExtentOptions options;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    if (disks[i].radius > 0) disks[i].radius = opaque_radius(disks[i].radius, extents[i], options);
+  }
+};
+
 /// The most frequent of the classes, which are sorted; the smallest of equally frequent ones.
 ADASPLATS_HD inline std::uint16_t majority_class(std::span<const std::uint16_t> ascending) {
   std::uint16_t best = 0;

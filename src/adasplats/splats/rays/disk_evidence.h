@@ -124,7 +124,20 @@ ADASPLATS_HD inline bool is_supported(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
-struct SeedCheckOptions {       // sources of the numbers: docs/research/consistent.md
+/// Share of the rays through a disk that confirm it; needs rays.
+ADASPLATS_HD inline double confirmed_share(const DiskEvidence& evidence) {
+  double confirmed = 0, all = 0;
+  for (std::size_t bin = 0; bin < evidence.confirmed.size(); ++bin) {
+    confirmed += evidence.confirmed[bin];
+    all += double{1} * evidence.confirmed[bin] + evidence.contradicted[bin];
+  }
+  return confirmed / all;
+}
+
+struct SeedCheckOptions {  // sources of the numbers: docs/research/consistent.md
+  /// If larger than 0: disks stay as they are if at least this share of the rays confirms them, and
+  /// are removed else.
+  double min_share = 0;
   int core_rings = 2;           ///< rings that form the core of a disk
   std::uint32_t core_rays = 3;  ///< minimum rays that confirm the core...
   double core_share = 0.3;      ///< ...and minimum share of the rays through it, to retry the disk
@@ -136,6 +149,7 @@ struct SeedCheckOptions {       // sources of the numbers: docs/research/consist
 /// confirm the core (a bar, a twig), a small radius, to be checked again; else 0.
 ADASPLATS_HD inline float supported_radius(const DiskEvidence& evidence, float radius_m,
                                            const SeedCheckOptions& options) {
+  if (options.min_share > 0) return confirmed_share(evidence) >= options.min_share ? radius_m : 0;
   const float balanced_m = is_supported(evidence) ? balanced_radius(evidence, radius_m) : 0;
   if (balanced_m > 0 || radius_m <= options.min_radius_m) return balanced_m;
   std::uint32_t yes = 0, no = 0;

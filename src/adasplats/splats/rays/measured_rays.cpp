@@ -165,4 +165,28 @@ std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRay
   return sums;
 }
 
+std::vector<ExtentSums> sum_extents(std::span<const Disk> disks,
+                                    std::span<const DiskExtent> extents,
+                                    std::span<const MeasuredRays* const> rays,
+                                    const ExtentOptions& options, const Executor& executor) {
+  std::vector<ExtentSums> sums(disks.size());
+  const PresentDisks present(disks, executor);
+  const auto add_to_disk = [&](std::uint32_t id, const ExtentSums& part) {
+    add_relaxed(sums[id].opacity, part.opacity);
+    add_relaxed(sums[id].opacity_weight, part.opacity_weight);
+    add_relaxed(sums[id].scale, part.scale);
+    add_relaxed(sums[id].scale_weight, part.scale_weight);
+  };
+  const auto add_ray = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
+    add_extents_of_ray(disks.data(), extents.data(), ray, range_m, hits, options, add_to_disk);
+  };
+  for (const MeasuredRays* cast : rays) {
+    RayCasting casting;
+    casting.reach = {cast->ends() == RayEnds::nowhere ? 0 : options.beyond_m};
+    casting.depth = kExtentHits;
+    present.cast(*cast, casting, executor, add_ray);
+  }
+  return sums;
+}
+
 }  // namespace adasplats

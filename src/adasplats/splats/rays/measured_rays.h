@@ -11,6 +11,7 @@
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/disk_extent.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_ray.h"
 
@@ -106,5 +107,12 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
 /// bias. Integers, so the number of threads does not matter.
 std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRays& rays,
                                   const SettleOptions& options, const Executor& executor);
+
+/// What rays show about the extents of disks (add_extents_of_ray()). `disks` have options.reach
+/// times their radius. Integers, so the number of threads does not matter.
+std::vector<ExtentSums> sum_extents(std::span<const Disk> disks,
+                                    std::span<const DiskExtent> extents,
+                                    std::span<const MeasuredRays* const> rays,
+                                    const ExtentOptions& options, const Executor& executor);
 
 }  // namespace adasplats

@@ -74,7 +74,7 @@ void PresentDisks::cast(const MeasuredRays& rays, const RayCasting& casting,
   if (empty() || count == 0) return;
   const auto number_of = [&](std::size_t k) { return casting.numbers ? (*casting.numbers)[k] : k; };
   const bool all = casting.hits == RayCasting::Hits::all;
-  const std::size_t depth = all ? std::min(kHitsAtFirst, disks_.size()) : 1;
+  const std::size_t depth = std::min(all ? kHitsAtFirst : casting.depth, disks_.size());
   const ProgressPass pass(executor, count);
   executor.for_chunks(count, kFineGrain, [&](std::size_t begin, std::size_t end) {
     Batch batch;

@@ -23,6 +23,7 @@ struct RayCasting {
   std::optional<std::span<const std::uint32_t>> numbers;  ///< indices of the rays; nullopt: all
   RayReach reach;
   enum class Hits : std::uint8_t { nearest, all } hits = Hits::nearest;
+  std::size_t depth = 1;  ///< maximum number of nearest hits
 };
 
 /// A tracer for the disks that have a radius.

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats {
+
+/// How the extents of disks are refined; sources of the numbers: docs/research/consistent.md.
+struct ExtentOptions {
+  float error_scale_m = 0.03F;   ///< of the Cauchy distribution of range errors
+  float stray_per_m = 0.002F;    ///< density of ranges that no disk explains
+  float sharpness = 5;           ///< of the rim: slope of the opacity in radii
+  float reach = 1.3F;            ///< radii at which the rim ends
+  float beyond_m = 1;            ///< length of rays behind their ends
+  float first_opacity = 0.6F;    ///< before the first round
+  double opacity_prior = 0.125;  ///< weight of the given opacity: 2 rays at an opacity of 1/2
+  double scale_prior = 4;        ///< weight of the given radius
+  double step = 0.7;             ///< share of the estimated change that a round makes
+  float kept_opacity = 0.3F;     ///< disks are opaque where their opacity is larger
+};
+
+/// Hits of a ray that are considered.
+inline constexpr int kExtentHits = 12;
+
+/// Opacity of a disk at its centre, and its radius relative to the given one.
+struct DiskExtent {
+  float opacity = 0;
+  float scale = 1;
+};
+
+/// Sums over the rays that cross a disk, in units of kUnit: integers, so the order does not matter.
+/// Gradients of the log likelihood of the measured ranges by the log odds of the opacity and by the
+/// log radius, and the sums of their squares.
+struct ExtentSums {
+  static constexpr double kUnit = 1.0 / (1 << 20);
+  std::int64_t opacity = 0;
+  std::int64_t opacity_weight = 0;
+  std::int64_t scale = 0;
+  std::int64_t scale_weight = 0;
+};
+
+/// Opacity at `radii` from the centre relative to that at the centre: 1 inside, 1/2 at the radius,
+/// 0 outside.
+ADASPLATS_HD inline float rim_opacity(float radii, const ExtentOptions& options) {
+  const float x = options.sharpness * (radii - 1);
+  return 0.5F * (1 - x / std::sqrt(1 + x * x));
+}
+
+/// The derivative of rim_opacity() by the logarithm of the radius.
+ADASPLATS_HD inline float rim_growth(float radii, const ExtentOptions& options) {
+  const float x = options.sharpness * (radii - 1);
+  const float square = 1 + x * x;
+  return 0.5F * options.sharpness * radii / (square * std::sqrt(square));
+}
+
+/// Adds what one ray shows about the disks that it hits: add(disk, sums) once per hit. The ray
+/// stops at hit k with the probability w_k = a_k prod_{j<k} (1 - a_j), a_k being the opacity there,
+/// and is then measured to end at `range_m` with a Cauchy error. `disks` have options.reach times
+/// their radius. Infinite `range_m`: the ray ended nowhere.
+template <class Add>
+ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent* extents,
+                                            const Ray& ray, float range_m,
+                                            std::span<const Hit> hits, const ExtentOptions& options,
+                                            Add&& add) {
+  struct At {
+    float radii, rim, opacity, reaches, likelihood;
+  };
+  At at[kExtentHits];  // NOLINT: filled here
+  constexpr float kPi = 3.14159265F;
+  float reaches = 1;  // probability that the ray passes all disks before
+  double likelihood = static_cast<double>(options.stray_per_m);
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const Disk& disk = disks[hits[k].primitive];
+    const Vec3f offset = ray.origin + hits[k].t * ray.direction - disk.center;
+    const float radii = options.reach * std::sqrt(dot(offset, offset)) / disk.radius;
+    const float rim = rim_opacity(radii, options);
+    const float opacity = std::min(extents[hits[k].primitive].opacity * rim, 0.9999F);
+    const float error = (hits[k].t - range_m) / options.error_scale_m;
+    at[k] = {radii, rim, opacity, reaches, 1 / (kPi * options.error_scale_m * (1 + error * error))};
+    likelihood += static_cast<double>(reaches * opacity * at[k].likelihood);
+    reaches *= 1 - opacity;
+  }
+  double behind = range_m < HUGE_VALF ? 0 : static_cast<double>(reaches);
+  likelihood += behind;
+  const auto fixed = [](double value) {
+    return static_cast<std::int64_t>(
+        std::llround(std::clamp(value, -64.0, 64.0) / ExtentSums::kUnit));
+  };
+  for (std::size_t k = hits.size(); k-- > 0;) {
+    const At& here = at[k];
+    const std::uint32_t id = hits[k].primitive;
+    const double slope = (static_cast<double>(here.reaches * here.likelihood) -
+                          behind / static_cast<double>(1 - here.opacity)) /
+                         likelihood;
+    behind += static_cast<double>(here.reaches * here.opacity * here.likelihood);
+    const float own = extents[id].opacity;
+    const double by_odds = slope * static_cast<double>(here.rim * own * (1 - own));
+    const double by_scale = slope * static_cast<double>(own * rim_growth(here.radii, options));
+    add(id, ExtentSums{fixed(by_odds), fixed(by_odds * by_odds), fixed(by_scale),
+                       fixed(by_scale * by_scale)});
+  }
+}
+
+/// The extent after one round: a step along the natural gradient.
+ADASPLATS_HD inline DiskExtent refined(DiskExtent extent, const ExtentSums& sums,
+                                       const ExtentOptions& options) {
+  constexpr double kMaxOddsChange = 1, kMaxScaleChange = 0.2;
+  constexpr double kMinOdds = 0.01, kMaxOdds = 1000, kMinScale = 0.25, kMaxScale = 1.8;
+  const auto change = [&options](std::int64_t gradient, double pull, std::int64_t weight,
+                                 double prior, double limit) {
+    const double part = options.step * (ExtentSums::kUnit * static_cast<double>(gradient) - pull) /
+                        (ExtentSums::kUnit * static_cast<double>(weight) + prior);
+    const double bounded = std::clamp(part, -limit, limit);
+    return (2 + bounded) / (2 - bounded);  // close to its exponential, and the same on all devices
+  };
+  const double opacity = static_cast<double>(extent.opacity);
+  const double odds =
+      opacity / (1 - opacity) *
+      change(sums.opacity, 0, sums.opacity_weight, options.opacity_prior, kMaxOddsChange);
+  const double bounded = std::clamp(odds, kMinOdds, kMaxOdds);
+  const double given = static_cast<double>(extent.scale);
+  const double scale = given * change(sums.scale, options.scale_prior * (given - 1),
+                                      sums.scale_weight, options.scale_prior, kMaxScaleChange);
+  return {static_cast<float>(bounded / (1 + bounded)),
+          static_cast<float>(std::clamp(scale, kMinScale, kMaxScale))};
+}
+
+/// Radius within which the opacity of a disk is above options.kept_opacity; 0: nowhere.
+ADASPLATS_HD inline float opaque_radius(float radius_m, DiskExtent extent,
+                                        const ExtentOptions& options) {
+  constexpr float kMinRadii = 0.05F;
+  if (!(extent.opacity > options.kept_opacity)) return 0;
+  const float y = 1 - 2 * options.kept_opacity / extent.opacity;
+  const float radii = 1 + y / std::sqrt(std::max(1 - y * y, 1e-6F)) / options.sharpness;
+  return radii < kMinRadii ? 0 : radius_m * extent.scale * std::min(radii, options.reach);
+}
+
+}  // namespace adasplats
