@@ -173,7 +173,7 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
     both.step("fill_gaps", [&](auto& steps) { steps.fill_gaps(options); });
     for (int i = 0; i < 3; ++i)
       both.step("refine_extents", [&](auto& steps) { steps.refine_extents(options); });
-    both.step("trim", [&](auto& steps) { steps.trim(); });
+    both.step("trim", [&](auto& steps) { steps.trim(options); });
   }
   const std::size_t splats = both.finish();
   EXPECT_TRUE(looked_at > 0 || !checked || splats == 0);

@@ -74,7 +74,7 @@ class ConsistentSteps {
   /// Estimates opacities and radii of chosen disks from the rays that cross them: one round.
   virtual void refine_extents(const ConsistentOptions& options) = 0;
   /// Trims chosen disks to the extents of refine_extents().
-  virtual void trim() = 0;
+  virtual void trim(const ConsistentOptions& options) = 0;
 
   virtual ConsistentCounts counts() const = 0;
   /// Chosen disks whose centres were moved by the maximum and are not on the surface.

@@ -189,7 +189,6 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   void refine_extents(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    extent_options_ = options.extent;
     if (extents_.size() != chosen_.size()) {
       extents_ = backend_.template array<DiskExtent>(chosen_.size());
       backend_.for_each(chosen_.size(), "refine disks",
@@ -204,10 +203,10 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     backend_.wait("refine disks");
   }
 
-  void trim() override {
+  void trim(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
     backend_.for_each(extents_.size(), "trim disks",
-                      TrimDisk{chosen_.data(), extents_.data(), extent_options_});
+                      TrimDisk{chosen_.data(), extents_.data(), options.extent});
     extents_ = {};
     backend_.wait("trim disks");
   }
@@ -370,7 +369,6 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   std::optional<typename Backend::Cover> cover_;
   Array<Disk> chosen_;
   Array<DiskExtent> extents_;  ///< of chosen disks, while they are refined
-  ExtentOptions extent_options_;
 };
 
 }  // namespace adasplats
