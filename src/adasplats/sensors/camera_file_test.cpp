@@ -300,6 +300,17 @@ TEST(CameraFile, ReadsKittiOdometry) {
   }
 }
 
+TEST(CameraFile, KittisFilesMayHaveOneCameraOrNone) {
+  const TemporaryFolder folder;
+  folder.write("image_2/000000.png", kPng);
+  const std::string without_first = kOdometry.substr(kOdometry.find("P2:"));
+  const std::string file = folder.write("calib.txt", without_first).string();
+  EXPECT_EQ(load_camera(file).name, "P2");
+  folder.write("calib.txt", kOdometry.substr(kOdometry.find("Tr:")));
+  expect_error(ErrorKind::config, {"calib.txt", "none of the lines P0 to P3"},
+               [&] { load_camera(file); });
+}
+
 // Oracle: a point of the LiDAR is the same point of the camera in either frame: that of the LiDAR
 // without a mount, of the vehicle with one.
 TEST(CameraFile, KittisMountInARigIsOnItsFirstSensor) {

@@ -114,19 +114,24 @@ void read_picture_size(const fs::path& file, Lens& lens) {
 }  // namespace
 
 bool is_kitti_calibration(std::string_view text) {
-  return text.starts_with("P0:") || text.find("\nP0:") != std::string_view::npos ||
-         text.find("\nP_rect_0") != std::string_view::npos;
+  const auto has_line = [text](std::string_view key) {
+    const std::string line = "\n" + std::string(key);
+    return text.starts_with(key) || text.find(line) != std::string_view::npos;
+  };
+  return has_line("P0:") || has_line("P1:") || has_line("P2:") || has_line("P3:") ||
+         has_line("Tr:") || has_line("P_rect_0");
 }
 
 FileCamera read_kitti_camera(std::string_view text, const fs::path& file,
                              const std::string& wanted) {
   const KittiCalibration calibration(text, file);
-  const bool is_raw = !calibration.has("P0");
+  const bool is_raw = text.find("P_rect_0") != std::string_view::npos;
   std::vector<std::string> names;
   for (int camera = 0; camera < 4; ++camera) {
     const std::string name = (is_raw ? "P_rect_0" : "P") + std::to_string(camera);
     if (calibration.has(name)) names.push_back(name);
   }
+  if (names.empty()) throw camera_fault(file, "has no camera: it has none of the lines P0 to P3");
   FileCamera result;
   result.camera.name = names[choose_camera(names, wanted, file)];
   const char number = result.camera.name.back();
