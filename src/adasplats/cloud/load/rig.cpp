@@ -167,6 +167,15 @@ class RigText {
   const fs::path& folder_;
 };
 
+Error no_sensors_error(std::string_view text, const fs::path& file) {
+  const bool has_cameras = text.find("[[camera]]") != std::string_view::npos;
+  return {ErrorKind::config, file.string() +
+                                 ": describes no rig: it has no [[sensors]] "
+                                 "(docs/formats.md, \"Rigs\"); " +
+                                 (has_cameras ? "it is a camera file, for `camera` of render"
+                                              : "a file of one sensor is for `sensor`")};
+}
+
 }  // namespace
 
 std::size_t Rig::index_of(std::string_view name) const {
@@ -182,14 +191,7 @@ bool is_rig(const fs::path& path) { return path.extension() == ".toml"; }
 
 Rig parse_rig(std::string_view text, const fs::path& file) {
   const fs::path folder = file.parent_path();
-  const bool has_cameras = text.find("[[camera]]") != std::string_view::npos;
-  const Error no_sensors(ErrorKind::config,
-                         file.string() +
-                             ": describes no rig: it has no [[sensors]] "
-                             "(docs/formats.md, \"Rigs\"); " +
-                             (has_cameras ? "it is a camera file, for `camera` of render"
-                                          : "a file of one sensor is for `sensor`"));
-  if (text.find("sensors") == std::string_view::npos) throw no_sensors;
+  if (text.find("sensors") == std::string_view::npos) throw no_sensors_error(text, file);
   TomlKeys keys = {"camera"};
   keys.insert(keys.end(), kRigKeys.begin(), kRigKeys.end());
   const TomlTable whole = parse_toml(text, file, keys, "rig");
@@ -197,7 +199,7 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
   const RigValue read_shared(whole, folder);
   read_shared("trajectory", shared.trajectory);
   read_shared("boxes", shared.boxes);
-  if (!whole.has("sensors")) throw no_sensors;
+  if (!whole.has("sensors")) throw no_sensors_error(text, file);
   Rig rig{file, {}, read_boxes(whole), cameras_of(whole, file)};
   for (const TomlTable& table : whole.tables("sensors", sensor_keys())) {
     RigSensor sensor;
