@@ -29,6 +29,8 @@ struct TriangleMesh {
 struct SceneView {
   std::span<const Disk> disks;
   const TriangleMesh* mesh = nullptr;
+  /// One per disk, of its centre (scene/soft_disk.h); empty: disks are opaque.
+  std::span<const float> opacities = {};
 
   std::size_t disk_count() const { return disks.size(); }
   std::size_t triangle_count() const { return mesh == nullptr ? 0 : mesh->triangles.size(); }

@@ -51,8 +51,9 @@ std::unique_ptr<Tracer> make_embree_tracer(const SceneView& scene, const Executo
 /// threads; the scene's data must outlive it. Errors: data (2^32 - 1 primitives or more).
 std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const Executor& executor);
 
-/// The fastest tracer on this CPU: our tree for disks, Embree with triangles. Errors: those of
-/// either.
+/// The fastest tracer on this CPU: our tree for disks, Embree with triangles. In a scene with
+/// opacities the nearest hit is where the ray most likely ends (trace/soft_hits.h), and several
+/// hits are those with all disks. Errors: those of either.
 std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& executor);
 
 }  // namespace adasplats

@@ -5,6 +5,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/trace/hit_list.h"
+#include "adasplats/trace/soft_tracer.h"
 #include "adasplats/trace/tracer.h"
 #include "adasplats/trace/wide_bvh.h"
 #include "adasplats/trace/wide_kernel.h"
@@ -76,8 +77,11 @@ std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& 
   // Measured by bench_trace: for disks our tree is faster with vectors of 8 or 16; with triangles
   // it is not, and slower with AVX2.
   const bool has_vectors = detail::wide_versions().front().name != "portable";
-  if (has_vectors && scene.triangle_count() == 0) return make_wide_tracer(scene, executor);
-  return make_embree_tracer(scene, executor);
+  std::unique_ptr<Tracer> tracer = has_vectors && scene.triangle_count() == 0
+                                       ? make_wide_tracer(scene, executor)
+                                       : make_embree_tracer(scene, executor);
+  if (scene.opacities.empty()) return tracer;
+  return make_soft_tracer(std::move(tracer), scene);
 }
 
 }  // namespace adasplats

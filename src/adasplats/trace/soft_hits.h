@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/core/maths/ray.h"
+
+namespace adasplats {
+
+/// What one ray meets in a scene of soft disks, and where it most likely ends. Hits may come in any
+/// order. They are kept up to the distance that few rays reach, at most kMost. The ray stops at hit
+/// k with the probability w_k = a_k prod_{j<k} (1 - a_j) for opacities a.
+class SoftHits {
+ public:
+  static constexpr int kMost = 8;
+  static constexpr float kFewPass = 0.05F;  ///< share of rays that is not followed farther
+  /// Hits that are closer together are one surface: a few standard deviations of range noise and
+  /// of the disks' positions.
+  static constexpr float kSurface_m = 0.12F;
+
+  /// Distance up to which hits matter, at most `t_max`.
+  ADASPLATS_HD float reach(float t_max) const { return reach_ < t_max ? reach_ : t_max; }
+
+  ADASPLATS_HD void offer(Hit hit, float opacity) {
+    if (hit.t > reach_ || (count_ == kMost && !(hit < hits_[kMost - 1]))) return;
+    int place = count_ < kMost ? count_++ : kMost - 1;
+    for (; place > 0 && hit < hits_[place - 1]; --place) {
+      hits_[place] = hits_[place - 1];
+      opacities_[place] = opacities_[place - 1];
+    }
+    hits_[place] = hit;
+    opacities_[place] = opacity;
+    // More hits make no product larger, so what ends here ends with all hits, too.
+    float passes = 1;
+    for (int k = 0; k < count_; ++k) {
+      passes *= 1 - opacities_[k];
+      if (passes < kFewPass) count_ = k + 1;
+    }
+    if (passes < kFewPass || count_ == kMost) reach_ = hits_[count_ - 1].t;
+  }
+
+  /// The surface with the highest probability that the ray ends there: the weighted mean of its
+  /// hits, and the disk with the highest weight. Not valid() if the ray rather passes all disks.
+  ADASPLATS_HD Hit most_likely() const {
+    float weights[kMost];  // NOLINT: filled here
+    float passes = 1;
+    for (int k = 0; k < count_; ++k) {
+      weights[k] = passes * opacities_[k];
+      passes *= 1 - opacities_[k];
+    }
+    Hit likely;
+    float most = passes;
+    for (int first = 0; first < count_; ++first) {
+      float weight = 0, moment = 0, heaviest = 0;
+      std::uint32_t primitive = Hit::kNone;
+      for (int k = first; k < count_ && hits_[k].t <= hits_[first].t + kSurface_m; ++k) {
+        weight += weights[k];
+        moment += weights[k] * (hits_[k].t - hits_[first].t);
+        if (!(weights[k] > heaviest)) continue;
+        heaviest = weights[k];
+        primitive = hits_[k].primitive;
+      }
+      if (!(weight > most)) continue;
+      most = weight;
+      likely = {hits_[first].t + moment / weight, primitive};
+    }
+    return likely;
+  }
+
+ private:
+  Hit hits_[kMost];         // NOLINT: ascending
+  float opacities_[kMost];  // NOLINT: filled with the hits
+  float reach_ = std::numeric_limits<float>::infinity();
+  int count_ = 0;
+};
+
+}  // namespace adasplats
