@@ -14,7 +14,7 @@ namespace adasplats::gpu {
 /// A disk as the intersection program reads it: two loads of 16 bytes.
 struct alignas(16) DiskRecord {
   Disk disk;
-  float unused = 0;
+  float opacity = 1;  ///< at the centre
 };
 static_assert(sizeof(DiskRecord) == 32);
 

@@ -10,6 +10,8 @@
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/optix/optix_pipeline.h"
 #include "adasplats/gpu/trace/device_scene.h"
+#include "adasplats/scene/soft_disk.h"
+#include "adasplats/trace/soft_hits.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -52,15 +54,42 @@ DeviceBuffer<optix::Box> boxes_of(const DeviceBuffer<Record>& records, cudaStrea
   return boxes;
 }
 
-DeviceBuffer<DiskRecord> disk_records(std::span<const Disk> disks, cudaStream_t stream) {
-  const DeviceBuffer<Disk> packed(disks, stream);
-  DeviceBuffer<DiskRecord> records(disks.size(), stream);
-  for_each(disks.size(), stream, "copy the disks",
-           [from = packed.data(), to = records.data()] __device__(std::uint64_t i) {
-             to[i] = {from[i], 0.0F};
+DeviceBuffer<DiskRecord> disk_records(const SceneView& scene, cudaStream_t stream) {
+  const DeviceBuffer<Disk> packed(scene.disks, stream);
+  const DeviceBuffer<float> opacities(scene.opacities, stream);
+  DeviceBuffer<DiskRecord> records(packed.size(), stream);
+  for_each(packed.size(), stream, "copy the disks",
+           [from = packed.data(), opacities = opacities.data(), soft = opacities.size() > 0,
+            to = records.data()] __device__(std::uint64_t i) {
+             to[i] = {from[i], soft ? opacities[i] : 1.0F};
            });
   return records;
 }
+
+/// The lists of all hits with soft disks, from ray `first` on, and where the most likely ones go.
+struct SoftLists {
+  RaySource source;
+  std::uint64_t first;
+  const Hit* lists;
+  const DiskRecord* disks;
+  std::uint32_t disk_count;
+  Hit* hits;
+
+  __device__ float opacity_at(const Ray& ray, Hit hit) const {
+    if (hit.primitive >= disk_count) return kMaxOpacity;
+    const DiskRecord& record = disks[hit.primitive];
+    return opacity_of_hit(ray, hit.t, record.disk, record.opacity);
+  }
+  __device__ void operator()(std::uint64_t k) const {
+    const Ray ray = ray_of(source, first + k);
+    const std::uint64_t place = place_of_ray(source, first + k);
+    const Hit* const list = lists + (place - first) * SoftHits::kMost;
+    SoftHits soft;
+    for (int i = 0; i < SoftHits::kMost && list[i].valid(); ++i)
+      soft.offer(list[i], opacity_at(ray, list[i]));
+    hits[place] = soft.most_likely();
+  }
+};
 
 optix::DeviceAddress address(const void* memory) {
   return reinterpret_cast<optix::DeviceAddress>(memory);
@@ -74,8 +103,9 @@ class OptixScene final : public DeviceScene {
  public:
   explicit OptixScene(const SceneView& scene)
       : pipeline_(stream_.get()),
-        disks_(disk_records(scene.disks, stream_.get())),
-        triangles_(triangle_records(scene, stream_.get())) {
+        disks_(disk_records(scene, stream_.get())),
+        triangles_(triangle_records(scene, stream_.get())),
+        is_soft_(!scene.opacities.empty()) {
     if (scene.primitive_count() > 0) build();
     stream_.wait("build a scene for OptiX");
   }
@@ -85,7 +115,9 @@ class OptixScene final : public DeviceScene {
   void cast(const RaySource& source, std::uint64_t count, int depth, Hit* hits,
             cudaStream_t stream) const override {
     if (count == 0) return;
-    if (depth == 1) {
+    if (depth == 1 && is_soft_) {
+      cast_softly(source, count, hits, stream);
+    } else if (depth == 1) {
       cast_to(source, 0, count, 1, hits, 0, stream);
     } else if (is_on_device(hits)) {
       cast_to(source, 0, count, static_cast<std::uint32_t>(depth), hits, 0, stream);
@@ -177,11 +209,7 @@ class OptixScene final : public DeviceScene {
   /// rays at a time.
   void cast_to_host(const RaySource& source, std::uint64_t count, std::uint32_t depth, Hit* hits,
                     cudaStream_t stream) const {
-    constexpr std::uint64_t kMaxHits = std::uint64_t{1} << 24U;  // 128 MB
-    // Complete scans: within a scan, the order of hits may differ from that of rays.
-    const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
-    const std::uint64_t part =
-        std::min(count, std::max<std::uint64_t>(kMaxHits / depth / scan, 1) * scan);
+    const std::uint64_t part = rays_at_once(source, count, depth);
     const DeviceBuffer<Hit> lists(part * depth, stream);
     for (std::uint64_t done = 0; done < count; done += part) {
       const std::uint64_t rays = std::min(part, count - done);
@@ -192,10 +220,35 @@ class OptixScene final : public DeviceScene {
     }
   }
 
+  /// The most likely hits (SoftHits).
+  void cast_softly(const RaySource& source, std::uint64_t count, Hit* hits,
+                   cudaStream_t stream) const {
+    constexpr std::uint32_t kDepth = SoftHits::kMost;
+    const std::uint64_t part = rays_at_once(source, count, kDepth);
+    const DeviceBuffer<Hit> lists(part * kDepth, stream);
+    const auto disk_count = static_cast<std::uint32_t>(disks_.size());
+    for (std::uint64_t done = 0; done < count; done += part) {
+      const std::uint64_t rays = std::min(part, count - done);
+      cast_to(source, done, rays, kDepth, lists.data(), done, stream);
+      for_each(rays, stream, "find the most likely hits",
+               SoftLists{source, done, lists.data(), disks_.data(), disk_count, hits});
+    }
+  }
+
+  /// Rays whose lists of hits fit into 128 MB. Complete scans: within a scan, the order of hits may
+  /// differ from that of rays.
+  static std::uint64_t rays_at_once(const RaySource& source, std::uint64_t count,
+                                    std::uint32_t depth) {
+    constexpr std::uint64_t kMaxHits = std::uint64_t{1} << 24U;
+    const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
+    return std::min(count, std::max<std::uint64_t>(kMaxHits / depth / scan, 1) * scan);
+  }
+
   Stream stream_;  // of what the scene holds
   OptixPipeline pipeline_;
   DeviceBuffer<DiskRecord> disks_;
   DeviceBuffer<TriangleRecord> triangles_;
+  bool is_soft_;
   DeviceBuffer<std::byte> tree_;
   optix::Traversable traversable_ = 0;  ///< 0, an empty scene: every ray misses
 };

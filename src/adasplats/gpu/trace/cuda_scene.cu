@@ -8,6 +8,7 @@
 #include "adasplats/gpu/trace/cuda_scene.h"
 #include "adasplats/gpu/trace/scene_trees.h"
 #include "adasplats/gpu/trace/wide_traversal.cuh"
+#include "adasplats/trace/soft_hits.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -55,6 +56,33 @@ __global__ void __launch_bounds__(kCastBlock)
   best.store(hits + place_of_ray(source, i) * static_cast<std::uint64_t>(depth), depth);
 }
 
+/// Keeps the hits that decide where a ray most likely ends.
+class LikelyHit {
+ public:
+  __device__ LikelyHit(const SoftDisksView& disks, const Ray& ray) : disks_(disks), ray_(ray) {}
+
+  __device__ float reach(float t_max) const { return hits_.reach(t_max); }
+  __device__ void offer(float t, std::uint32_t primitive) {
+    hits_.offer({t, primitive}, disks_.at(ray_, {t, primitive}));
+  }
+  __device__ Hit most_likely() const { return hits_.most_likely(); }
+
+ private:
+  SoftDisksView disks_;
+  Ray ray_;
+  SoftHits hits_;
+};
+
+__global__ void __launch_bounds__(kCastBlock)
+    cast_likely_kernel(TreesView trees, RaySource source, std::uint64_t count, Hit* hits) {
+  const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
+  if (i >= count) return;
+  const Ray ray = ray_of(source, i);
+  LikelyHit best(trees.soft, ray);
+  cast_one<kPostpone>(trees, ray, best);
+  hits[place_of_ray(source, i)] = best.most_likely();
+}
+
 template <Sensors kSensors>
 void launch_nearest(unsigned blocks, const TreesView& trees, const RaySource& source,
                     std::uint64_t count, Hit* hits, cudaStream_t stream) {
@@ -93,7 +121,7 @@ class CudaScene final : public DeviceScene {
   CudaScene(const SceneView& scene, const TreeOptions& options)
       : stream_(std::in_place), trees_(build_scene_trees(scene, options, stream_->get())) {}
   CudaScene(const Disk* disks, std::size_t count, cudaStream_t stream)
-      : trees_{build_tree(disks, count, TreeOptions{}, stream), {}} {}
+      : trees_{build_tree(disks, count, TreeOptions{}, stream), {}, {}, {}} {}
 
   std::string_view name() const override { return "cuda"; }
 
@@ -117,7 +145,9 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
   if (count == 0) return;
   const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
   const bool still = source.first_poses == nullptr;
-  if (depth == 1 && still) {
+  if (depth == 1 && trees.soft.count > 0) {
+    cast_likely_kernel<<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+  } else if (depth == 1 && still) {
     launch_nearest<Sensors::still>(blocks, trees, source, count, hits, stream);
   } else if (depth == 1) {
     launch_nearest<Sensors::may_move>(blocks, trees, source, count, hits, stream);
@@ -141,8 +171,12 @@ SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                                      " primitives; a GPU supports at most 2^32 - 2");
   SceneTrees trees;
   if (!scene.disks.empty()) {
-    const DeviceBuffer<Disk> disks(scene.disks, stream);
+    DeviceBuffer<Disk> disks(scene.disks, stream);
     trees.disks = build_tree(disks.data(), disks.size(), options, stream);
+    if (!scene.opacities.empty()) {
+      trees.soft_disks = std::move(disks);
+      trees.opacities = {scene.opacities, stream};
+    }
   }
   if (scene.triangle_count() > 0) {
     std::vector<Triangle> corners(scene.triangle_count());

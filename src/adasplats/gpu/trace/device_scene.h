@@ -29,8 +29,9 @@ class DeviceScene {
 
   /// Queues the casting of rays [0, count) of `source`: the `depth` nearest hits of ray i go to
   /// hits[i * depth + k], ascending by (t, primitive); entries after the last hit are Hit{}.
-  /// Invalid rays (castable() of trace/castable.h is false) have no hits. The device of the scene
-  /// must be current. `hits` may be device memory or page-locked host memory.
+  /// With a depth of 1 in a scene with opacities, the hit is where the ray most likely ends
+  /// (SoftHits). Invalid rays (castable() of trace/castable.h is false) have no hits. The device of
+  /// the scene must be current. `hits` may be device memory or page-locked host memory.
   virtual void cast(const RaySource& source, std::uint64_t count, int depth, Hit* hits,
                     cudaStream_t stream) const = 0;
 };

@@ -274,6 +274,16 @@ std::size_t count_valid(std::span<const Hit> hits) {
   return static_cast<std::size_t>(std::ranges::count_if(hits, &Hit::valid));
 }
 
+/// One per disk.
+std::vector<float> random_opacities(std::size_t count) {
+  std::vector<float> opacities;
+  for (std::size_t i = 0; i < count; ++i) {
+    Random random(9, 0, i);
+    opacities.push_back(static_cast<float>(random.uniform()));
+  }
+  return opacities;
+}
+
 class DeviceScene : public testing::TestWithParam<Backend> {
  protected:
   void SetUp() override {
@@ -360,6 +370,23 @@ TEST_P(ComparedScene, AMillionRaysMatchEmbree) {
             << " rays differ from Embree\n";
   EXPECT_EQ(different, 0U);
   EXPECT_GT(3 * count_valid(expected), rays.size());
+}
+
+// Oracle: the tracer of the CPU (soft_hits_test.cpp), bit for bit.
+TEST_P(ComparedScene, SoftDisksMatchTheCpu) {
+  for (const Layout& layout : kLayouts) {
+    SCOPED_TRACE("layout " + std::to_string(layout.seed));
+    const auto disks = random_disks(layout, 400);
+    const auto mesh = random_mesh(layout, 20);
+    const auto opacities = random_opacities(disks.size());
+    const SceneView scene = {disks, &mesh, opacities};
+    const auto rays = awkward_rays(layout, scene, 20'000);
+    const Executor executor;
+    std::vector<Hit> expected(rays.size());
+    make_cpu_tracer(scene, executor)->nearest(rays, expected, executor);
+    EXPECT_GT(10 * count_valid(expected), rays.size());
+    if (on_gpu(GetParam())) expect_equal_hits(cast(scene, rays), expected);
+  }
 }
 
 // Oracle of the tests below: analytic.
@@ -457,9 +484,10 @@ TEST_P(DeviceScene, NonFinitePrimitivesAreNeverHit) {
 
 class GpuDeviceScene : public DeviceScene {
  protected:
-  GpuCaster caster(std::size_t disk_count) {
+  GpuCaster caster(std::size_t disk_count, bool soft = false) {
     disks_ = random_disks(kLayouts[0], disk_count);
-    return {{disks_, nullptr}, GetParam()};
+    const auto opacities = random_opacities(soft ? disk_count : 0);
+    return {{disks_, nullptr, opacities}, GetParam()};
   }
   std::vector<Ray> rays(std::size_t count) const {
     return awkward_rays(kLayouts[0], {disks_, nullptr}, count);
@@ -487,8 +515,8 @@ gpu::DeviceBuffer<T> on_device(const std::vector<T>& values, cudaStream_t stream
   return {std::span<const T>(values), stream};
 }
 
-TEST_P(GpuDeviceScene, ScansAreMadeOnTheGpu) {
-  const GpuCaster scene = caster(500);
+/// Casts scans of sensors at rest and in motion, in two orders.
+void expect_scans(const GpuCaster& scene) {
   constexpr std::uint32_t kFirings = 999;
   std::vector<FiringRay> firings;
   std::vector<std::uint32_t> order;
@@ -529,6 +557,10 @@ TEST_P(GpuDeviceScene, ScansAreMadeOnTheGpu) {
       expect_source(scene, on_gpu, on_cpu, kFirings * scans);
     }
   }
+}
+
+TEST_P(GpuDeviceScene, ScansAreMadeOnTheGpu) {
+  for (const bool soft : {false, true}) expect_scans(caster(500, soft));
 }
 
 TEST_P(GpuDeviceScene, PicturesAreMadeOnTheGpu) {
