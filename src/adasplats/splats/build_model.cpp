@@ -100,6 +100,7 @@ void put_splats(PaperSplats made, SplatModel& model, BuildReport& report) {
 
 void put_splats(ConsistentSplats made, SplatModel& model) {
   model.disks = std::move(made.disks);
+  model.opacities = std::move(made.opacities);
   model.classes = std::move(made.classes);
   model.intensities = std::move(made.intensities);
 }
@@ -220,8 +221,8 @@ void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud
   put_splats(steps.take_splats(), model);
   if (!has_reflectances || model.disks.empty()) return;
   step("reflectances", 1);
-  put_reflectances(steps.measure_reflectances(model.disks, model.intensities, options), model,
-                   report);
+  put_reflectances(steps.measure_reflectances(opaque_disks(model), model.intensities, options),
+                   model, report);
 }
 
 struct ColoredPoints {

@@ -71,6 +71,7 @@ void expect_same(const ConsistentState& a, const ConsistentState& b) {
 
 void expect_same(const ConsistentSplats& a, const ConsistentSplats& b) {
   EXPECT_EQ(count_different_unpadded(a.disks, b.disks), 0U);
+  EXPECT_EQ(count_different_unpadded(a.opacities, b.opacities), 0U);
   EXPECT_EQ(count_different_unpadded(a.classes, b.classes), 0U);
   EXPECT_EQ(count_different_unpadded(a.intensities, b.intensities), 0U);
 }
@@ -173,7 +174,7 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
     both.step("fill_gaps", [&](auto& steps) { steps.fill_gaps(options); });
     for (int i = 0; i < 3; ++i)
       both.step("refine_extents", [&](auto& steps) { steps.refine_extents(options); });
-    both.step("trim", [&](auto& steps) { steps.trim(options); });
+    both.step("soften", [&](auto& steps) { steps.soften(options); });
   }
   const std::size_t splats = both.finish();
   EXPECT_TRUE(looked_at > 0 || !checked || splats == 0);

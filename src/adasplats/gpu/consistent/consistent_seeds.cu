@@ -80,8 +80,9 @@ std::size_t count_present(const DeviceBuffer<Disk>& disks, cudaStream_t stream) 
   return count.download().front();
 }
 
-ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,
-                           const DeviceCloud& cloud, cudaStream_t stream) {
+ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceBuffer<DiskExtent>& extents,
+                           const DeviceCells& cells, const DeviceCloud& cloud,
+                           cudaStream_t stream) {
   DeviceBuffer<std::uint8_t> present(disks.size(), stream);
   for_each(disks.size(), stream, "take splats",
            [from = disks.data(), to = present.data()] __device__(std::uint64_t i) {
@@ -90,6 +91,9 @@ ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& c
   const DeviceBuffer<std::uint32_t> taken = flagged(present.data(), disks.size(), stream);
   ConsistentSplats splats;
   splats.disks = gather(disks, taken, stream).download();
+  if (extents.size() > 0)
+    for (const DiskExtent& extent : gather(extents, taken, stream).download())
+      splats.opacities.push_back(extent.opacity);
   if (!cloud.classes.empty()) {
     const auto classes = majority_classes(cells.view(), cloud.classes, stream);
     splats.classes = gather(classes, taken, stream).download();

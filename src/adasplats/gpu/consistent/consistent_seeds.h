@@ -21,8 +21,9 @@ double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer
 /// Number of disks with a radius. Waits for the stream.
 std::size_t count_present(const DeviceBuffer<Disk>& disks, cudaStream_t stream);
 
-/// Copies the disks with a radius, and the attributes of their cells' points, to the host.
-ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,
-                           const DeviceCloud& cloud, cudaStream_t stream);
+/// Copies the disks with a radius, their opacities (unless `extents` is empty) and the attributes
+/// of their cells' points to the host.
+ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceBuffer<DiskExtent>& extents,
+                           const DeviceCells& cells, const DeviceCloud& cloud, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

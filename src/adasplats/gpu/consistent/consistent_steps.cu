@@ -74,9 +74,9 @@ class ConsistentOnGpu : public RaysOnGpu {
   std::size_t count_present(const DeviceBuffer<Disk>& disks) const {
     return gpu::count_present(disks, stream());
   }
-  ConsistentSplats splats(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,
-                          const DeviceCloud& cloud) const {
-    return splats_of(disks, cells, cloud, stream());
+  ConsistentSplats splats(const DeviceBuffer<Disk>& disks, const DeviceBuffer<DiskExtent>& extents,
+                          const DeviceCells& cells, const DeviceCloud& cloud) const {
+    return splats_of(disks, extents, cells, cloud, stream());
   }
 };
 

@@ -61,8 +61,17 @@ std::vector<double> knot_times(const PlacedObject& placed, double begin_s, doubl
 
 }  // namespace
 
+/// Rays meet objects one by one, each with its nearest hit.
+AnyModel with_opaque_disks(AnyModel model) {
+  SplatModel* const splats = std::get_if<SplatModel>(&model);
+  if (splats == nullptr || splats->opacities.empty()) return model;
+  splats->disks = opaque_disks(*splats);
+  splats->opacities.clear();
+  return model;
+}
+
 ObjectGeometry::ObjectGeometry(AnyModel model, std::vector<std::uint16_t> instances_of_primitives)
-    : place(std::move(model)),
+    : place(with_opaque_disks(std::move(model))),
       instances(std::move(instances_of_primitives)),
       usual_class(adasplats::usual_class(classes_of(place))),
       primitives(static_cast<std::uint32_t>(view_of(place).primitive_count())) {

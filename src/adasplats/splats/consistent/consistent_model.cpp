@@ -199,7 +199,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
     if (options.refine_rounds > 0) {
       begin_step("refinement", options.refine_rounds);
       for (int i = 0; i < options.refine_rounds; ++i) steps.refine_extents(options);
-      steps.trim(options);
+      steps.soften(options);
     }
   }
   report.splats_limited = steps.count_limited();

@@ -104,13 +104,15 @@ class ConsistentOnCpu : public RaysOnCpu {
   }
 
   /// The disks that have a radius, with the attributes of the points in their cells.
-  static ConsistentSplats splats(const std::vector<Disk>& disks, const FusedPoints& cells,
+  static ConsistentSplats splats(const std::vector<Disk>& disks,
+                                 const std::vector<DiskExtent>& extents, const FusedPoints& cells,
                                  const PointCloud& cloud) {
     ConsistentSplats splats;
     std::vector<std::uint16_t> classes;  // of one cell
     for (std::size_t cell = 0; cell < disks.size(); ++cell) {
       if (!(disks[cell].radius > 0)) continue;
       splats.disks.push_back(disks[cell]);
+      if (!extents.empty()) splats.opacities.push_back(extents[cell].opacity);
       const auto points = cells.points_of(cell);
       if (!cloud.classes.empty()) {
         classes.clear();

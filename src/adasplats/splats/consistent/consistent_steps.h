@@ -23,6 +23,7 @@ struct ConsistentSplats {
   std::vector<Disk> disks;
   std::vector<std::uint16_t> classes;  ///< class of most points in the cell; empty without labels
   std::vector<float> intensities;      ///< mean over the cell's points; empty if they have none
+  std::vector<float> opacities;        ///< of soft disks; empty: disks are opaque
 };
 
 /// Numbers of elements after the last step.
@@ -73,8 +74,8 @@ class ConsistentSteps {
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
   /// Estimates opacities and radii of chosen disks from the rays that cross them: one round.
   virtual void refine_extents(const ConsistentOptions& options) = 0;
-  /// Trims chosen disks to the extents of refine_extents().
-  virtual void trim(const ConsistentOptions& options) = 0;
+  /// Makes chosen disks soft ones with the extents of refine_extents().
+  virtual void soften(const ConsistentOptions& options) = 0;
 
   virtual ConsistentCounts counts() const = 0;
   /// Chosen disks whose centres were moved by the maximum and are not on the surface.

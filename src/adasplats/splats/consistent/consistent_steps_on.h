@@ -194,21 +194,18 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
       backend_.for_each(chosen_.size(), "refine disks",
                         BeginExtent{extents_.data(), options.extent});
     }
-    auto spread = backend_.template array<Disk>(chosen_.size());
-    backend_.for_each(chosen_.size(), "refine disks",
-                      SpreadDisk{chosen_.data(), extents_.data(), options.extent, spread.data()});
-    const auto sums = backend_.extents(spread, extents_, all_rays(), options.extent);
+    const auto sums = backend_.extents(softened(), extents_, all_rays(), options.extent);
     backend_.for_each(chosen_.size(), "refine disks",
                       RefineExtent{extents_.data(), sums.data(), options.extent});
     backend_.wait("refine disks");
   }
 
-  void trim(const ConsistentOptions& options) override {
+  void soften(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    backend_.for_each(extents_.size(), "trim disks",
-                      TrimDisk{chosen_.data(), extents_.data(), options.extent});
-    extents_ = {};
-    backend_.wait("trim disks");
+    chosen_ = softened();
+    backend_.for_each(chosen_.size(), "remove faint disks",
+                      RemoveFaint{chosen_.data(), extents_.data(), options.extent});
+    backend_.wait("remove faint disks");
   }
 
   ConsistentCounts counts() const override {
@@ -232,8 +229,9 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   ConsistentSplats take_splats() override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    ConsistentSplats splats = backend_.splats(chosen_, cells_, cloud_);
+    ConsistentSplats splats = backend_.splats(chosen_, extents_, cells_, cloud_);
     chosen_ = {};
+    extents_ = {};
     cover_.reset();
     seeds_ = {};
     planes_ = {};
@@ -291,6 +289,12 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     if (empty_rays_) rays.push_back(&*empty_rays_);
     if (passing_rays_) rays.push_back(&*passing_rays_);
     return rays;
+  }
+  Array<Disk> softened() const {
+    auto soft = backend_.template array<Disk>(chosen_.size());
+    backend_.for_each(chosen_.size(), "soften disks",
+                      SoftenDisk{chosen_.data(), extents_.data(), soft.data()});
+    return soft;
   }
   auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
     return backend_.evidence(disks, all_rays(), options);

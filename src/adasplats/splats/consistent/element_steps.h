@@ -225,16 +225,15 @@ struct BeginExtent {
   ADASPLATS_HD void operator()(std::size_t i) const { extents[i] = {options.first_opacity, 1}; }
 };
 
-/// Disks with their extents, as rays are cast at them.
-struct SpreadDisk {
+/// Soft disks with the given extents.
+struct SoftenDisk {
   const Disk* disks;
   const DiskExtent* extents;
-  ExtentOptions options;
-  Disk* spread;
+  Disk* soft;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
-    spread[i] = disks[i];
-    spread[i].radius *= extents[i].scale * options.reach;
+    soft[i] = disks[i];
+    soft[i].radius *= extents[i].scale * kRimReach;
   }
 };
 
@@ -248,14 +247,14 @@ struct RefineExtent {
   }
 };
 
-/// Makes disks opaque where their opacity is large, and removes them elsewhere.
-struct TrimDisk {
+/// Removes disks that hardly any ray stops at.
+struct RemoveFaint {
   Disk* disks;
   const DiskExtent* extents;
   ExtentOptions options;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
-    if (disks[i].radius > 0) disks[i].radius = opaque_radius(disks[i].radius, extents[i], options);
+    if (extents[i].opacity < options.min_opacity) disks[i].radius = 0;
   }
 };
 

@@ -15,6 +15,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/splats/model/calibration_comments.h"
 #include "adasplats/splats/model/model_comments.h"
 
@@ -70,6 +71,19 @@ std::vector<T> whole_numbers(const std::filesystem::path& path, const Column& co
     numbers.push_back(static_cast<T>(number));
   }
   return numbers;
+}
+
+std::vector<float> opacities_of(const std::filesystem::path& path, const Column& column,
+                                std::size_t rows) {
+  std::vector<float> opacities;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double opacity = column.as_double(i);
+    if (!(opacity >= 0 && opacity <= 1))
+      throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ": opacity is " +
+                                           std::to_string(opacity) + ", expected 0 to 1");
+    opacities.push_back(static_cast<float>(opacity));
+  }
+  return opacities;
 }
 
 std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, std::size_t rows) {
@@ -156,6 +170,34 @@ std::pair<Vec3f, Vec3f> bounds(const SplatModel& model) {
   return {low, high};
 }
 
+std::vector<Disk> opaque_disks(const SplatModel& model) {
+  constexpr float kOpaque = 0.3F;
+  std::vector<Disk> disks = model.disks;
+  for (std::size_t i = 0; i < model.opacities.size(); ++i)
+    disks[i].radius = opaque_radius(disks[i], model.opacities[i], kOpaque);
+  return disks;
+}
+
+SplatModel opaque(SplatModel model) {
+  if (model.opacities.empty()) return model;
+  model.disks = opaque_disks(model);
+  model.opacities.clear();
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < model.size(); ++i)
+    if (model.disks[i].radius > 0) kept.push_back(i);
+  const auto keep = [&kept](auto& values) {
+    if (values.empty()) return;
+    for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+    values.resize(kept.size());
+  };
+  keep(model.disks);
+  keep(model.classes);
+  keep(model.groups);
+  keep(model.intensities);
+  keep(model.colors);
+  return model;
+}
+
 void save_model(const std::filesystem::path& path, const SplatModel& model) {
   const bool far = !(model.origin == Vec3d{});
   std::vector<Vec3d> centers;
@@ -181,6 +223,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   columns.push_back({"ny", ColumnType::f32, &d->normal.y, sizeof(Disk)});
   columns.push_back({"nz", ColumnType::f32, &d->normal.z, sizeof(Disk)});
   columns.push_back({"radius", ColumnType::f32, &d->radius, sizeof(Disk)});
+  if (!model.opacities.empty())
+    columns.push_back({"opacity", ColumnType::f32, model.opacities.data(), sizeof(float)});
   if (!model.classes.empty())
     columns.push_back({"class", ColumnType::u16, model.classes.data(), sizeof(std::uint16_t)});
   if (!model.groups.empty())
@@ -221,6 +265,8 @@ SplatModel load_model(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < table.rows; ++i)
     model.disks.push_back(checked_disk(path, i, vec(position, i) - model.origin, vec(normal, i),
                                        radius.as_double(i)));
+  if (const Column* opacities = table.find("opacity"))
+    model.opacities = opacities_of(path, *opacities, table.rows);
   if (const Column* classes = table.find("class"))
     model.classes = whole_numbers<std::uint16_t>(path, *classes, table.rows, 0xffff);
   if (const Column* groups = table.find("group"))

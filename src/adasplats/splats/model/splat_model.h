@@ -23,6 +23,7 @@ struct SplatModel {
   Vec3d origin;                        ///< world coordinates of the local origin, m
   Crs crs;                             ///< of the world coordinates, as in the input
   std::vector<Disk> disks;             ///< relative to `origin`
+  std::vector<float> opacities;        ///< of soft disks (scene/soft_disk.h); empty: opaque disks
   std::vector<std::uint16_t> classes;  ///< semantic class of the seed point; empty without labels
   std::vector<SemanticGroup> groups;   ///< one per splat; empty for basic splats
   /// Reflectances if there is a `response`, else measured intensities of the seed point; empty if
@@ -36,16 +37,22 @@ struct SplatModel {
   Calibration calibration;         ///< that corrected the points; empty: uncorrected
 
   std::size_t size() const { return disks.size(); }
-  SceneView view() const { return {disks, nullptr}; }
+  SceneView view() const { return {disks, nullptr, opacities}; }
 };
 
 /// Local bounding box of the disks' exact extents; {0,0,0} twice for an empty model.
 std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 
-/// Writes a PLY file with one vertex per splat: x y z nx ny nz radius [class] [group] [intensity]
-/// [red green blue] (x y z as doubles in world coordinates if the origin is not zero). Everything
-/// else is in comments "adasplats.KEY VALUE", the coordinate system in crs_comments(), the label
-/// scheme in "labels"; the response in "response_ranges_m", "response_range_gains",
+/// The disks as opaque ones: those of a soft model with the radius within which their opacity is
+/// above 0.3, which is 0 for some.
+std::vector<Disk> opaque_disks(const SplatModel& model);
+/// The model with the disks of opaque_disks() that have a radius.
+SplatModel opaque(SplatModel model);
+
+/// Writes a PLY file with one vertex per splat: x y z nx ny nz radius [opacity] [class] [group]
+/// [intensity] [red green blue] (x y z as doubles in world coordinates if the origin is not zero).
+/// Everything else is in comments "adasplats.KEY VALUE", the coordinate system in crs_comments(),
+/// the label scheme in "labels"; the response in "response_ranges_m", "response_range_gains",
 /// "response_cosines" and "response_cosine_gains"; the calibration in
 /// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
 /// (rotation vector, shift), "calibration_smooth_s" and, one per scan, "calibration_pose": time,
@@ -54,8 +61,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads the files of save_model, and any other PLY file with x y z nx ny nz radius. Errors: data
 /// (no radius column, values that are not finite, radius <= 0, a normal whose length differs from 1
-/// by more than 1e-3, an incomplete response or calibration). Without a response comment the
-/// response is empty.
+/// by more than 1e-3, an opacity outside 0 to 1, an incomplete response or calibration). Without a
+/// response comment the response is empty.
 SplatModel load_model(const std::filesystem::path& path);
 
 }  // namespace adasplats

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/splats/model/any_model.h"
 
 namespace adasplats {
@@ -41,6 +42,38 @@ TEST(SplatModel, ValuesThatASplatCannotHaveAreErrors) {
     rejected(model_text("6", "0.1", label, "1"), "class");
   for (const char* group : {"4", "-1", "0.5", "nan"})
     rejected(model_text("6", "0.1", "50", group), "group");
+}
+
+// Oracle: the opacity at the rim of the opaque disks (scene/soft_disk.h).
+TEST(SplatModel, SoftDisksBecomeOpaqueOnes) {
+  SplatModel soft;
+  soft.disks.assign(3, {{1, 2, 3}, 0.65F, {0, 0, 1}});
+  soft.disks[2].center.x = 4;
+  soft.opacities = {0.9F, 0.25F, 0.4F};
+  soft.classes = {5, 6, 7};
+  const SplatModel made = opaque(soft);
+  EXPECT_TRUE(made.opacities.empty());
+  EXPECT_EQ(made.classes, (std::vector<std::uint16_t>{5, 7}));
+  ASSERT_EQ(made.size(), 2U);
+  EXPECT_EQ(made.disks[1].center.x, 4);
+  for (const std::size_t k : {0U, 1U}) {
+    const Disk& disk = made.disks[k];
+    const Ray ray = {disk.center + Vec3f{disk.radius, 0, 5}, 0, {0, 0, -1}};
+    EXPECT_NEAR(opacity_of_hit(ray, 5, soft.disks[2 * k], soft.opacities[2 * k]), 0.3, 1e-5);
+  }
+}
+
+TEST(SplatModel, OpacitiesAreInTheFile) {
+  const TemporaryFolder folder;
+  SplatModel model;
+  model.disks.assign(2, {{1, 2, 3}, 0.5F, {0, 0, 1}});
+  model.opacities = {0.25F, 1};
+  save_model(folder.path() / "m.ply", model);
+  EXPECT_EQ(load_model(folder.path() / "m.ply").opacities, model.opacities);
+  model.opacities = {0.25F, 1.5F};
+  save_model(folder.path() / "m.ply", model);
+  expect_error(ErrorKind::data, {"m.ply", "splat 1: opacity is 1.5", "expected 0 to 1"},
+               [&] { load_model(folder.path() / "m.ply"); });
 }
 
 TEST(AnyModel, PointsAreRejectedWithTheCommandThatModelsThem) {

@@ -9,7 +9,8 @@
 #include <span>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/scene/intersect.h"
+#include "adasplats/scene/soft_disk.h"
+#include "adasplats/trace/soft_hits.h"
 
 namespace adasplats {
 
@@ -17,18 +18,16 @@ namespace adasplats {
 struct ExtentOptions {
   float error_scale_m = 0.03F;   ///< of the Cauchy distribution of range errors
   float stray_per_m = 0.002F;    ///< density of ranges that no disk explains
-  float sharpness = 5;           ///< of the rim: slope of the opacity in radii
-  float reach = 1.3F;            ///< radii at which the rim ends
   float beyond_m = 1;            ///< length of rays behind their ends
   float first_opacity = 0.6F;    ///< before the first round
   double opacity_prior = 0.125;  ///< weight of the given opacity: 2 rays at an opacity of 1/2
   double scale_prior = 4;        ///< weight of the given radius
   double step = 0.7;             ///< share of the estimated change that a round makes
-  float kept_opacity = 0.3F;     ///< disks are opaque where their opacity is larger
+  float min_opacity = 0.05F;     ///< disks with a lower one are removed
 };
 
 /// Hits of a ray that are considered.
-inline constexpr int kExtentHits = 12;
+inline constexpr int kExtentHits = SoftHits::kMost;
 
 /// Opacity of a disk at its centre, and its radius relative to the given one.
 struct DiskExtent {
@@ -47,24 +46,17 @@ struct ExtentSums {
   std::int64_t scale_weight = 0;
 };
 
-/// Opacity at `radii` from the centre relative to that at the centre: 1 inside, 1/2 at the radius,
-/// 0 outside.
-ADASPLATS_HD inline float rim_opacity(float radii, const ExtentOptions& options) {
-  const float x = options.sharpness * (radii - 1);
-  return 0.5F * (1 - x / std::sqrt(1 + x * x));
-}
-
 /// The derivative of rim_opacity() by the logarithm of the radius.
-ADASPLATS_HD inline float rim_growth(float radii, const ExtentOptions& options) {
-  const float x = options.sharpness * (radii - 1);
+ADASPLATS_HD inline float rim_growth(float radii) {
+  const float x = kRimSharpness * (radii - 1);
   const float square = 1 + x * x;
-  return 0.5F * options.sharpness * radii / (square * std::sqrt(square));
+  return 0.5F * kRimSharpness * radii / (square * std::sqrt(square));
 }
 
 /// Adds what one ray shows about the disks that it hits: add(disk, sums) once per hit. The ray
 /// stops at hit k with the probability w_k = a_k prod_{j<k} (1 - a_j), a_k being the opacity there,
-/// and is then measured to end at `range_m` with a Cauchy error. `disks` have options.reach times
-/// their radius. Infinite `range_m`: the ray ended nowhere.
+/// and is then measured to end at `range_m` with a Cauchy error. `disks` are soft
+/// (scene/soft_disk.h). Infinite `range_m`: the ray ended nowhere.
 template <class Add>
 ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent* extents,
                                             const Ray& ray, float range_m,
@@ -79,10 +71,9 @@ ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent*
   double likelihood = static_cast<double>(options.stray_per_m);
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const Disk& disk = disks[hits[k].primitive];
-    const Vec3f offset = ray.origin + hits[k].t * ray.direction - disk.center;
-    const float radii = options.reach * std::sqrt(dot(offset, offset)) / disk.radius;
-    const float rim = rim_opacity(radii, options);
-    const float opacity = std::min(extents[hits[k].primitive].opacity * rim, 0.9999F);
+    const float radii = radii_of_hit(ray, hits[k].t, disk);
+    const float rim = rim_opacity(radii);
+    const float opacity = bounded_opacity(extents[hits[k].primitive].opacity * rim);
     const float error = (hits[k].t - range_m) / options.error_scale_m;
     at[k] = {radii, rim, opacity, reaches, 1 / (kPi * options.error_scale_m * (1 + error * error))};
     likelihood += static_cast<double>(reaches * opacity * at[k].likelihood);
@@ -103,7 +94,7 @@ ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent*
     behind += static_cast<double>(here.reaches * here.opacity * here.likelihood);
     const float own = extents[id].opacity;
     const double by_odds = slope * static_cast<double>(here.rim * own * (1 - own));
-    const double by_scale = slope * static_cast<double>(own * rim_growth(here.radii, options));
+    const double by_scale = slope * static_cast<double>(own * rim_growth(here.radii));
     add(id, ExtentSums{fixed(by_odds), fixed(by_odds * by_odds), fixed(by_scale),
                        fixed(by_scale * by_scale)});
   }
@@ -131,16 +122,6 @@ ADASPLATS_HD inline DiskExtent refined(DiskExtent extent, const ExtentSums& sums
                                       sums.scale_weight, options.scale_prior, kMaxScaleChange);
   return {static_cast<float>(bounded / (1 + bounded)),
           static_cast<float>(std::clamp(scale, kMinScale, kMaxScale))};
-}
-
-/// Radius within which the opacity of a disk is above options.kept_opacity; 0: nowhere.
-ADASPLATS_HD inline float opaque_radius(float radius_m, DiskExtent extent,
-                                        const ExtentOptions& options) {
-  constexpr float kMinRadii = 0.05F;
-  if (!(extent.opacity > options.kept_opacity)) return 0;
-  const float y = 1 - 2 * options.kept_opacity / extent.opacity;
-  const float radii = 1 + y / std::sqrt(std::max(1 - y * y, 1e-6F)) / options.sharpness;
-  return radii < kMinRadii ? 0 : radius_m * extent.scale * std::min(radii, options.reach);
 }
 
 }  // namespace adasplats
