@@ -22,7 +22,8 @@ from provenance import provenance_of
 
 # Keys of reports that are no figures or too detailed for a table.
 LEFT_OUT = {"program", "version", "command", "device", "provenance", "parameters", "warnings",
-            "files", "by_range", "by_incidence", "by_elevation", "laser_bias", "step_seconds"}
+            "files", "by_range", "by_incidence", "by_surroundings", "by_elevation", "laser_bias",
+            "step_seconds"}
 
 
 def figures_of(report):

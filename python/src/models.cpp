@@ -51,6 +51,7 @@ void fields(Archive& archive, SplatModel& model) {
   archive("origin", model.origin);
   archive("crs", model.crs);
   archive("disks", model.disks);
+  archive("opacities", model.opacities);
   archive("classes", model.classes);
   archive("groups", model.groups);
   archive("intensities", model.intensities);
@@ -258,6 +259,12 @@ void add_arrays(ModelClass& type) {
                               {static_cast<py::ssize_t>(model.size())}, {kDiskStride}, self);
           },
           "(N,) float32, m.")
+      .def_property_readonly(
+          "opacities",
+          [](const py::object& self) {
+            return optional_view(model_of(self).opacities, model_of(self).size(), self);
+          },
+          "(N,) float32: probability that a ray through the centre stops; None: opaque disks.")
       .def_property_readonly(
           "classes",
           [](const py::object& self) {

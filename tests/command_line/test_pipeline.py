@@ -83,7 +83,7 @@ class Pipeline(ProgramTest):
         report = self.report("evaluate", "resimulate", model, scans)
         self.assertLessEqual({"rays", "no_hit", "early_50cm", "late_50cm", "within",
                               "range_error_m", "chamfer_m", "chamfer_m2", "f_score", "by_range",
-                              "by_incidence", "by_class"}, set(report))
+                              "by_incidence", "by_surroundings", "by_class"}, set(report))
         self.assertEqual(set(report["within"]), {"0.02", "0.05", "0.10", "0.50"})
         self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90", "bias",
                                                       "spread"})

@@ -162,6 +162,9 @@ SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std:
     throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
                                      " splats; the city's manifest has " +
                                      std::to_string(tile.splats));
+  if (!part.opacities.empty())
+    throw Error(ErrorKind::data,
+                file.string() + ": has opacities, which tiles of a city do not support");
   // The file's CRS header refers to world coordinates; the loaded model has a nearby origin.
   const Vec3d shift = part.origin - city.origin;
   for (Disk& disk : part.disks)

@@ -12,6 +12,7 @@
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
+#include "adasplats/evaluate/beam_surroundings.h"
 
 namespace adasplats {
 namespace {
@@ -29,7 +30,8 @@ struct Beam {
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
   std::int8_t elevation_deg = 0;   ///< rounded down
   bool upward = false;             ///< in the world
-  std::uint16_t class_id = 0;      ///< 0 without labels
+  Surroundings surroundings = Surroundings::rough;
+  std::uint16_t class_id = 0;  ///< 0 without labels
 };
 
 /// The counted beams of one scan, with the measured and the predicted points.
@@ -150,12 +152,14 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
     }
   });
   setting.tracer.nearest(rays, hits, executor);
+  const auto surroundings = surroundings_of(result.measured.positions, executor);
   for (std::size_t k = 0; k < selected.size(); ++k) {
     const double range_m = cast[k].range_m;
     Beam& beam = result.beams[k];
     beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
     beam.elevation_deg =
         static_cast<std::int8_t>(std::floor(cast[k].elevation_rad * kDegreesPerRadian));
+    beam.surroundings = surroundings[k];
     beam.upward = rays[k].direction.z > kMinUp;
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
@@ -247,6 +251,12 @@ void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
   });
   for (std::size_t bin = 0; bin < incidences.size(); ++bin)
     result.by_incidence.emplace_back(incidences.name_of(bin), accuracy_of(by_incidence[bin]));
+  const auto by_surroundings = errors_by_part(beams, kSurroundings, [](const Beam& beam) {
+    return static_cast<std::size_t>(beam.surroundings);
+  });
+  for (std::size_t kind = 0; kind < kSurroundings; ++kind)
+    result.by_surroundings.emplace_back(name_of(static_cast<Surroundings>(kind)),
+                                        accuracy_of(by_surroundings[kind]));
   constexpr int kDown_deg = -90, kUp_deg = 90;
   const auto by_elevation = errors_by_part(beams, kUp_deg - kDown_deg + 1, [](const Beam& beam) {
     return static_cast<std::size_t>(beam.elevation_deg - kDown_deg);

@@ -61,7 +61,8 @@ struct ResimulateResult {
   CloudDistance clouds;
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
-  std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme
+  std::vector<std::pair<std::string, BeamAccuracy>> by_surroundings;  ///< flat, rough, edge
+  std::vector<std::pair<std::string, BeamAccuracy>> by_class;         ///< names of the label scheme
   /// "-25 deg", ...: elevation of the beam in the sensor's frame, rounded down. Different biases
   /// show differences between lasers, which no model can predict.
   std::vector<std::pair<std::string, BeamAccuracy>> by_elevation;

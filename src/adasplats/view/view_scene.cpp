@@ -107,6 +107,7 @@ std::size_t size_of(const ViewLayer& layer) {
 
 ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor) {
+  constexpr float kHidden_m = 1e-3F;  // radius of disks that are hardly opaque anywhere
   std::vector<Disk> storage;
   LevelInput input{.disks = model.disks,
                    .positions = {},
@@ -115,9 +116,12 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
                    .errors_m = errors_m,
                    .colors = model.colors};
   const Vec3d shift = model.origin - origin;
-  if (shift.x != 0 || shift.y != 0 || shift.z != 0) {
-    storage = model.disks;
-    for (Disk& disk : storage) disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
+  if (!model.opacities.empty() || shift.x != 0 || shift.y != 0 || shift.z != 0) {
+    storage = opaque_disks(model);
+    for (Disk& disk : storage) {
+      disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
+      if (disk.radius == 0) disk.radius = kHidden_m;
+    }
     input.disks = storage;
   }
   return {std::move(name),

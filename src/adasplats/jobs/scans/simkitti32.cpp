@@ -149,6 +149,11 @@ std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarMode
     throw Error(ErrorKind::data, job.model.string() +
                                      ": has no classes for the simulated points (make the model "
                                      "of points with labels)");
+  if (given->splats() != nullptr && !given->splats()->opacities.empty() && job.depth > 1)
+    throw Error(ErrorKind::usage, job.model.string() +
+                                      ": its splats have opacities, and `depth` averages the hits "
+                                      "of opaque ones; make the model with `refine_rounds` 0, or "
+                                      "choose a depth of 1");
   apply_calibration(*given, source);
   require_in_view(*given, motions_of(job, source), sensor);
   const LabelScheme labels = load_label_scheme(job.labels);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/model/gaussian_ply.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/scene/soft_disk.h"
 
 namespace adasplats {
 namespace {
@@ -36,7 +38,7 @@ Quaternion rotation_to(Vec3d n) {
   return {std::cos(half), -n.y * share, n.x * share, 0};
 }
 
-Gaussian gaussian_of(const Disk& disk, const std::array<std::uint8_t, 3>& rgb) {
+Gaussian gaussian_of(const Disk& disk, double opacity, const std::array<std::uint8_t, 3>& rgb) {
   const auto coefficient = [](std::uint8_t value) {
     return static_cast<float>((value / 255.0 - 0.5) / kHarmonic0);
   };
@@ -46,7 +48,7 @@ Gaussian gaussian_of(const Disk& disk, const std::array<std::uint8_t, 3>& rgb) {
   return {disk.center,
           disk.normal,
           {coefficient(rgb[0]), coefficient(rgb[1]), coefficient(rgb[2])},
-          static_cast<float>(std::log(kGaussianOpacity / (1 - kGaussianOpacity))),
+          static_cast<float>(std::log(opacity / (1 - opacity))),
           {along, along, static_cast<float>(log_sigma + std::log(kGaussianThickness))},
           {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
            static_cast<float>(q.z)}};
@@ -86,8 +88,16 @@ void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& mod
     throw std::logic_error("write_gaussian_ply: the number of colours is not the number of disks");
   std::vector<Gaussian> gaussians;
   gaussians.reserve(model.size());
-  for (std::size_t i = 0; i < model.size(); ++i)
-    gaussians.push_back(gaussian_of(model.disks[i], colors[i]));
+  constexpr double kLeast = 1.0 / 255;  // what renderers skip
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    Disk disk = model.disks[i];
+    double opacity = kGaussianOpacity;
+    if (!model.opacities.empty()) {
+      disk.radius /= kRimReach;
+      opacity = std::clamp(static_cast<double>(model.opacities[i]), kLeast, kGaussianOpacity);
+    }
+    gaussians.push_back(gaussian_of(disk, opacity, colors[i]));
+  }
   const Vec3d o = model.origin;
   std::vector<std::string> comments = crs_comments(model.crs);
   comments.insert(comments.begin(), std::string("adasplats.origin ") + exact_text(o.x) + " " +

@@ -10,7 +10,6 @@
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/scene/soft_disk.h"
-#include "adasplats/trace/soft_hits.h"
 
 namespace adasplats {
 
@@ -27,7 +26,7 @@ struct ExtentOptions {
 };
 
 /// Hits of a ray that are considered.
-inline constexpr int kExtentHits = SoftHits::kMost;
+inline constexpr int kExtentHits = 12;
 
 /// Opacity of a disk at its centre, and its radius relative to the given one.
 struct DiskExtent {
