@@ -14,12 +14,15 @@ namespace {
 
 constexpr std::uint32_t kBeams = 9;  // with the beam itself
 constexpr double kFlat_m = 0.03;
+constexpr double kFlatRange_m = 0.1;
 constexpr double kGap_m = 0.5;
 
-/// Root mean square distance of the points from the plane that fits them best.
-double roughness_m(std::span<const Vec3d> points) {
+/// Whether the points are on a plane, also as measured along the beam: one that nearly contains the
+/// beam fits any points that are close together for the sensor.
+bool are_flat(std::span<const Vec3d> points, Vec3d direction) {
+  const double count = static_cast<double>(points.size());
   Vec3d mean;
-  for (const Vec3d& p : points) mean = mean + p / static_cast<double>(points.size());
+  for (const Vec3d& p : points) mean = mean + p / count;
   SymmetricMat3d sums;
   for (const Vec3d& p : points) {
     const Vec3d d = p - mean;
@@ -30,8 +33,10 @@ double roughness_m(std::span<const Vec3d> points) {
     sums.yz += d.y * d.z;
     sums.zz += d.z * d.z;
   }
-  const double least = symmetric_eigen(sums).values[2];
-  return std::sqrt(std::max(least, 0.0) / static_cast<double>(points.size()));
+  const SymmetricEigen eigen = symmetric_eigen(sums);
+  const double distance_m = std::sqrt(std::max(eigen.values[2], 0.0) / count);
+  const double cosine = std::fabs(dot(eigen.vectors[2], direction));
+  return distance_m <= kFlat_m && distance_m <= cosine * kFlatRange_m;
 }
 
 bool have_gap(std::span<const Vec3d> points) {
@@ -64,7 +69,7 @@ std::vector<Surroundings> surroundings_of(std::span<const Vec3f> points, const E
         const auto near = std::span<const Vec3d>(of_beams).first(neighbors.size);
         const std::uint32_t i = index.index_of(rank);
         if (!(length(points[i]) > 0)) return;
-        if (roughness_m(near) <= kFlat_m)
+        if (are_flat(near, vec_cast<double>(directions[i])))
           result[i] = Surroundings::flat;
         else if (have_gap(near))
           result[i] = Surroundings::edge;

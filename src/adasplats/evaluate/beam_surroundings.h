@@ -14,7 +14,7 @@ namespace adasplats {
 
 /// What a beam and the eight beams of its scan with the nearest directions end on.
 enum class Surroundings : std::uint8_t {
-  flat,   ///< their points are within 3 cm of a plane (RMS)
+  flat,   ///< their points are within 3 cm of a plane, and within 10 cm along the beam (RMS)
   rough,  ///< neither: leaves, grass, small things
   edge,   ///< not flat, and their sorted ranges have a gap of more than 0.5 m
 };
