@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
@@ -21,21 +23,24 @@ class SoftHits {
   ADASPLATS_HD float reach(float t_max) const { return reach_ < t_max ? reach_ : t_max; }
 
   ADASPLATS_HD void offer(Hit hit, float opacity) {
-    if (hit.t > reach_ || (count_ == kMost && !(hit < hits_[kMost - 1]))) return;
-    int place = count_ < kMost ? count_++ : kMost - 1;
-    for (; place > 0 && hit < hits_[place - 1]; --place) {
-      hits_[place] = hits_[place - 1];
-      opacities_[place] = opacities_[place - 1];
+    if (hit.t > reach_) return;
+    // Loops of constant length with constant indices, so that a GPU keeps the hits in registers.
+    for (int k = 0; k < kMost; ++k) {
+      if (!(hit < hits_[k])) continue;
+      std::swap(hit, hits_[k]);
+      std::swap(opacity, opacities_[k]);
     }
-    hits_[place] = hit;
-    opacities_[place] = opacity;
     // More hits make no product larger, so what ends here ends with all hits, too.
-    float passes = 1;
-    for (int k = 0; k < count_; ++k) {
+    float passes = 1, end_m = 0;
+    for (int k = 0; k < kMost; ++k) {
+      if (passes < kFewPass) {
+        hits_[k] = Hit{};
+        opacities_[k] = 0;
+      }
       passes *= 1 - opacities_[k];
-      if (passes < kFewPass) count_ = k + 1;
+      if (hits_[k].valid()) end_m = hits_[k].t;
     }
-    if (passes < kFewPass || count_ == kMost) reach_ = hits_[count_ - 1].t;
+    if (passes < kFewPass || hits_[kMost - 1].valid()) reach_ = end_m;
   }
 
   /// The surface with the highest probability that the ray ends there: the weighted mean of its
@@ -43,16 +48,18 @@ class SoftHits {
   ADASPLATS_HD Hit most_likely() const {
     float weights[kMost];  // NOLINT: filled here
     float passes = 1;
-    for (int k = 0; k < count_; ++k) {
+    for (int k = 0; k < kMost; ++k) {
       weights[k] = passes * opacities_[k];
       passes *= 1 - opacities_[k];
     }
     Hit likely;
     float most = passes;
-    for (int first = 0; first < count_; ++first) {
+    for (int first = 0; first < kMost; ++first) {
+      if (!hits_[first].valid()) break;
       float weight = 0, moment = 0, heaviest = 0;
       std::uint32_t primitive = Hit::kNone;
-      for (int k = first; k < count_ && hits_[k].t <= hits_[first].t + kSurface_m; ++k) {
+      for (int k = first; k < kMost; ++k) {
+        if (!(hits_[k].t <= hits_[first].t + kSurface_m)) break;
         weight += weights[k];
         moment += weights[k] * (hits_[k].t - hits_[first].t);
         if (!(weights[k] > heaviest)) continue;
@@ -67,10 +74,9 @@ class SoftHits {
   }
 
  private:
-  Hit hits_[kMost];         // NOLINT: ascending
-  float opacities_[kMost];  // NOLINT: filled with the hits
+  Hit hits_[kMost];              ///< ascending; the last ones may be none
+  float opacities_[kMost] = {};  ///< 0 for none
   float reach_ = std::numeric_limits<float>::infinity();
-  int count_ = 0;
 };
 
 }  // namespace adasplats

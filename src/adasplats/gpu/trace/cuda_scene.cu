@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/trace/cuda_scene.h"
 #include "adasplats/gpu/trace/scene_trees.h"
 #include "adasplats/gpu/trace/wide_traversal.cuh"
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/trace/soft_hits.h"
 
 namespace adasplats::gpu {
@@ -59,26 +61,45 @@ __global__ void __launch_bounds__(kCastBlock)
 /// Keeps the hits that decide where a ray most likely ends.
 class LikelyHit {
  public:
-  __device__ LikelyHit(const SoftDisksView& disks, const Ray& ray) : disks_(disks), ray_(ray) {}
+  __device__ LikelyHit(const float* opacities, const Ray& ray) : opacities_(opacities), ray_(ray) {}
 
   __device__ float reach(float t_max) const { return hits_.reach(t_max); }
-  __device__ void offer(float t, std::uint32_t primitive) {
-    hits_.offer({t, primitive}, disks_.at(ray_, {t, primitive}));
+  __device__ void offer(float t, std::uint32_t primitive, const LeafDisk* leaves,
+                        std::uint32_t place) {
+    const float4 at = __ldg(reinterpret_cast<const float4*>(leaves + place));
+    const Disk disk = {{at.x, at.y, at.z}, at.w, {}};
+    hits_.offer({t, primitive}, opacity_of_hit(ray_, t, disk, __ldg(opacities_ + place)));
+  }
+  __device__ void offer(float t, std::uint32_t primitive, const LeafTriangle*, std::uint32_t) {
+    hits_.offer({t, primitive}, kMaxOpacity);
   }
   __device__ Hit most_likely() const { return hits_.most_likely(); }
 
  private:
-  SoftDisksView disks_;
+  const float* opacities_;
   Ray ray_;
   SoftHits hits_;
 };
+
+/// The opacities of the leaves of a tree of disks, in their order.
+DeviceBuffer<float> opacities_of_leaves(const WideTree<LeafDisk>& tree,
+                                        std::span<const float> opacities, cudaStream_t stream) {
+  const DeviceBuffer<float> by_disk(opacities, stream);
+  DeviceBuffer<float> of_leaves(tree.leaves.size(), stream);
+  for_each(tree.leaves.size(), stream, "order opacities",
+           [leaves = tree.leaves.data(), from = by_disk.data(), count = by_disk.size(),
+            to = of_leaves.data()] __device__(std::uint64_t i) {
+             to[i] = leaves[i].primitive < count ? from[leaves[i].primitive] : 0.0F;
+           });
+  return of_leaves;
+}
 
 __global__ void __launch_bounds__(kCastBlock)
     cast_likely_kernel(TreesView trees, RaySource source, std::uint64_t count, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;
   const Ray ray = ray_of(source, i);
-  LikelyHit best(trees.soft, ray);
+  LikelyHit best(trees.opacities, ray);
   cast_one<kPostpone>(trees, ray, best);
   hits[place_of_ray(source, i)] = best.most_likely();
 }
@@ -121,7 +142,7 @@ class CudaScene final : public DeviceScene {
   CudaScene(const SceneView& scene, const TreeOptions& options)
       : stream_(std::in_place), trees_(build_scene_trees(scene, options, stream_->get())) {}
   CudaScene(const Disk* disks, std::size_t count, cudaStream_t stream)
-      : trees_{build_tree(disks, count, TreeOptions{}, stream), {}, {}, {}} {}
+      : trees_{build_tree(disks, count, TreeOptions{}, stream), {}, {}} {}
 
   std::string_view name() const override { return "cuda"; }
 
@@ -145,7 +166,7 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
   if (count == 0) return;
   const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
   const bool still = source.first_poses == nullptr;
-  if (depth == 1 && trees.soft.count > 0) {
+  if (depth == 1 && trees.opacities != nullptr) {
     cast_likely_kernel<<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
   } else if (depth == 1 && still) {
     launch_nearest<Sensors::still>(blocks, trees, source, count, hits, stream);
@@ -171,12 +192,10 @@ SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                                      " primitives; a GPU supports at most 2^32 - 2");
   SceneTrees trees;
   if (!scene.disks.empty()) {
-    DeviceBuffer<Disk> disks(scene.disks, stream);
+    const DeviceBuffer<Disk> disks(scene.disks, stream);
     trees.disks = build_tree(disks.data(), disks.size(), options, stream);
-    if (!scene.opacities.empty()) {
-      trees.soft_disks = std::move(disks);
-      trees.opacities = {scene.opacities, stream};
-    }
+    if (!scene.opacities.empty())
+      trees.opacities = opacities_of_leaves(trees.disks, scene.opacities, stream);
   }
   if (scene.triangle_count() > 0) {
     std::vector<Triangle> corners(scene.triangle_count());

@@ -11,42 +11,23 @@
 #include "adasplats/gpu/trace/ray_source.h"
 #include "adasplats/gpu/trace/wide_tree.h"
 #include "adasplats/scene/scene.h"
-#include "adasplats/scene/soft_disk.h"
 
 namespace adasplats::gpu {
-
-/// Private to gpu/: soft disks in device memory; null: disks are opaque.
-struct SoftDisksView {
-  const Disk* disks = nullptr;
-  const float* opacities = nullptr;
-  std::uint32_t count = 0;
-
-  /// Opacity where a ray hits a primitive. Triangles are opaque.
-  __host__ __device__ float at(const Ray& ray, Hit hit) const {
-    if (hit.primitive >= count) return kMaxOpacity;
-    return opacity_of_hit(ray, hit.t, disks[hit.primitive], opacities[hit.primitive]);
-  }
-};
 
 /// Private to gpu/: kernel view of the trees of a scene.
 struct TreesView {
   TreeView<LeafDisk> disks;
   TreeView<LeafTriangle> triangles;
-  SoftDisksView soft;
+  const float* opacities = nullptr;  ///< of the leaves of `disks`; null: disks are opaque
 };
 
 /// The trees of a scene's disks and triangles on one device.
 struct SceneTrees {
   WideTree<LeafDisk> disks;
   WideTree<LeafTriangle> triangles;
-  DeviceBuffer<Disk> soft_disks;  ///< by number; empty: disks are opaque
-  DeviceBuffer<float> opacities;
+  DeviceBuffer<float> opacities;  ///< of the leaves of `disks`; empty: disks are opaque
 
-  TreesView view() const {
-    return {disks.view(),
-            triangles.view(),
-            {soft_disks.data(), opacities.data(), static_cast<std::uint32_t>(soft_disks.size())}};
-  }
+  TreesView view() const { return {disks.view(), triangles.view(), opacities.data()}; }
 };
 
 /// Builds the trees on the current device; complete when this returns. Primitives have the numbers

@@ -287,7 +287,10 @@ __device__ void walk(const TreeView<Leaf>& tree, Ray ray, const BoxRay& boxes, B
       std::uint32_t primitive = 0;
       const float t = intersect(ray, tree.leaves + place, primitive);
       if (t < HUGE_VALF) {
-        best.offer(t, primitive);
+        if constexpr (requires { best.offer(t, primitive, tree.leaves, place); })
+          best.offer(t, primitive, tree.leaves, place);
+        else
+          best.offer(t, primitive);
         ray.t_max = best.reach(farthest);
       }
     }
