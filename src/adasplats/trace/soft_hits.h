@@ -14,7 +14,7 @@ namespace adasplats {
 class SoftHits {
  public:
   static constexpr int kMost = 8;
-  static constexpr float kFewPass = 0.05F;  ///< share of rays that is not followed farther
+  static constexpr float kFewPass = 0.1F;  ///< share of rays that is not followed farther
   /// Hits that are closer together are one surface: a few standard deviations of range noise and
   /// of the disks' positions.
   static constexpr float kSurface_m = 0.12F;
