@@ -735,6 +735,9 @@ class Model:
     def radii(self) -> NDArray[np.float32]:
         """(N,) float32, m."""
     @property
+    def opacities(self) -> NDArray[np.float32] | None:
+        """(N,) float32: probability that a ray through the centre stops; None: opaque disks."""
+    @property
     def classes(self) -> NDArray[np.uint16] | None:
         """(N,) uint16, ids of the label scheme, or None."""
     @property

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """The same bytes for any number of threads and any order of the points."""
+import array
 import random
 import unittest
 
@@ -18,6 +19,31 @@ class Determinism(ProgramTest):
                                                     "--overwrite")))
             self.assertEqual(len(models), 1, method)
             self.assertEqual(len(scans), 1, method)
+
+    def test_opacities(self):
+        street = self.folder / "street"
+        self.run_ok("synth", "street", "-o", street, "--points", "60000", "--passes", "1",
+                    "--length", "40")
+        models, scans = set(), set()
+        for threads in ["1", "3"]:
+            model = self.folder / f"model-{threads}.ply"
+            self.run_ok("model", street / "mapping.ply", "-o", model, "--refine-rounds", "2",
+                        "--threads", threads)
+            models.add(model.read_bytes())
+            out = self.folder / f"scans-{threads}"
+            self.run_ok("simulate", model, "-o", out, "--threads", threads, "--trajectory",
+                        street / "true_driving_trajectory.csv", "--every", "10")
+            scans.add(tree_digest(out / "sequences"))
+        self.assertEqual(len(models), 1)
+        self.assertEqual(len(scans), 1)
+        self.assertIn(b"property float opacity", models.pop())
+        gaussians = self.folder / "gaussians.ply"
+        self.run_ok("export", model, "-o", gaussians, "--format", "gaussian-3d")
+        header, values = gaussians.read_bytes().split(b"end_header\n")
+        names = [line.split()[-1] for line in header.decode().splitlines()
+                 if line.startswith("property")]
+        opacities = array.array("f", values)[names.index("opacity")::len(names)]
+        self.assertGreater(len({round(value, 2) for value in opacities}), 20)
 
     def test_order_of_points(self):
         points = tiny_place()

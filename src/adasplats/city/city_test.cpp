@@ -295,6 +295,12 @@ TEST(City, ReportsDamage) {
   const std::string why = error_of([&] { load_city(folder.path()); }, ErrorKind::data);
   EXPECT_NE(why.find("x21_y0.ply"), std::string::npos) << why;
   error_of([&] { verify_city(folder.path(), city); }, ErrorKind::data);
+  SplatModel soft = less;
+  soft.disks.push_back(soft.disks.back());
+  soft.opacities.assign(soft.size(), 0.5F);
+  save_model(tile, soft);
+  const std::string softness = error_of([&] { load_city(folder.path()); }, ErrorKind::data);
+  EXPECT_NE(softness.find("has opacities"), std::string::npos) << softness;
   std::string text = read_file(folder.path() / kCityFile);
   text.replace(text.find("\"version\": 1"), 12, "\"version\": 9");
   write_file(folder.path() / kCityFile, text);

@@ -542,6 +542,19 @@ TEST_F(WorldTest, InvalidObjects) {
   EXPECT_THROW(full.add_object(object(full.add_geometry(wall_mesh(1, 1)), {{0, {}}})), Error);
 }
 
+// Oracle: opaque_disks().
+TEST_F(WorldTest, SoftSplatsOfObjectsBecomeOpaque) {
+  SplatModel soft;
+  soft.disks.assign(2, {{1, 0, 0}, 0.5F, {1, 0, 0}});
+  soft.opacities = {0.9F, 0.1F};
+  World world(0, {});
+  const SceneView placed = world.geometry_view(world.add_geometry(soft));
+  EXPECT_TRUE(placed.opacities.empty());
+  ASSERT_EQ(placed.disks.size(), 2U);
+  EXPECT_EQ(placed.disks[0].radius, opaque_disks(soft)[0].radius);
+  EXPECT_EQ(placed.disks[1].radius, 0);
+}
+
 // Oracle: one geometry after the other.
 TEST_F(WorldTest, ConcurrentGeometriesAreNumberedInOrder) {
   constexpr std::size_t kCount = 40;

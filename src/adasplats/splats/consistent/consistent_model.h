@@ -40,7 +40,8 @@ namespace adasplats {
 // - choose: select few large disks that cover all seeds [splats/consistent/surface_cover.h]
 // - settle: move disks along their normals to the ends of the rays [splats/rays/disk_shift.h]
 // - fill_gaps: restore seeds where rays miss all disks [splats/consistent/element_steps.h]
-// - refine_extents: fit radii to the shares of rays that pass and end [splats/rays/disk_extent.h]
+// - refine_extents: fit opacities and radii to the shares of rays that pass and end
+//   [splats/rays/disk_extent.h]
 // Without sensor positions the steps with rays are skipped, and disks stay smaller.
 
 /// Options of the consistent method; docs/research/consistent.md gives the source of each number.
@@ -150,7 +151,9 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .group = kGroup},
         consistent.fill);
   visit(Setting{.name = "refine_rounds",
-                .help = "Rounds of refining the radii of splats by measured rays",
+                .help =
+                    "Rounds of refining opacities and radii of splats by measured rays; 0: opaque "
+                    "splats",
                 .group = kGroup,
                 .min = 0},
         consistent.refine_rounds);

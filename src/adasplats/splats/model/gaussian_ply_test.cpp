@@ -67,6 +67,19 @@ TEST(GaussianPly, PropertiesInTheOrderOfThePapersPrograms) {
                    "scale_0", "scale_1", "rot_0", "rot_1", "rot_2", "rot_3"}));
 }
 
+// Oracle: the logarithm of the odds, and the radius where the opacity is half of that at the
+// centre.
+TEST(GaussianPly, SoftDisksKeepTheirOpacities) {
+  SplatModel model = model_of({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  model.opacities = {0.25F, 1, 0};
+  const Table table = written(model, GaussianKind::volumes, std::vector<Rgb>(3));
+  EXPECT_NEAR(value(table, "opacity", 0), std::log(0.25 / 0.75), 1e-6);
+  EXPECT_NEAR(value(table, "opacity", 1), std::log(kGaussianOpacity / (1 - kGaussianOpacity)),
+              1e-5);
+  EXPECT_TRUE(std::isfinite(value(table, "opacity", 2)));
+  EXPECT_NEAR(std::exp(value(table, "scale_0", 0)), 0.05 / 1.3 * kGaussianSigmaOverRadius, 1e-6);
+}
+
 TEST(GaussianPly, ThirdAxisIsTheNormal) {
   const std::vector<Vec3d> normals = directions();
   const SplatModel model = model_of(normals);
