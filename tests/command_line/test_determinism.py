@@ -22,23 +22,23 @@ class Determinism(ProgramTest):
 
     def test_opacities(self):
         street = self.folder / "street"
-        self.run_ok("synth", "street", "-o", street, "--points", "60000", "--passes", "1",
-                    "--length", "40")
+        self.run_good("synth", "street", "-o", street, "--points", "60000", "--passes", "1",
+                      "--length", "60")
         models, scans = set(), set()
         for threads in ["1", "3"]:
             model = self.folder / f"model-{threads}.ply"
-            self.run_ok("model", street / "mapping.ply", "-o", model, "--refine-rounds", "2",
-                        "--threads", threads)
+            self.run_good("model", street / "mapping.ply", "-o", model, "--refine-rounds", "2",
+                          "--threads", threads, "--labels", "semantickitti")
             models.add(model.read_bytes())
             out = self.folder / f"scans-{threads}"
-            self.run_ok("simulate", model, "-o", out, "--threads", threads, "--trajectory",
-                        street / "true_driving_trajectory.csv", "--every", "10")
+            self.run_good("simulate", model, "-o", out, "--threads", threads, "--trajectory",
+                          street / "true_driving_trajectory.csv", "--every", "10")
             scans.add(tree_digest(out / "sequences"))
         self.assertEqual(len(models), 1)
         self.assertEqual(len(scans), 1)
         self.assertIn(b"property float opacity", models.pop())
         gaussians = self.folder / "gaussians.ply"
-        self.run_ok("export", model, "-o", gaussians, "--format", "gaussian-3d")
+        self.run_good("export", model, "-o", gaussians, "--format", "gaussian-3d")
         header, values = gaussians.read_bytes().split(b"end_header\n")
         names = [line.split()[-1] for line in header.decode().splitlines()
                  if line.startswith("property")]
