@@ -26,10 +26,14 @@ ADASPLATS_HD inline float rim_opacity(float radii) {
   return 0.5F * (1 - x / std::sqrt(1 + x * x));
 }
 
-/// `radii` of rim_opacity() where a ray hits a disk.
+/// `radii` of rim_opacity() at a metre from the centre.
+ADASPLATS_HD inline float radii_per_m(const Disk& disk) { return kRimReach / disk.radius; }
+
+/// `radii` of rim_opacity() where a ray hits a disk: its offset from the centre is that of
+/// intersect_disk().
 ADASPLATS_HD inline float radii_of_hit(const Ray& ray, float t, const Disk& disk) {
-  const Vec3f offset = ray.origin + t * ray.direction - disk.center;
-  return kRimReach * std::sqrt(dot(offset, offset)) / disk.radius;
+  const Vec3f offset = t * ray.direction - (disk.center - ray.origin);
+  return std::sqrt(dot(offset, offset)) * radii_per_m(disk);
 }
 
 ADASPLATS_HD inline float bounded_opacity(float opacity) {

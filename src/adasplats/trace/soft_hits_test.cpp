@@ -10,7 +10,9 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/scene/soft_disk.h"
+#include "adasplats/trace/soft_tracer.h"
 #include "adasplats/trace/tracer.h"
+#include "adasplats/trace/wide_kernel.h"
 
 namespace adasplats {
 namespace {
@@ -107,6 +109,10 @@ TEST(SoftHits, DoNotDependOnTheOrder) {
     for (std::size_t i = met.size(); i-- > 0;)
       backward.offer({met[i].t, static_cast<std::uint32_t>(i)}, met[i].opacity);
     ASSERT_EQ(backward.most_likely(), expected) << seed;
+    SoftHits ascending;
+    for (std::uint32_t i = 0; i < met.size(); ++i)
+      if (!ascending.append({met[i].t, i}, met[i].opacity)) break;
+    ASSERT_EQ(ascending.most_likely(), expected) << seed;
     // A traversal does not offer what is out of reach.
     SoftHits mixed;
     for (std::size_t k = 0; k < met.size(); ++k) {
@@ -133,9 +139,17 @@ TEST(SoftTracer, FindsTheMostLikelyHitsOfAScene) {
     opacities.push_back(static_cast<float>(random.uniform()));
     rays.push_back({{any(), any(), -9}, 0, normalized(Vec3f{any(), any(), 20})});
   }
+  for (int i = 0; i < 1600; ++i) {  // similar ones, which are traced together
+    const auto row = static_cast<float>(i / 160), column = static_cast<float>(i % 160);
+    rays.push_back({{0, 0, -9}, 0, normalized(Vec3f{0.03F * (column - 80), 0.4F * (row - 5), 9})});
+  }
   const SceneView scene = {disks, nullptr, opacities};
-  std::vector<Hit> hits(rays.size());
-  make_cpu_tracer(scene, executor)->nearest(rays, hits, executor);
+  std::vector<std::unique_ptr<Tracer>> tracers;
+  tracers.push_back(make_soft_tracer(make_embree_tracer(scene, executor), scene));
+  for (const detail::WideVersion& version : detail::wide_versions())
+    tracers.push_back(detail::make_wide_tracer(scene, version, executor));
+  std::vector<std::vector<Hit>> hits(tracers.size(), std::vector<Hit>(rays.size()));
+  for (std::size_t k = 0; k < tracers.size(); ++k) tracers[k]->nearest(rays, hits[k], executor);
   std::size_t behind_the_first = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     SoftHits expected;
@@ -146,8 +160,9 @@ TEST(SoftTracer, FindsTheMostLikelyHitsOfAScene) {
       first = std::min(first, hit);
       expected.offer(hit, opacity_of_hit(rays[i], hit.t, disks[k], opacities[k]));
     }
-    ASSERT_EQ(hits[i], expected.most_likely());
-    behind_the_first += hits[i].valid() && hits[i].t > first.t + 1 ? 1 : 0;
+    const Hit likely = expected.most_likely();
+    for (const auto& found : hits) ASSERT_EQ(found[i], likely) << i;
+    behind_the_first += likely.valid() && likely.t > first.t + 1 ? 1 : 0;
   }
   EXPECT_GT(behind_the_first, 300U);
 }

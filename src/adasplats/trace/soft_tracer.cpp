@@ -15,6 +15,19 @@ namespace {
 
 constexpr std::size_t kSoftRaysAtOnce = std::size_t{1} << 15;
 
+Hit most_likely_hit(const SceneView& scene, const Ray& ray, std::span<const Hit> hits) {
+  SoftHits soft;
+  for (const Hit& hit : hits) {
+    if (!hit.valid()) break;
+    const std::uint32_t disk = hit.primitive;
+    const float opacity = disk < scene.disk_count()
+                              ? opacity_of_hit(ray, hit.t, scene.disks[disk], scene.opacities[disk])
+                              : kMaxOpacity;
+    if (!soft.append(hit, opacity)) break;
+  }
+  return soft.most_likely();
+}
+
 class SoftTracer final : public Tracer {
  public:
   SoftTracer(std::unique_ptr<Tracer> all_hits, const SceneView& scene)
@@ -34,25 +47,12 @@ class SoftTracer final : public Tracer {
       all_hits_->nearest_hits(batch, SoftHits::kMost, of_batch, executor);
       executor.for_chunks(batch.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          hits[done + i] = most_likely(batch[i], of_batch.subspan(i * kSlots, kSlots));
+          hits[done + i] = most_likely_hit(scene_, batch[i], of_batch.subspan(i * kSlots, kSlots));
       });
     }
   }
 
  private:
-  Hit most_likely(const Ray& ray, std::span<const Hit> found) const {
-    SoftHits hits;
-    for (const Hit& hit : found) {
-      if (!hit.valid()) break;
-      hits.offer(hit, opacity_of(ray, hit));
-    }
-    return hits.most_likely();
-  }
-  float opacity_of(const Ray& ray, const Hit& hit) const {
-    if (hit.primitive >= scene_.disk_count()) return kMaxOpacity;
-    return opacity_of_hit(ray, hit.t, scene_.disks[hit.primitive], scene_.opacities[hit.primitive]);
-  }
-
   std::unique_ptr<Tracer> all_hits_;
   SceneView scene_;
 };

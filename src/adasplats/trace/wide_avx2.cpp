@@ -13,8 +13,10 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
+#include "adasplats/trace/soft_hits.h"
 
 // Only what follows is compiled for AVX2; headers above stay at the baseline, so that none of their
 // shared inline functions is emitted with instructions that an older CPU lacks.
@@ -46,6 +48,7 @@ inline void store(float* p, F16 v) {
   _mm256_store_ps(p, v.a);
   _mm256_store_ps(p + 8, v.b);
 }
+inline F16 root(F16 x) { return {_mm256_sqrt_ps(x.a), _mm256_sqrt_ps(x.b)}; }
 inline F16 fma(F16 x, F16 y, F16 z) {
   return {_mm256_fmadd_ps(x.a, y.a, z.a), _mm256_fmadd_ps(x.b, y.b, z.b)};
 }

@@ -13,8 +13,10 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
+#include "adasplats/trace/soft_hits.h"
 
 // Only what follows is compiled for AVX-512; headers above stay at the baseline, so that none of
 // their shared inline functions is emitted with instructions that an older CPU lacks.
@@ -34,6 +36,7 @@ using U16 = __m512i;
 inline F16 load(const float* p) { return _mm512_load_ps(p); }
 inline F16 all(float v) { return _mm512_set1_ps(v); }
 inline void store(float* p, F16 v) { _mm512_store_ps(p, v); }
+inline F16 root(F16 v) { return _mm512_sqrt_ps(v); }
 inline F16 fma(F16 a, F16 b, F16 c) { return _mm512_fmadd_ps(a, b, c); }
 inline F16 min(F16 a, F16 b) { return _mm512_min_ps(a, b); }
 inline F16 max(F16 a, F16 b) { return _mm512_max_ps(a, b); }

@@ -9,6 +9,8 @@
 #include <limits>
 #include <span>
 
+#include "adasplats/scene/soft_disk.h"
+
 namespace adasplats {
 
 namespace {
@@ -530,6 +532,16 @@ class Builder {
   bool has_unit_normals_ = true;
 };
 
+SoftBlock soft_block(const SceneView& scene, const DiskBlock& disks) {
+  SoftBlock block;
+  for (unsigned lane = 0; lane < kWide; ++lane) {
+    const std::uint32_t disk = disks.primitive[lane];
+    block.radii_per_m[lane] = disk == Hit::kNone ? 1 : radii_per_m(scene.disks[disk]);
+    block.opacity[lane] = disk == Hit::kNone ? 0 : scene.opacities[disk];
+  }
+  return block;
+}
+
 /// Sorts children by their middles along the diagonal of each octant.
 void set_order(std::span<const WideChild> children, WideNode& node) {
   for (unsigned octant = 0; octant < 8; ++octant) {
@@ -565,7 +577,13 @@ WideNode wide_node(std::span<const WideChild> children) {
 }
 
 WideBvh build_wide_bvh(const SceneView& scene, const Executor& executor) {
-  return Builder(scene, executor).build();
+  WideBvh bvh = Builder(scene, executor).build();
+  if (scene.opacities.empty()) return bvh;
+  bvh.soft.resize(bvh.disks.size());
+  executor.for_chunks(bvh.disks.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) bvh.soft[i] = soft_block(scene, bvh.disks[i]);
+  });
+  return bvh;
 }
 
 }  // namespace adasplats

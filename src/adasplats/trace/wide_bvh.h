@@ -46,6 +46,12 @@ struct alignas(64) DiskBlock {
   std::uint32_t primitive[kWide];
 };
 
+/// What a DiskBlock of soft disks has in addition.
+struct alignas(64) SoftBlock {
+  float radii_per_m[kWide];  ///< see radii_of_hit()
+  float opacity[kWide];      ///< at the centre
+};
+
 /// Up to 16 triangles in lanes; unused lanes hold NaN and are never hit.
 struct alignas(64) TriangleBlock {
   float corners[3][3][kWide];  ///< [corner][axis][lane]
@@ -60,6 +66,7 @@ struct WideView {
   WideRef root;
   float margin_m = 0.0F;
   bool has_unit_normals = true;
+  const SoftBlock* soft = nullptr;  ///< of `disks`; null: disks are opaque
 };
 
 struct WideBvh {
@@ -69,9 +76,16 @@ struct WideBvh {
   WideRef root;                  ///< `nothing` in an empty scene
   float margin_m = 0.0F;         ///< box_margin of the largest coordinate
   bool has_unit_normals = true;  ///< to 1e-5; else a disk is culled as a sphere
+  std::vector<SoftBlock> soft;   ///< of `disks`, if the scene has opacities
 
   WideView view() const {
-    return {nodes.data(), disks.data(), triangles.data(), root, margin_m, has_unit_normals};
+    return {nodes.data(), disks.data(),     triangles.data(), root,
+            margin_m,     has_unit_normals, nullptr};
+  }
+  WideView soft_view() const {
+    WideView view = this->view();
+    view.soft = soft.data();
+    return view;
   }
 };
 

@@ -7,8 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/scene/soft_disk.h"
 #include "adasplats/trace/castable.h"
 #include "adasplats/trace/hit_list.h"
+#include "adasplats/trace/soft_hits.h"
 #include "adasplats/trace/wide_kernel.h"
 
 namespace adasplats::detail {
@@ -50,6 +52,9 @@ inline F16 min(const F16& a, const F16& b) {
 }
 inline F16 max(const F16& a, const F16& b) {
   return lanewise(a, b, [](float x, float y) { return x > y ? x : y; });
+}
+inline F16 root(const F16& a) {
+  return lanewise(a, a, [](float x, float) { return std::sqrt(x); });
 }
 inline F16 fma(const F16& a, const F16& b, const F16& c) { return a * b + c; }
 template <class T>

@@ -28,7 +28,8 @@ class WideTracer final : public Tracer {
 
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
-    detail::cast_in_chunks(cast_, bvh_.view(), rays, depth, hits, executor);
+    const WideView tree = depth == 1 && !bvh_.soft.empty() ? bvh_.soft_view() : bvh_.view();
+    detail::cast_in_chunks(cast_, tree, rays, depth, hits, executor);
   }
 
  private:
@@ -80,7 +81,7 @@ std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& 
   std::unique_ptr<Tracer> tracer = has_vectors && scene.triangle_count() == 0
                                        ? make_wide_tracer(scene, executor)
                                        : make_embree_tracer(scene, executor);
-  if (scene.opacities.empty()) return tracer;
+  if (scene.opacities.empty() || tracer->name() == "wide") return tracer;
   return make_soft_tracer(std::move(tracer), scene);
 }
 
