@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The effect of refined opacities (`--refine-rounds`) on held-out beams of every real drive.
+"""The effect of refined opacities (`--no-refine`) on held-out beams of every real drive.
 
   bench/refinement.py build/release/bin/adasplats REAL_DATA OUT
 
 REAL_DATA: folder with kitti-0005, pandaset-002 and semantickitti-labelled, unpacked; missing ones
 are skipped. Writes OUT/refinement.json (for bench/results) and prints a Markdown table: models
-without and with four rounds. The drives and flags are those of calibration.py, except that all
+without and with them. The drives and flags are those of calibration.py, except that all
 beams of kitti-0005 count, also on moving objects. Reports that are newer than the program are
 reused.
 """
@@ -19,7 +19,7 @@ import sys
 from calibration import drives, report_of
 from provenance import provenance_of
 
-ROUNDS = {"without": "0", "refined": "4"}
+FLAGS = {"without": ["--no-refine"], "refined": []}
 
 
 def figures_of(beams):
@@ -36,10 +36,10 @@ def figures_of(beams):
 def row_of(program, folder, training, held_out, model_flags, beam_flags):
     folder.mkdir(parents=True, exist_ok=True)
     row = {}
-    for name, rounds in ROUNDS.items():
+    for name, flags in FLAGS.items():
         model = folder / f"{name}.ply"
-        made = report_of([program, "model", training, "-o", model, *model_flags,
-                          "--refine-rounds", rounds], folder / f"{name}-model.json")
+        made = report_of([program, "model", training, "-o", model, *model_flags, *flags],
+                         folder / f"{name}-model.json")
         beams = report_of([program, "evaluate", "resimulate", model, held_out, *beam_flags],
                           folder / f"{name}-beams.json")
         model.unlink(missing_ok=True)
@@ -69,7 +69,7 @@ def main():
         row = row_of(program, out / name.replace(" ", "-"), training, held_out, model_flags,
                      beam_flags)
         rows.append({"name": name, "use": use, **row})
-        for model in ROUNDS:
+        for model in FLAGS:
             print(f"| {name} | {use} | {model} | {row[model]['splats']:,} | "
                   f"{cells_of(row[model])} |", flush=True)
     provenance = provenance_of(program)

@@ -106,7 +106,7 @@ def model(
     settle_rounds: int = 2,
     empty_beams: bool = True,
     fill: bool = True,
-    refine_rounds: int = 0,
+    refine: bool = True,
     remove: Literal["none", "moving", "movable"] = "movable",
     reflectance: bool = True,
     calibrate: bool = True,

@@ -216,7 +216,7 @@ class City(ProgramTest):
 
     def test_options(self):
         self.run_bad(64, *self.command("--method", "basic"), says=["consistent"])
-        self.run_bad(64, *self.command("--refine-rounds", "2"), says=["--refine-rounds", "tiles"])
+        self.run_bad(64, *self.command("--refine"), says=["--refine", "tiles"])
         self.run_bad(64, "model", self.cloud, "-o", self.folder / "m.ply", "--halo", "3",
                      says=["--halo has no effect without --tile"])
         self.run_bad(64, "model", self.cloud, "-o", self.folder / "m.txt", says=[".ply"])

@@ -27,7 +27,7 @@ class Determinism(ProgramTest):
         models, scans = set(), set()
         for threads in ["1", "3"]:
             model = self.folder / f"model-{threads}.ply"
-            self.run_good("model", street / "mapping.ply", "-o", model, "--refine-rounds", "2",
+            self.run_good("model", street / "mapping.ply", "-o", model,
                           "--threads", threads, "--labels", "semantickitti")
             models.add(model.read_bytes())
             out = self.folder / f"scans-{threads}"

@@ -149,6 +149,7 @@ class ModelCommand final : public Command {
     else if (!is_given("--tile") && !only_tile_)
       choose_tiles(session);
     if (job_.tiles.tile_m > 0) {
+      if (recipe_.consistent.refine) reject({"--refine"}, "in tiles, which are opaque");
       require_folder_apart(job_.output, job_.inputs);
       if (!job_.add_to.empty())
         require_folder_apart(job_.output, std::vector<std::filesystem::path>{job_.add_to});

@@ -47,14 +47,13 @@ struct PutLoadSetting {
 
 }  // namespace
 
-const ConsistentOptions& consistent_options_of(const CityJob& job) {
+ConsistentOptions consistent_options_of(const CityJob& job) {
   const auto* ours = std::get_if<ConsistentOptions>(&job.build.recipe);
   if (ours == nullptr)
     throw Error(ErrorKind::usage, "tiles are modelled by the method consistent alone");
-  if (ours->refine_rounds > 0)
-    throw Error(ErrorKind::usage,
-                "`refine_rounds` is not for tiles: rays that end outside a tile would not count");
-  return *ours;
+  ConsistentOptions options = *ours;
+  options.refine = false;
+  return options;
 }
 
 Json content_of(const CityJob& job) {

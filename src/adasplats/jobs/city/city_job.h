@@ -88,8 +88,9 @@ struct CityJob : ModelJob {
   bool overwrite = false;
 };
 
-/// The options of the method. Errors: usage (a method that is not `consistent`).
-const ConsistentOptions& consistent_options_of(const CityJob& job);
+/// The options of the method, without `refine`: rays that end outside a tile would not count.
+/// Errors: usage (a method that is not `consistent`).
+ConsistentOptions consistent_options_of(const CityJob& job);
 
 /// What the files of a city depend on, for its adasplats.json; of a network its file alone, and not
 /// what is in it. Errors: as above.

@@ -34,7 +34,7 @@ inline constexpr const char* kResponseFile = "layers/0/points/response.ply";  //
 /// run found out from the files of the folder.
 struct CityWork {
   const CityJob& job;
-  const ConsistentOptions& options;  ///< the job's
+  const ConsistentOptions options;  ///< the job's
   Session& session;
   std::filesystem::path folder;    ///< the unfinished one
   std::vector<PointLayer> layers;  ///< one at least; the last is of the job's inputs

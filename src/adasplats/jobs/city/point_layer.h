@@ -60,7 +60,7 @@ struct CityBefore {
 /// earlier run found out from the files of the folder.
 struct LayerWork {
   const CityJob& job;
-  const ConsistentOptions& options;  ///< the job's
+  const ConsistentOptions options;  ///< the job's
   Session& session;
   std::filesystem::path city;  ///< the unfinished folder
   PointLayer layer;

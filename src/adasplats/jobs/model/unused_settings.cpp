@@ -29,7 +29,7 @@ void add_own(const Options& /*own*/, List& /*unused*/) {}
 
 void add_own(const ConsistentOptions& consistent, List& unused) {
   if (consistent.balance_rounds > 0) return;
-  add(consistent, {"strict_rounds", "settle_rounds", "fill", "refine_rounds"},
+  add(consistent, {"strict_rounds", "settle_rounds", "fill", "refine"},
       "without balance rounds, where no ray is looked at", unused);
 }
 

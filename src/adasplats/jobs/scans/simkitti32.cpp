@@ -152,7 +152,7 @@ std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarMode
   if (given->splats() != nullptr && !given->splats()->opacities.empty() && job.depth > 1)
     throw Error(ErrorKind::usage, job.model.string() +
                                       ": its splats have opacities, and `depth` averages the hits "
-                                      "of opaque ones; make the model with `refine_rounds` 0, or "
+                                      "of opaque ones; make the model without `refine`, or "
                                       "choose a depth of 1");
   apply_calibration(*given, source);
   require_in_view(*given, motions_of(job, source), sensor);
@@ -187,6 +187,13 @@ Json input_hashes(const Source& source, Session& session) {
   return hashes;
 }
 
+/// The splats are opaque where hits are averaged.
+MethodOptions recipe_of(const SimKitti32Job& job) {
+  MethodChoice choice{.method = job.method};
+  choice.consistent.refine = job.depth == 1;
+  return choice.recipe();
+}
+
 /// The method with its settings, or the hash of the given model.
 Json model_content(const SimKitti32Job& job, const Source& source) {
   if (!job.model.empty())
@@ -194,7 +201,7 @@ Json model_content(const SimKitti32Job& job, const Source& source) {
             {"poses", word_of(source.poses_are, kHeldOutPoses)}};
   const SplatMethod method = job.method;
   Json json = {{"method", word_of(method, kSplatMethods)}};
-  const MethodOptions recipe = MethodChoice{.method = method}.recipe();
+  const MethodOptions recipe = recipe_of(job);
   std::visit([&json](const auto& settings) { put_settings(settings, json); }, recipe);
   return json;
 }
@@ -302,7 +309,7 @@ class Simulation {
     model.load.scan_count = (source_.numbers.size() + job_.model_every - 1) / job_.model_every;
     model.load.scan_stride = job_.scans.stride * job_.model_every;
     model.load.driven_path_m = 0;  // labels identify what moved
-    model.build.recipe = MethodChoice{.method = job_.method}.recipe();
+    model.build.recipe = recipe_of(job_);
     model.build.remove = DynamicRemoval::moving;
     model.calibration.on = false;  // scans are simulated at the sequence's own poses
     result.model = run_model(model, folder_.path() / kModelFile, session_);

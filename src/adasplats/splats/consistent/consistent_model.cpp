@@ -156,7 +156,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
   if (chosen.fit_scale && chosen.has_default_sizes()) report.scale = fitting_scale(steps, chosen);
   ConsistentOptions options = chosen.scaled(report.scale);
   // Refinement decides about disks that some rays pass.
-  if (options.refine_rounds > 0) options.judge.min_share = kMinConfirmed;
+  if (options.refine) options.judge.min_share = kMinConfirmed;
   report.cell_m = options.cell_m;
   if (steps.counts().points > 0)
     report.spacing_m = options.cell_m / std::sqrt(points_per_cell(steps.counts()));
@@ -196,9 +196,9 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
       steps.fill_gaps(options);
       report.splats_filled = steps.counts().disks - before;
     }
-    if (options.refine_rounds > 0) {
-      begin_step("refinement", options.refine_rounds);
-      for (int i = 0; i < options.refine_rounds; ++i) steps.refine_extents(options);
+    if (options.refine) {
+      begin_step("refinement", options.extent.rounds);
+      for (int i = 0; i < options.extent.rounds; ++i) steps.refine_extents(options);
       steps.soften(options);
     }
   }

@@ -77,7 +77,7 @@ struct ConsistentOptions {
   bool fill = true;        ///< restore seeds where rays pass between splats...
   float missed_m = 0.15F;  ///< ...if no splat is within this distance behind the ray's end...
   float met_m = 0.4F;      ///< ...and within this distance before it
-  int refine_rounds = 0;   ///< of estimating opacities and radii from rays; 0: not refined
+  bool refine = true;      ///< estimate opacities and radii from rays; else splats are opaque
   ExtentOptions extent;
   /// Scale the default cells and limits for small dense objects; false for tiles of a city, which
   /// share their cells.
@@ -150,13 +150,11 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .help = "Add small splats where measured rays pass through the surface",
                 .group = kGroup},
         consistent.fill);
-  visit(Setting{.name = "refine_rounds",
-                .help =
-                    "Rounds of refining opacities and radii of splats by measured rays; 0: opaque "
-                    "splats",
-                .group = kGroup,
-                .min = 0},
-        consistent.refine_rounds);
+  visit(Setting{.name = "refine",
+                .help = "Estimate opacities and radii of splats from the rays that pass them and "
+                        "end at them; otherwise they are opaque",
+                .group = kGroup},
+        consistent.refine);
 }
 
 /// Errors: usage (an option out of range).

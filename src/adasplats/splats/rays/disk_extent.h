@@ -15,6 +15,7 @@ namespace adasplats {
 
 /// How the extents of disks are refined; sources of the numbers: docs/research/consistent.md.
 struct ExtentOptions {
+  int rounds = 4;
   float error_scale_m = 0.03F;   ///< of the Cauchy distribution of range errors
   float stray_per_m = 0.002F;    ///< density of ranges that no disk explains
   float beyond_m = 1;            ///< length of rays behind their ends
