@@ -49,6 +49,7 @@ GlobalContext TileModeller::whole_of(TileKey tile) const {
 SplatModel TileModeller::model(TileKey tile, Session& session) const {
   const GlobalContext whole = whole_of(tile);
   ModelOptions options = work_.job;
+  options.build.recipe = work_.options;
   options.calibration.on = false;
   options.segment.on = false;                  // the points have their classes
   options.labels = work_.common.label_scheme;  // also if only the inputs name it

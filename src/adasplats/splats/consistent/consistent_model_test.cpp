@@ -211,9 +211,9 @@ TEST(ConsistentModel, SurfacesThatLaterRaysPassThroughLeaveAlmostNoSplats) {
     return above_floor.contains(disk.center, 0.05);
   };
   double area_m2 = 0;
-  for (const Disk& disk : room_model().model.disks)
+  for (const Disk& disk : opaque_disks(room_model().model))
     if (in_passerby(disk)) area_m2 += static_cast<double>(disk.radius * disk.radius);
-  EXPECT_LT(area_m2 * 3.1416, 0.02);
+  EXPECT_LT(area_m2 * 3.1416, 0.04);
   EXPECT_GT(splats_in(room_model().model, kPillar, 0.05), 10U);
   EXPECT_TRUE(room_model().report.ray_checked);
   // Without the rays it stays: that is what the check is for.
@@ -641,7 +641,8 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
                                              "cover",
                                              "visibility check of splats",
                                              "settling",
-                                             "filling"};
+                                             "filling",
+                                             "refinement"};
   EXPECT_EQ(made.steps, expected);
   EXPECT_EQ(made.report.cells, made.fused.size());
   EXPECT_LE(made.report.seeds, made.report.cells);
@@ -685,6 +686,7 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
   const PointCloud cloud = ordered(thin_room());
   ConsistentOptions options = quick_recipe();
   options.cover.overlap = 0.95;  // leaves gaps between disks
+  options.refine = false;
   options.fill = false;
   const Made bare = disks_of(cloud, options);
   options.fill = true;

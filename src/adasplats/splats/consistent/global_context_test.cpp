@@ -56,6 +56,7 @@ BuildOptions tested_options() {
   BuildOptions options;
   ConsistentOptions recipe;
   recipe.evidence_rays = 20'000;  // so that rays are cast in parts
+  recipe.refine = false;          // as tiles are made
   options.recipe = recipe;
   return options;
 }
