@@ -150,6 +150,13 @@ std::string protocol_text(const Lidar4dEvaluation& result) {
   return text;
 }
 
+std::string intensity_text(const ResimulateResult& result) {
+  if (!result.intensities) return "";
+  return "Intensities of beams within 50 cm: RMSE " + fixed(result.intensities->rmse_after_fit, 3) +
+         " of the full scale after a linear fit, rank correlation " +
+         fixed(result.intensities->rank_correlation, 2) + "\n";
+}
+
 std::string result_text(const HeldOutResult& result) {
   TextTable table({"beams", "rays", "no hit", "median", "MAE m", "RMSE m", "<5 cm", "<10 cm",
                    "<50 cm", "early", "late"});
@@ -165,8 +172,8 @@ std::string result_text(const HeldOutResult& result) {
   return table.text() + "\nPoses: " + std::string(word_of(result.poses, words_of(result.poses))) +
          "; beams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
          fixed(clouds.chamfer_m2, 4) +
-         " m2; shares are of all rays, errors of the rays that hit\n" + returns_text(result) +
-         (result.lidar4d ? protocol_text(*result.lidar4d) : "");
+         " m2; shares are of all rays, errors of the rays that hit\n" + intensity_text(result) +
+         returns_text(result) + (result.lidar4d ? protocol_text(*result.lidar4d) : "");
 }
 
 class EvaluateResimulateCommand final : public ResultCommand {

@@ -20,6 +20,7 @@ namespace {
 constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr float kNearSurface_m = 0.5F;
 constexpr float kMinUp = static_cast<float>(EmptyBeamOptions{}.min_up);
 
 /// The stored result of one beam.
@@ -37,7 +38,8 @@ struct Beam {
 /// The counted beams of one scan, with the measured and the predicted points.
 struct CastScan {
   std::vector<Beam> beams;
-  PointCloud measured;   ///< sensor frame
+  std::vector<float> measured_intensities, predicted_intensities;  ///< of beams near the surface
+  PointCloud measured;                                             ///< sensor frame
   PointCloud predicted;  ///< sensor frame; beams without a hit have none
 };
 
@@ -69,10 +71,18 @@ Bins range_bins(const ResimulateOptions& options) {
 
 Bins incidence_bins() { return {{kIncidenceEdges_deg.begin(), kIncidenceEdges_deg.end()}, "deg"}; }
 
-double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
-  const double cosine =
-      std::fabs(static_cast<double>(dot(ray.direction, scene.unit_normal(primitive))));
-  return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
+double cos_incidence(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
+  return std::min(std::fabs(static_cast<double>(dot(ray.direction, scene.unit_normal(primitive)))),
+                  1.0);
+}
+
+/// What the sensor of the model would measure; NaN: unknown.
+float expected_intensity(const PrimitiveAttributes& scene, const Hit& hit, double cos_incidence) {
+  if (hit.primitive >= scene.intensities.size()) return std::numeric_limits<float>::quiet_NaN();
+  const float gain = scene.response == nullptr
+                         ? 1
+                         : scene.response->gain(hit.t, static_cast<float>(cos_incidence));
+  return scene.intensities[hit.primitive] * gain;
 }
 
 /// The measured points that count: finite, within the ranges, of classes that are kept.
@@ -117,10 +127,16 @@ BeamToCast beam_to_cast(const MeasuredBeam& beam, const RigidTransform& scene_fr
   return cast;
 }
 
+void add_intensities(float measured, float predicted, CastScan& scan) {
+  if (!std::isfinite(measured) || !std::isfinite(predicted)) return;
+  scan.measured_intensities.push_back(measured);
+  scan.predicted_intensities.push_back(predicted);
+}
+
 /// What the casts of all scans share.
 struct CastSettings {
   const Tracer& tracer;
-  const SceneView& scene;
+  const PrimitiveAttributes& scene;
   Vec3d scene_origin;
   const LabelScheme& labels;
   const ResimulateOptions& options;
@@ -166,8 +182,11 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.primitive = hits[k].primitive;
-    beam.incidence_bin =
-        setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
+    const double cosine = cos_incidence(setting.scene.view, rays[k], hits[k].primitive);
+    beam.incidence_bin = setting.incidences.bin_of(std::acos(cosine) * kDegreesPerRadian);
+    if (!scan.intensities.empty() && std::fabs(beam.error_m) <= kNearSurface_m)
+      add_intensities(scan.intensities[selected[k]],
+                      expected_intensity(setting.scene, hits[k], cosine), result);
     result.predicted.positions.push_back(vec_cast<float>(
         measured[k].origin + predicted_m / range_m * (measured[k].end - measured[k].origin)));
   }
@@ -276,6 +295,10 @@ void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
   }
 }
 
+void append(const std::vector<float>& from, std::vector<float>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
 void check(const ResimulateOptions& options) {
   if (!(options.min_range_m >= 0 && options.min_range_m < options.max_range_m &&
         std::isfinite(options.max_range_m))) {
@@ -287,20 +310,23 @@ void check(const ResimulateOptions& options) {
 
 }  // namespace
 
-ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                            const KittiSequence& sequence, const LabelScheme& labels,
-                            const ResimulateOptions& options, const Executor& executor,
-                            ProgressSink& progress, KeepBeams keep) {
+ResimulateResult resimulate(const Tracer& tracer, const PrimitiveAttributes& scene,
+                            Vec3d scene_origin, const KittiSequence& sequence,
+                            const LabelScheme& labels, const ResimulateOptions& options,
+                            const Executor& executor, ProgressSink& progress, KeepBeams keep) {
   check(options);
   const CastSettings setting{
       tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   std::vector<Beam> beams;
+  std::vector<float> measured_intensities, predicted_intensities;
   MeanCloudDistance clouds;
   ResimulateResult result;
   progress.begin_step("re-simulate", sequence.scans.size());
   for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
     CastScan scan = cast_scan(setting, sequence, index, executor);
     beams.insert(beams.end(), scan.beams.begin(), scan.beams.end());
+    append(scan.measured_intensities, measured_intensities);
+    append(scan.predicted_intensities, predicted_intensities);
     if (!scan.predicted.empty()) {
       clouds.add(cloud_distance(scan.predicted, scan.measured, executor));
     } else if (!scan.beams.empty()) {
@@ -319,6 +345,8 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });
   result.clouds = clouds.mean();
+  if (!measured_intensities.empty())
+    result.intensities = intensity_agreement(predicted_intensities, measured_intensities);
   result.beams = sequence.beams.description();
   add_breakdowns(result, beams, setting, !sequence.labels.empty());
   return result;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/evaluate/cloud_metrics.h"
+#include "adasplats/evaluate/intensity_agreement.h"
 #include "adasplats/scene/scene.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -59,6 +62,8 @@ struct ResimulateResult {
   /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D
   /// average over frames); NaN if no beam hits. Point counts are sums.
   CloudDistance clouds;
+  /// Of beams with an error of at most 50 cm; nothing unless both sides have intensities.
+  std::optional<IntensityAgreement> intensities;
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_surroundings;  ///< flat, rough, edge
@@ -72,10 +77,11 @@ struct ResimulateResult {
 /// Casts each measured beam of a held-out sequence again, from its origin (sequence.beams) through
 /// the measured point, and compares ranges. Incidence is the angle to the normal of the hit
 /// surface.
-ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                            const KittiSequence& sequence, const LabelScheme& labels,
-                            const ResimulateOptions& options, const Executor& executor,
-                            ProgressSink& progress, KeepBeams keep = KeepBeams::no);
+ResimulateResult resimulate(const Tracer& tracer, const PrimitiveAttributes& scene,
+                            Vec3d scene_origin, const KittiSequence& sequence,
+                            const LabelScheme& labels, const ResimulateOptions& options,
+                            const Executor& executor, ProgressSink& progress,
+                            KeepBeams keep = KeepBeams::no);
 
 /// Moves every scan of a sequence to where its beams fit the scene best, as if its pose had no
 /// error. Point to plane along the beams, against the normals of the surfaces that they hit, with

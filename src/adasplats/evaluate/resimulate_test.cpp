@@ -34,8 +34,9 @@ class Resimulate : public ::testing::Test {
     result.folder = folder_;
     result.scans = {folder_ / "velodyne" / "000000.bin"};
     std::ofstream scan(result.scans[0], std::ios::binary);
-    for (const Vec3f p : points) {
-      const std::array<float, 4> record = {p.x, p.y, p.z, 0.5F};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3f p = points[i];
+      const std::array<float, 4> record = {p.x, p.y, p.z, 0.1F * static_cast<float>(i + 1)};
       scan.write(reinterpret_cast<const char*>(record.data()), sizeof record);
     }
     if (!labels.empty()) {
@@ -58,7 +59,7 @@ class Resimulate : public ::testing::Test {
     const SceneView scene{disks, nullptr};
     const auto tracer = make_brute_force_tracer(scene);
     ProgressSink quiet;
-    return resimulate(*tracer, scene, origin_, held_out, semantickitti_labels(), options,
+    return resimulate(*tracer, {.view = scene}, origin_, held_out, semantickitti_labels(), options,
                       Executor(2), quiet, keep);
   }
 
@@ -176,9 +177,15 @@ TEST_F(Resimulate, HoleOfKnownShare) {
   const SceneView scene{disks, nullptr};
   const auto tracer = make_brute_force_tracer(scene);
   ProgressSink quiet;
-  const ResimulateResult r = resimulate(*tracer, scene, origin_, sequence(points),
-                                        semantickitti_labels(), {}, Executor(1), quiet);
+  const std::vector<float> intensities = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F};
+  const ResimulateResult r =
+      resimulate(*tracer, {.intensities = intensities, .view = scene}, origin_, sequence(points),
+                 semantickitti_labels(), {}, Executor(1), quiet);
   EXPECT_DOUBLE_EQ(r.all.no_hit, 0.3);
+  ASSERT_TRUE(r.intensities);
+  EXPECT_EQ(r.intensities->beams, 7U);
+  EXPECT_NEAR(r.intensities->rmse_after_fit, 0, 1e-6);
+  EXPECT_DOUBLE_EQ(r.intensities->rank_correlation, 1);
   EXPECT_DOUBLE_EQ(r.all.within.at(0.02), 0.7);
   EXPECT_EQ(r.clouds.simulated_points, 7U);
   EXPECT_NEAR(r.clouds.c2c_m, 0.0, 1e-5);

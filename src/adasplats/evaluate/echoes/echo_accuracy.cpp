@@ -13,26 +13,11 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/echoes/beam_grid.h"
+#include "adasplats/evaluate/intensity_agreement.h"
 #include "adasplats/evaluate/share.h"
 
 namespace adasplats {
 namespace {
-
-/// Ranks from 0; equal values share the mean of theirs.
-std::vector<double> ranks_of(std::span<const float> values) {
-  std::vector<std::uint32_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return values[a] != values[b] ? values[a] < values[b] : a < b;
-  });
-  std::vector<double> ranks(values.size());
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-    const double shared = 0.5 * static_cast<double>(begin + end - 1);
-    for (std::size_t k = begin; k < end; ++k) ranks[order[k]] = shared;
-  }
-  return ranks;
-}
 
 /// Of the beam to a disk or triangle, 0..1.
 float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
@@ -137,20 +122,6 @@ EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
   echo.reflectance = hit.primitive < intensities.size() ? intensities[hit.primitive]
                                                         : std::numeric_limits<float>::quiet_NaN();
   return echo;
-}
-
-double rank_correlation(std::span<const float> a, std::span<const float> b) {
-  if (a.size() != b.size()) throw std::logic_error("rank_correlation: sizes differ");
-  const std::vector<double> ranks_a = ranks_of(a), ranks_b = ranks_of(b);
-  const double middle = 0.5 * (static_cast<double>(a.size()) - 1);
-  double ab = 0, aa = 0, bb = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double from_a = ranks_a[i] - middle, from_b = ranks_b[i] - middle;
-    ab += from_a * from_b;
-    aa += from_a * from_a;
-    bb += from_b * from_b;
-  }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNaN;
 }
 
 IntensityAccuracy intensity_accuracy(const EchoScene& scene, const KittiSequence& sequence,

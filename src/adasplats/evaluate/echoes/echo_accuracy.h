@@ -41,10 +41,6 @@ struct IntensityAccuracy {
   double mae = 0;
 };
 
-/// Spearman's rank correlation, equal values sharing the mean of their ranks; NaN for fewer than
-/// two pairs or if one side does not vary. Throws std::logic_error if sizes differ.
-double rank_correlation(std::span<const float> a, std::span<const float> b);
-
 /// Casts the measured beams of the scans `indices` of a held-out sequence again, from their origins
 /// (sequence.beams). Errors: data (a model without intensities, no beam with an intensity
 /// that hits), those of read_kitti_scan.

@@ -15,20 +15,6 @@
 namespace adasplats {
 namespace {
 
-/// Oracles: the definition by hand; 4.5 / sqrt(4.5 * 5) for the ties.
-TEST(RankCorrelation, KnownValues) {
-  const auto correlation = [](std::vector<float> a, std::vector<float> b) {
-    return rank_correlation(a, b);
-  };
-  EXPECT_DOUBLE_EQ(correlation({1, 2, 3, 10}, {0, 5, 6, 7}), 1);
-  EXPECT_DOUBLE_EQ(correlation({1, 2, 3, 10}, {9, 5, 4, -7}), -1);
-  EXPECT_NEAR(correlation({1, 2, 2, 4}, {1, 3, 2, 4}), 4.5 / std::sqrt(22.5), 1e-12);
-  EXPECT_TRUE(std::isnan(correlation({}, {})));
-  EXPECT_TRUE(std::isnan(correlation({1}, {1})));
-  EXPECT_TRUE(std::isnan(correlation({1, 2, 3}, {5, 5, 5})));
-  EXPECT_THROW(correlation({1}, {}), std::logic_error);
-}
-
 TEST(DropAccuracy, CountsByHand) {
   BeamEchoes beams;
   const auto add = [&](bool hit, bool lost) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/core/constants.h"
+#include "adasplats/evaluate/intensity_agreement.h"
 #include "adasplats/evaluate/share.h"
 #include "adasplats/simulate/scan/intensity_rules.h"
 #include "adasplats/simulate/scan/ray_drop.h"

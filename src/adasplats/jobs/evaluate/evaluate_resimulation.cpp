@@ -256,7 +256,7 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
                                     const HeldOutExtras& extras, Session& session) {
   const LabelScheme scheme = load_label_scheme(labels);
   const auto cast = [&](const KittiSequence& scans, KeepBeams keep = KeepBeams::no) {
-    return resimulate(scene.tracer(), scene.view(), scene.origin(), scans, scheme, options,
+    return resimulate(scene.tracer(), scene.attributes(), scene.origin(), scans, scheme, options,
                       session.executor, session.progress, keep);
   };
   require_same_place(scene, sequence);
@@ -349,6 +349,12 @@ nlohmann::ordered_json to_json(const ResimulateResult& result) {
   nlohmann::ordered_json json = to_json(result.all);
   json.update(to_json(result.clouds));
   json["beams"] = result.beams;
+  json["intensity"] = nullptr;
+  if (result.intensities)
+    json["intensity"] = {
+        {"beams", result.intensities->beams},
+        {"rmse_after_fit", finite_or_null(result.intensities->rmse_after_fit)},
+        {"rank_correlation", finite_or_null(result.intensities->rank_correlation)}};
   const auto add = [&](const char* key, const auto& parts) {
     json[key] = nlohmann::ordered_json::object();
     for (const auto& [name, accuracy] : parts) json[key][name] = to_json(accuracy);
