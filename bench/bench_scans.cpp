@@ -161,7 +161,7 @@ nlohmann::ordered_json measure_all(const bench::Arguments& arguments) {
   ScanSettings plain;
   plain.sensor = load_lidar_model(sensor);
   ScanSettings rich = plain;
-  rich.beam.depth = 5;
+  if (!scene.has_opacities()) rich.beam.depth = 5;
   rich.beam.sub_rays = 7;
   rich.beam.returns = 2;
   rich.weather.rain_mm_h = 10;

@@ -41,7 +41,7 @@ class City(ProgramTest):
         report = self.report(*self.command())
         whole = self.folder / "whole.ply"
         self.run_good("model", self.cloud, "--labels", "semantickitti", "--device", "cpu", "-o",
-                      whole)
+                      whole, "--no-refine")
         columns, expected = splats_of(whole)
         found = []
         for tile in self.tiles():
@@ -63,7 +63,7 @@ class City(ProgramTest):
         self.run_good(*self.command())
         whole = self.folder / "whole.ply"
         self.run_good("model", self.cloud, "--labels", "semantickitti", "--device", "cpu", "-o",
-                      whole)
+                      whole, "--no-refine")
         scans = {}
         for name, model, words in [("whole", whole, []), ("tiles", self.city, []),
                                    ("few", self.city, ["--tile-memory", "1e-9"])]:
@@ -88,7 +88,7 @@ class City(ProgramTest):
         self.assertEqual((facts["kind"], facts["tiles"]), ("city of splats", len(self.tiles())))
         whole = self.folder / "whole.ply"
         self.run_good("model", self.cloud, "--labels", "semantickitti", "--device", "cpu", "-o",
-                      whole)
+                      whole, "--no-refine")
         scans = []
         for model in [self.city, whole]:
             output = self.folder / f"scans of {model.name}"
@@ -182,7 +182,8 @@ class City(ProgramTest):
         command = ["model", street, "--labels", "semantickitti", "--device", "cpu", "--threads", "2"]
         needed_gb = 10 * len(place) * 340e-9  # kModelBytesAPoint
         # It fits.
-        self.run_good(*command, "--memory", f"{2.5 * needed_gb:.6f}", "-o", self.folder / "whole.ply")
+        self.run_good(*command, "--memory", f"{2.5 * needed_gb:.6f}", "-o", self.folder / "whole.ply",
+                      "--no-refine")
         self.run_bad(64, *command, "--memory", "1", "-o", self.city,
                      says=["fit", "city.ply", "--tile 64"])
         self.run_bad(66, "model", self.folder / "none.las", "--memory", "1", "-o", self.city,

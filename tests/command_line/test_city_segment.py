@@ -59,7 +59,7 @@ class SegmentedCity(ProgramTest):
         for options in [self.options(), ["--segment", "--device", "cpu"]]:
             for remove in ["movable", "none"]:
                 words = [*options, "--remove", remove]
-                expected = self.report("model", self.bare, "-o", whole, *words)
+                expected = self.report("model", self.bare, "-o", whole, "--no-refine", *words)
                 report = self.report("model", self.bare, "-o", self.city, "--tile", "6", "--halo",
                                      "20", "--overwrite", *words)
                 self.assert_is_whole(report, whole, expected)

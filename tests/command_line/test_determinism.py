@@ -37,6 +37,9 @@ class Determinism(ProgramTest):
         self.assertEqual(len(models), 1)
         self.assertEqual(len(scans), 1)
         self.assertIn(b"property float opacity", models.pop())
+        self.run_bad(64, "simulate", model, "-o", self.folder / "deep", "--depth", "5",
+                     "--trajectory", street / "true_driving_trajectory.csv",
+                     says=["--depth", "opacities"])
         gaussians = self.folder / "gaussians.ply"
         self.run_good("export", model, "-o", gaussians, "--format", "gaussian-3d")
         header, values = gaussians.read_bytes().split(b"end_header\n")

@@ -31,7 +31,7 @@ weights = [-3, 0.1, 0, 0, 0, 0, 0, 0]
 class Manifest(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.place = self.model()
+        self.place = self.model("model.ply", "--no-refine")
         self.count = 0
 
     def file(self, name, text):

@@ -72,8 +72,8 @@ class Render(ProgramTest):
             bounds = [(0, 14.75), (-5, 5), (0, 4)]
             for box, shift in zip(boxes, [(0, 0, 0), (dx, dy, dz)]):
                 for k, (low, high) in enumerate(bounds):
-                    self.assertAlmostEqual(float(box[2 * k]), low + shift[k], delta=0.7)
-                    self.assertAlmostEqual(float(box[2 * k + 1]), high + shift[k], delta=0.7)
+                    self.assertAlmostEqual(float(box[2 * k]), low + shift[k], delta=1.2)
+                    self.assertAlmostEqual(float(box[2 * k + 1]), high + shift[k], delta=1.2)
             self.assertFalse(picture.exists())
 
     def test_films(self):

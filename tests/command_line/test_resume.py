@@ -18,7 +18,7 @@ SCANS = 161  # of three poses, 0.2 s apart in all, at 800 Hz
 class Resume(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.place = self.model()
+        self.place = self.model("model.ply", "--no-refine")
         self.output = self.folder / "out"
         self.unfinished = self.folder / ".out.unfinished"
         self.journal = self.unfinished / "journal.sha256"

@@ -144,16 +144,17 @@ double agreement_of(const ModelScene& scene, const Source& source, const LabelSc
 std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarModel& sensor,
                                        Source& source, Session& session) {
   if (job.model.empty()) return nullptr;
-  auto given = std::make_unique<ModelScene>(job.model, job.labels, session);
+  session.progress.begin_step("load " + job.model.filename().string(), 0);
+  AnyModel model = load_any_model_or_city(job.model);
+  // Averages of hits are those of opaque splats.
+  if (auto* splats = std::get_if<SplatModel>(&model); splats != nullptr && job.depth > 1)
+    *splats = opaque(std::move(*splats));
+  auto given =
+      std::make_unique<ModelScene>(std::move(model), load_label_scheme(job.labels), session);
   if (given->attributes().classes.empty())
     throw Error(ErrorKind::data, job.model.string() +
                                      ": has no classes for the simulated points (make the model "
                                      "of points with labels)");
-  if (given->splats() != nullptr && !given->splats()->opacities.empty() && job.depth > 1)
-    throw Error(ErrorKind::usage, job.model.string() +
-                                      ": its splats have opacities, and `depth` averages the hits "
-                                      "of opaque ones; make the model without `refine`, or "
-                                      "choose a depth of 1");
   apply_calibration(*given, source);
   require_in_view(*given, motions_of(job, source), sensor);
   const LabelScheme labels = load_label_scheme(job.labels);

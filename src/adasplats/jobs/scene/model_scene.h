@@ -54,6 +54,7 @@ class ModelScene final : public ScanScene {
   const PrimitiveAttributes& attributes() const { return attributes_; }
   /// The same, created on first use and shared by all sensors in the scene.
   std::shared_ptr<const PrimitiveTable> primitive_table() const override;
+  bool has_opacities() const override { return !view().opacities.empty(); }
   float highest_intensity() const override;
   std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const override;
   const World* world() const override { return world_ ? &*world_ : nullptr; }

@@ -30,6 +30,8 @@ class ScanScene {
   virtual const LabelScheme* labels() const = 0;
   /// The attributes of primitives, shared by all sensors.
   virtual std::shared_ptr<const PrimitiveTable> primitive_table() const = 0;
+  /// Whether a ray ends at the most likely surface of soft splats (SoftHits).
+  virtual bool has_opacities() const { return false; }
   /// Of model and objects; 0 if there are no intensities.
   virtual float highest_intensity() const = 0;
   /// World box of the middle 98 % of the splats or vertices along each axis, or a larger one.

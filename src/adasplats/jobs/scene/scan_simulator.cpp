@@ -11,8 +11,12 @@
 namespace adasplats {
 namespace {
 
-ScanSettings checked(ScanSettings settings) {
+ScanSettings checked(ScanSettings settings, const ScanScene& scene) {
   check(settings);
+  if (settings.beam.depth > 1 && scene.has_opacities())
+    throw Error(ErrorKind::usage,
+                "`depth` averages the hits of opaque splats, and those of the model have "
+                "opacities: rays already end at the mean of a surface's hits (use `depth` 1)");
   return settings;
 }
 
@@ -21,7 +25,7 @@ ScanSettings checked(ScanSettings settings) {
 ScanSimulator::ScanSimulator(const ScanScene& scene, ScanSettings settings,
                              const Executor& executor)
     : scene_(scene),
-      settings_(checked(std::move(settings))),
+      settings_(checked(std::move(settings), scene)),
       executor_(executor),
       rules_(settings_.sensor, firings_of(settings_.sensor, 0), settings_,
              scene.primitive_table()) {}

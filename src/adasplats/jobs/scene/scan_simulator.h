@@ -22,7 +22,8 @@ class ScanSimulator {
   /// memory that it leaves is reused. An exception ends the run and reaches the caller.
   using Sink = ScanCaster::ScanSink;
 
-  /// Scene and executor must outlive it. Errors: those of check().
+  /// Scene and executor must outlive it. Errors: those of check(), usage (a depth above 1 in a
+  /// scene with opacities).
   ScanSimulator(const ScanScene& scene, ScanSettings settings, const Executor& executor);
 
   const ScanSettings& settings() const { return settings_; }
