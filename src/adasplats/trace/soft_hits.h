@@ -62,7 +62,7 @@ class SoftHits {
   /// The surface with the highest probability that the ray ends there: the weighted mean of its
   /// hits, and the disk with the highest weight. Not valid() if the ray rather passes all disks.
   ADASPLATS_HD Hit most_likely() const {
-    float weights[kMost];  // NOLINT: filled here, as far as there are hits
+    float weights[kMost] = {};
     float passes = 1;
     for (int k = 0; k < kMost; ++k) {
       if (!hits_[k].valid()) break;
