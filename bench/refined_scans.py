@@ -44,11 +44,13 @@ def main():
                 run("bench_scans", folder / f"{name}.ply", street / "true_driving_trajectory.csv",
                     "--device", device, "--scans", scans, "--json", part)
                 measured = json.loads(part.read_text())
-                report["provenance"] = measured["provenance"] | {
-                    "command": "bench/refined_scans.py BIN_DIR OUT.json"}
+                if report["provenance"] is None:  # the first device is the GPU
+                    report["provenance"] = measured["provenance"] | {
+                        "command": "bench/refined_scans.py BIN_DIR OUT.json"}
                 rates[name] = {key: value for key, value in measured["plain"].items()
                                if key.endswith("_per_s")}
                 rates[name]["splats"] = measured["splats"]
+            rates["device"] = measured["provenance"]["device"]["name"]
             rates["ratio"] = {key: rates["refined"][key] / rates["opaque"][key]
                               for key in rates["opaque"] if key.endswith("_per_s")}
             report["devices"][device] = rates
