@@ -27,6 +27,8 @@ def figures_of(beams):
                "early_50cm": beams["early_50cm"], "late_50cm": beams["late_50cm"],
                "median_m": beams["range_error_m"]["median"], "rmse_m": beams["range_error_m"]["rmse"],
                "within": beams["within"]}
+    if beams.get("intensity"):
+        figures["intensity"] = beams["intensity"]
     if "by_surroundings" in beams:
         figures["within_10cm_of"] = {name: part["within"]["0.10"]
                                      for name, part in beams["by_surroundings"].items()}
