@@ -168,9 +168,13 @@ def test_simulate(street, poses, tmp_path, options):
             arguments.append("--no-" + name)
         else:
             arguments += [flag, value]
-    run_program("simulate", street.model, "--sensor", sensor, "--trajectory", street.sequence, "-o",
+    model = street.model
+    if "depth" in options:  # averages hits of opaque splats
+        model = tmp_path / "opaque.ply"
+        run_program("model", street.cloud, "-o", model, "--labels", "semantickitti", "--no-refine")
+    run_program("simulate", model, "--sensor", sensor, "--trajectory", street.sequence, "-o",
                 tmp_path / "cli", "--format", "npy", *arguments)
-    scene = adasplats.Scene(street.model, device="cpu", threads=options.pop("threads", 0))
+    scene = adasplats.Scene(model, device="cpu", threads=options.pop("threads", 0))
     scans = scene.simulate(sensor, poses, **options)
     scans.save(tmp_path / "python", format="npy")
     assert files_of(tmp_path / "python") == files_of(tmp_path / "cli")
