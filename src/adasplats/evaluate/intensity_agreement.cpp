@@ -60,6 +60,22 @@ double rank_correlation(std::span<const float> a, std::span<const float> b) {
                                     : std::numeric_limits<double>::quiet_NaN();
 }
 
+float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
+  return std::min(std::fabs(dot(direction, view.unit_normal(primitive))), 1.0F);
+}
+
+float expected_intensity(const PrimitiveAttributes& scene, const Ray& ray, const Hit& hit) {
+  if (hit.primitive >= scene.intensities.size()) return std::numeric_limits<float>::quiet_NaN();
+  const float reflectance = scene.intensities[hit.primitive];
+  if (scene.response == nullptr) return reflectance;
+  return reflectance *
+         scene.response->gain(hit.t, cos_incidence(scene.view, ray.direction, hit.primitive));
+}
+
+double full_scale_of(std::span<const float> measured) {
+  return !measured.empty() && std::ranges::max(measured) > 1 ? 255 : 1;
+}
+
 IntensityAgreement intensity_agreement(std::span<const float> predicted,
                                        std::span<const float> measured) {
   IntensityAgreement result;
@@ -69,9 +85,9 @@ IntensityAgreement intensity_agreement(std::span<const float> predicted,
   if (measured.empty()) return result;
   const Deviations sums = deviations(predicted, measured, mean_of(predicted), mean_of(measured));
   const double explained = sums.aa > 0 ? sums.ab * sums.ab / sums.aa : 0;
-  const double scale = std::ranges::max(measured) > 1 ? 255 : 1;
   result.rmse_after_fit =
-      std::sqrt(std::max(sums.bb - explained, 0.0) / static_cast<double>(result.beams)) / scale;
+      std::sqrt(std::max(sums.bb - explained, 0.0) / static_cast<double>(result.beams)) /
+      full_scale_of(measured);
   return result;
 }
 

@@ -71,20 +71,6 @@ Bins range_bins(const ResimulateOptions& options) {
 
 Bins incidence_bins() { return {{kIncidenceEdges_deg.begin(), kIncidenceEdges_deg.end()}, "deg"}; }
 
-double cos_incidence(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
-  return std::min(std::fabs(static_cast<double>(dot(ray.direction, scene.unit_normal(primitive)))),
-                  1.0);
-}
-
-/// What the sensor of the model would measure; NaN: unknown.
-float expected_intensity(const PrimitiveAttributes& scene, const Hit& hit, double cos_incidence) {
-  if (hit.primitive >= scene.intensities.size()) return std::numeric_limits<float>::quiet_NaN();
-  const float gain = scene.response == nullptr
-                         ? 1
-                         : scene.response->gain(hit.t, static_cast<float>(cos_incidence));
-  return scene.intensities[hit.primitive] * gain;
-}
-
 /// The measured points that count: finite, within the ranges, of classes that are kept.
 std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::filesystem::path& file,
                                          const LabelScheme& labels,
@@ -182,11 +168,11 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.primitive = hits[k].primitive;
-    const double cosine = cos_incidence(setting.scene.view, rays[k], hits[k].primitive);
+    const double cosine = cos_incidence(setting.scene.view, rays[k].direction, hits[k].primitive);
     beam.incidence_bin = setting.incidences.bin_of(std::acos(cosine) * kDegreesPerRadian);
     if (!scan.intensities.empty() && std::fabs(beam.error_m) <= kNearSurface_m)
       add_intensities(scan.intensities[selected[k]],
-                      expected_intensity(setting.scene, hits[k], cosine), result);
+                      expected_intensity(setting.scene, rays[k], hits[k]), result);
     result.predicted.positions.push_back(vec_cast<float>(
         measured[k].origin + predicted_m / range_m * (measured[k].end - measured[k].origin)));
   }

@@ -19,11 +19,6 @@
 namespace adasplats {
 namespace {
 
-/// Of the beam to a disk or triangle, 0..1.
-float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
-  return std::min(std::fabs(dot(direction, view.unit_normal(primitive))), 1.0F);
-}
-
 /// Pairs of intensities of one scan.
 struct IntensityPairs {
   std::vector<float> predicted;
@@ -46,14 +41,11 @@ void add_pairs(IntensityPairs& pairs, const EchoScene& scene, const KittiSequenc
     }
   });
   scene.tracer.nearest(rays, hits, executor);
-  const IntensityResponse* response = scene.attributes.response;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!hits[i].valid() || !std::isfinite(scan.intensities[i])) continue;
-    const EchoConditions echo = echo_of(scene, rays[i], hits[i]);
-    if (!std::isfinite(echo.reflectance)) continue;
-    const float gain =
-        response == nullptr ? 1.0F : response->gain(echo.range_m, echo.cos_incidence);
-    pairs.predicted.push_back(echo.reflectance * gain);
+    const float expected = expected_intensity(scene.attributes, rays[i], hits[i]);
+    if (!std::isfinite(expected)) continue;
+    pairs.predicted.push_back(expected);
     pairs.measured.push_back(scan.intensities[i]);
   }
 }

@@ -65,10 +65,9 @@ UnitIntensityAccuracy accuracy_of(const MeasuredIntensities& pairs) {
     return accuracy;
   }
   accuracy.rank_correlation = rank_correlation(pairs.expected, pairs.measured);
-  const double scale = std::ranges::max(pairs.measured) > 1 ? 255 : 1;
   accuracy.rmse_after_curve =
       std::sqrt(std::max(squares_after_curve(pairs), 0.0) / static_cast<double>(accuracy.returns)) /
-      scale;
+      full_scale_of(pairs.measured);
   return accuracy;
 }
 
