@@ -151,20 +151,32 @@ class Exports(ProgramTest):
         self.run_good("export", sequence, "-o", file)
         self.node("read_mcap.mjs", file, self.write_json("scans.json", expected))
 
-    def test_gaussians(self):
-        model = self.model()
+    def disks_of(self, model):
+        """The disks that Gaussians are to show: to where opacities fall to half."""
         columns = read_ply(model)
-        disks = [{"center": center, "normal": normal, "radius": radius, "color": COLORS[label]}
-                 for center, normal, radius, label in zip(
+        soft = "opacity" in columns
+        opacities = columns.get("opacity", [0.99] * len(columns["x"]))
+        disks = [{"center": center, "normal": normal, "radius": radius / (1.3 if soft else 1),
+                  "opacity": min(max(opacity, 1 / 255), 0.99), "color": COLORS[label]}
+                 for center, normal, radius, opacity, label in zip(
                      zip(columns["x"], columns["y"], columns["z"]),
                      zip(columns["nx"], columns["ny"], columns["nz"]), columns["radius"],
-                     columns["class"])]
+                     opacities, columns["class"])]
         self.assertEqual({disk["color"] for disk in disks}, set(COLORS.values()))
-        for kind in ["gaussian-3d", "gaussian-2d"]:
-            file = self.folder / f"{kind}.ply"
-            self.run_good("export", model, "-o", file, "--format", kind)
-            expected = self.write_json("disks.json", {"kind": kind, "disks": disks})
-            self.node("read_gaussians.mjs", file, expected)
+        return disks
+
+    def test_gaussians(self):
+        refined = self.model()
+        opaque = self.model("opaque.ply", "--no-refine")
+        self.assertIn("opacity", read_ply(refined))
+        self.assertNotIn("opacity", read_ply(opaque))
+        for model in [refined, opaque]:
+            disks = self.disks_of(model)
+            for kind in ["gaussian-3d", "gaussian-2d"]:
+                file = self.folder / f"{model.stem}-{kind}.ply"
+                self.run_good("export", model, "-o", file, "--format", kind)
+                expected = self.write_json("disks.json", {"kind": kind, "disks": disks})
+                self.node("read_gaussians.mjs", file, expected)
         disks[5]["radius"] *= 1.01
         self.node_refuses("read_gaussians.mjs", file,
                           self.write_json("other.json", {"kind": kind, "disks": disks}))

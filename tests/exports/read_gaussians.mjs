@@ -69,7 +69,7 @@ function check(gaussian, disk, i) {
   if (gaussian.scales.length > 2) assertNear(gaussian.scales[2] / sigma, 0.01, 1e-6, "thickness");
   const axis = new Vector3(0, 0, 1).applyQuaternion(gaussian.rotation);
   assertNear(axis.dot(new Vector3(...disk.normal)), 1, 1e-6, `normal of ${i}`);
-  assertNear(gaussian.opacity, 0.99, 0.005, `opacity of ${i}`);
+  assertNear(gaussian.opacity, disk.opacity, 0.005, `opacity of ${i}`);
 }
 
 const [file, expectedFile] = process.argv.slice(2);
