@@ -203,7 +203,7 @@ class Workshop:
             unit.name)
         return unit, report
 
-    def foretext(self, row):
+    def predicted(self, row):
         """The report of `evaluate unit` for held-out scans."""
         unit, _ = self.unit(row)
         drive, scans = self.drives[row.drive], row.held_out_scans or row.judged_scans
