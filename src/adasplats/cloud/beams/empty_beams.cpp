@@ -364,6 +364,108 @@ std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& s
   return beams;
 }
 
+// ---- lost beams ------------------------------------------------------------------------------
+
+/// A number for each sector of a degree of each ring.
+class Sectors {
+ public:
+  explicit Sectors(std::size_t rings) : values_(rings * kViewBins) {}
+
+  std::uint32_t& at(std::size_t ring, double azimuth_rad) {
+    return values_[ring * kViewBins + view_bin(azimuth_rad)];
+  }
+  std::uint32_t& operator[](std::size_t k) { return values_[k]; }
+  std::size_t size() const { return values_.size(); }
+
+ private:
+  std::vector<std::uint32_t> values_;
+};
+
+struct LostBeam {
+  EmptyBeam beam;
+  std::uint32_t sector;
+};
+
+/// The lost beams of one scan, and beams by sector.
+struct LostOfScan {
+  std::vector<LostBeam> beams;
+  Sectors returned, lost;
+};
+
+LostOfScan lost_of_scan(const PointCloud& cloud, const ScanRings& scan, const SweptRings& sweep,
+                        const EmptyBeamOptions& options) {
+  LostOfScan found{{}, Sectors(sweep.points.size()), Sectors(sweep.points.size())};
+  if (sweep.columns == 0) return found;
+  const double step_rad = kTurn_rad / static_cast<double>(sweep.columns);
+  const Mat3d sensor_from_world = scan.world_from_sensor.transposed();
+  const auto up_of = [&](const AzimuthPoint& p) {
+    return (sensor_from_world * beam_direction(cloud, p.point)).z;
+  };
+  for (std::size_t ring = 0; ring < sweep.points.size(); ++ring) {
+    const std::vector<AzimuthPoint>& points = sweep.points[ring];
+    if (points.size() < options.min_ring_points) continue;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const AzimuthPoint& last = points[k];
+      const AzimuthPoint& next = points[(k + 1) % points.size()];
+      ++found.returned.at(ring, last.azimuth_rad);
+      const double gap_rad = wrapped_rad(next.azimuth_rad - last.azimuth_rad);
+      const auto steps = static_cast<int>(std::round(gap_rad / step_rad));
+      if (steps < 2 || gap_rad > 2 * options.max_away_rad) continue;
+      const double up_last = up_of(last), up_next = up_of(next);
+      const Vec3f from = cloud.sensor_positions[last.point];
+      const Vec3f way = cloud.sensor_positions[next.point] - from;
+      for (int j = 1; j < steps; ++j) {
+        const double share = static_cast<double>(j) / steps;
+        const double azimuth_rad = wrapped_rad(last.azimuth_rad + share * gap_rad);
+        const double up = up_last + share * (up_next - up_last);
+        const double flat = std::sqrt(std::max(1 - up * up, 0.0));
+        const Vec3d direction = {flat * std::cos(azimuth_rad), flat * std::sin(azimuth_rad), up};
+        ++found.lost.at(ring, azimuth_rad);
+        found.beams.push_back(
+            {{from + static_cast<float>(share) * way,
+              vec_cast<float>(normalized(scan.world_from_sensor * direction)), scan.scan, true},
+             static_cast<std::uint32_t>(ring * kViewBins + view_bin(azimuth_rad))});
+      }
+    }
+  }
+  return found;
+}
+
+/// Whether the sensor was at places that are far enough apart to tell the vehicle from the scene.
+bool has_moved(const PointCloud& cloud, std::span<const ScanRings> scans) {
+  constexpr float kMinWay_m = 6;
+  std::optional<Vec3f> first;
+  for (const ScanRings& scan : scans) {
+    if (scan.points.empty()) continue;
+    const Vec3f place = cloud.sensor_positions[scan.points.front()];
+    if (!first) first = place;
+    if (length(place - *first) > kMinWay_m) return true;
+  }
+  return false;
+}
+
+/// Adds the lost beams of all scans except those in sectors that the vehicle blocks.
+void add_lost(const PointCloud& cloud, std::span<const ScanRings> scans,
+              std::vector<LostOfScan> of_scans, std::vector<EmptyBeam>& beams) {
+  constexpr std::size_t kMinScans = 3;
+  if (of_scans.empty()) return;
+  Sectors seen(of_scans.front().lost.size() / kViewBins), mostly_lost = seen;
+  for (LostOfScan& scan : of_scans) {
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const std::uint32_t returned = scan.returned[k], lost = scan.lost[k];
+      seen[k] += returned + lost > 0 ? 1 : 0;
+      mostly_lost[k] += lost > returned ? 1 : 0;
+    }
+  }
+  const bool may_block = has_moved(cloud, scans);
+  for (const LostOfScan& scan : of_scans)
+    for (const LostBeam& lost : scan.beams) {
+      const std::uint32_t k = lost.sector;
+      const bool blocked = may_block && seen[k] >= kMinScans && 4 * mostly_lost[k] >= 3 * seen[k];
+      if (!blocked) beams.push_back(lost.beam);
+    }
+}
+
 /// Azimuths at which any scan has points. Most sensors see all around, as a few points of the first
 /// scans say.
 FieldOfView view_of(const PointCloud& cloud, std::span<const ScanRings> scans,
@@ -398,18 +500,23 @@ std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeam
   std::vector<std::size_t> looked_at;
   for (std::size_t s = 0; s < scans.size(); ++s) {
     elevations_rad[s] = elevations_of(scans[s], recording, options);
-    if (may_have_empty(elevations_rad[s], scans[s], options)) looked_at.push_back(s);
+    if (options.lost || may_have_empty(elevations_rad[s], scans[s], options))
+      looked_at.push_back(s);
   }
   if (looked_at.empty()) return {};
   const FieldOfView view = view_of(cloud, scans, executor);
   std::vector<std::vector<EmptyBeam>> of_scans(looked_at.size());
+  std::vector<LostOfScan> lost(options.lost ? looked_at.size() : 0,
+                               LostOfScan{{}, Sectors(0), Sectors(0)});
   executor.for_chunks(looked_at.size(), 1, [&](std::size_t k, std::size_t) {
     const std::size_t s = looked_at[k];
     const SweptRings sweep = sweep_of(cloud, scans[s], std::move(elevations_rad[s]), options);
     of_scans[k] = beams_of_scan(cloud, scans[s], sweep, view, options);
+    if (options.lost) lost[k] = lost_of_scan(cloud, scans[s], sweep, options);
   });
   std::vector<EmptyBeam> beams;
   for (const auto& part : of_scans) beams.insert(beams.end(), part.begin(), part.end());
+  add_lost(cloud, scans, std::move(lost), beams);
   return beams;
 }
 

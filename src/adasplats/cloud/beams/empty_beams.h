@@ -28,6 +28,7 @@ struct EmptyBeamOptions {
   double max_moved_m = 0.1;
   /// z of the direction: lower beams may have met wet road, black paint or what is too far away.
   double min_up = 0.05;
+  bool lost = false;  ///< also find all other beams without return (EmptyBeam::lost)
 };
 
 /// Finds the beams of a spinning sensor that returned nothing; files leave them out. Each is
@@ -42,6 +43,11 @@ struct EmptyBeamOptions {
 /// give their origin. Call it before points are removed: where one was, its beam did return. Glass
 /// and distant objects return nothing either. By scans; empty if the rings or the steps cannot be
 /// determined. Time: a sort by scans and a few passes over the points.
+///
+/// Lost beams are those between neighbouring returns of a ring, as many as the gap has steps; it
+/// may be at most twice `max_away_rad`. Left out are sectors of a degree of a ring in which most
+/// beams are lost in three quarters of the scans: the vehicle blocks them. That needs three scans,
+/// from places that are 6 m apart.
 std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeamOptions& options,
                                         const Executor& executor);
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "adasplats/cloud/beams/spinning_sensor_test.h"
@@ -121,6 +122,80 @@ TEST(EmptyBeams, FarFromAllPointsOnlyWhereTheSensorHardlyMoved) {
   };
   EXPECT_GE(recall_at(0.05), 0.95);
   EXPECT_LE(recall_at(1), 0.8);
+}
+
+// ---- lost beams --------------------------------------------------------------------------------
+
+std::vector<EmptyBeam> lost_in(const std::vector<TestBeam>& beams, const SpinningSensor& sensor,
+                               int threads = 2) {
+  PointCloud cloud = cloud_of(beams);
+  add_lasers_and_poses(cloud, beams, sensor.world_from_sensor);
+  std::vector<EmptyBeam> found = find_empty_beams(cloud, {.lost = true}, Executor(threads));
+  std::erase_if(found, [](const EmptyBeam& beam) { return !beam.lost; });
+  return found;
+}
+
+/// The share of `some` that lie within half a step of one of `others`, from the same place.
+template <class A, class B>
+double share_among(const std::vector<A>& some, const std::vector<B>& others, double step_rad) {
+  double near = 0;
+  for (const A& a : some) {
+    near += std::ranges::any_of(others, [&](const B& b) {
+      return a.scan == b.scan &&
+             length(Vec3d(vec_cast<double>(a.direction)) - vec_cast<double>(b.direction)) <
+                 0.5 * step_rad &&
+             length(Vec3d(vec_cast<double>(a.origin)) - vec_cast<double>(b.origin)) < 0.1;
+    });
+  }
+  return some.empty() ? 0 : near / static_cast<double>(some.size());
+}
+
+/// Beams that met the ground or a wall and returned nothing.
+std::vector<TestBeam> lose_some(std::vector<TestBeam>& beams, double share) {
+  std::vector<TestBeam> lost;
+  for (std::size_t k = 0; k < beams.size(); ++k) {
+    if (!beams[k].returned() || Random(2, 0, k).uniform() >= share) continue;
+    lost.push_back(beams[k]);
+    beams[k].range_m = TestBeam().range_m;
+  }
+  return lost;
+}
+
+// Oracle: the beams that were made empty, and those that met the sky.
+TEST(LostBeams, AreBetweenTheReturnsOfARing) {
+  const SpinningSensor sensor = level();
+  auto beams = sensor.scans(2);
+  const std::vector<TestBeam> lost = lose_some(beams, 0.05);
+  const std::vector<EmptyBeam> found = lost_in(beams, sensor);
+  std::vector<TestBeam> empty = beams;
+  std::erase_if(empty, [](const TestBeam& beam) { return beam.returned(); });
+  EXPECT_GE(share_among(lost, found, sensor.step_rad()), 0.98);
+  EXPECT_GE(share_among(found, empty, sensor.step_rad()), 0.98);
+  EXPECT_EQ(found.size(), lost_in(beams, sensor, 3).size());
+}
+
+// The vehicle blocks a sector of the lower rings in every scan.
+TEST(LostBeams, SectorsThatTheVehicleBlocksAreLeftOut) {
+  SpinningSensor sensor = level();
+  const auto found_at = [&](double speed_m) {
+    sensor.speed_m = speed_m;
+    auto beams = sensor.scans(4);
+    for (TestBeam& beam : beams)
+      if (beam.ring > 18 && std::fabs(beam.azimuth_rad) < 4.6 * kDegree)
+        beam.range_m = TestBeam().range_m;
+    const std::vector<TestBeam> lost = lose_some(beams, 0.02);
+    std::size_t blocked = 0;
+    const std::vector<EmptyBeam> found = lost_in(beams, sensor);
+    EXPECT_GE(share_among(lost, found, sensor.step_rad()), 0.95);
+    for (const EmptyBeam& beam : found) {
+      const Vec3d d = sensor.world_from_sensor.transposed() * vec_cast<double>(beam.direction);
+      blocked += d.z < -0.2 && std::fabs(std::atan2(d.y, d.x)) < 4.2 * kDegree ? 1 : 0;
+    }
+    return blocked;
+  };
+  EXPECT_LE(found_at(3), 4U);
+  // From one place the scene may be what blocks them.
+  EXPECT_GE(found_at(0.5), 100U);
 }
 
 TEST(EmptyBeams, NoneOfScansThatWereThinnedAtRandom) {

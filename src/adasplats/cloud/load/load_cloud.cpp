@@ -512,7 +512,7 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   clock.end("place");
   // Before any point is removed: where one was, its beam did return.
   if (options.empty_beams && context.has_whole_scans)
-    cloud.empty_beams = find_empty_beams(cloud, {}, executor);
+    cloud.empty_beams = find_empty_beams(cloud, {.lost = options.lost_beams}, executor);
   clock.end("find empty beams");
   remove_points(cloud, std::move(moving), options, context.beyond, report, executor);
   report_own_body(name, report, options, progress);

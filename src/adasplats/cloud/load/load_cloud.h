@@ -65,9 +65,9 @@ struct LoadOptions : DriveSettings {
   /// Half width of the volume that the recording vehicle drove through, m. Points in it are removed
   /// (find_in_driven_path()); 0 keeps them.
   double driven_path_m = 0.6;
-  /// Also find the beams that returned nothing (find_empty_beams(), before points are removed) and
-  /// add them to the cloud.
-  bool empty_beams = false;
+  /// Also find the beams that met the sky (find_empty_beams(), before points are removed) and add
+  /// them to the cloud; and all others without return.
+  bool empty_beams = false, lost_beams = false;
   /// The columns of files to keep in PointCloud::others. For `all`, normals stay columns; else they
   /// orient points without a sensor position (OriginKind::guessed). Drives have only `timestamp`, s
   /// in the clock of the poses, if their points have times.

@@ -19,11 +19,14 @@
 
 namespace adasplats {
 
-/// A beam without return: the space along it is free.
+/// A beam without return.
 struct EmptyBeam {
   Vec3f origin;            ///< where it left the sensor, relative to the cloud's origin, m
   Vec3f direction;         ///< unit, world axes
   std::uint32_t scan = 0;  ///< number of its scan
+  /// False: it met the sky, so the space along it is free. True: unknown; it may have met a surface
+  /// that returned too little.
+  bool lost = false;
 };
 
 /// Columns of files that no attribute holds, with one value a point. Filled only on request
