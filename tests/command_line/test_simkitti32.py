@@ -334,7 +334,7 @@ class GivenModel(SequenceTest):
         self.assertFalse((self.output / "model.ply").exists())
         manifest = json.loads((self.output / "adasplats.json").read_text())
         digest = hashlib.sha256(before[0]).hexdigest()
-        self.assertEqual(manifest["model"], {"sha256": digest, "poses": "as given"})
+        self.assertEqual(manifest["model"], {"sha256": digest, "poses": "as given", "opaque": True})
         self.assertFalse({"method", "model_every", "keep_model"} & set(manifest))
         self.run_good(*self.given("--overwrite"))
         self.assertEqual((self.place.read_bytes(), self.place.stat().st_mtime_ns), before)

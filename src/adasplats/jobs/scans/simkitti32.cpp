@@ -199,7 +199,8 @@ MethodOptions recipe_of(const SimKitti32Job& job) {
 Json model_content(const SimKitti32Job& job, const Source& source) {
   if (!job.model.empty())
     return {{"sha256", sha256_of_file(job.model)},
-            {"poses", word_of(source.poses_are, kHeldOutPoses)}};
+            {"poses", word_of(source.poses_are, kHeldOutPoses)},
+            {"opaque", job.depth > 1}};
   const SplatMethod method = job.method;
   Json json = {{"method", word_of(method, kSplatMethods)}};
   const MethodOptions recipe = recipe_of(job);
