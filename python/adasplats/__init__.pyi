@@ -738,6 +738,10 @@ class Model:
     def opacities(self) -> NDArray[np.float32] | None:
         """(N,) float32: probability that a ray through the centre stops; None: opaque disks."""
     @property
+    def drop_log_odds(self) -> NDArray[np.float32] | None:
+        """(N,) float32: by how much the log odds of losing a return exceed those of other splats at
+        the same range and incidence; None: not measured."""
+    @property
     def classes(self) -> NDArray[np.uint16] | None:
         """(N,) uint16, ids of the label scheme, or None."""
     @property

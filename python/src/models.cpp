@@ -55,6 +55,7 @@ void fields(Archive& archive, SplatModel& model) {
   archive("classes", model.classes);
   archive("groups", model.groups);
   archive("intensities", model.intensities);
+  archive("drop_log_odds", model.drop_log_odds);
   archive("colors", model.colors);
   archive("response", model.response);
   archive("label_scheme", model.label_scheme);
@@ -265,6 +266,14 @@ void add_arrays(ModelClass& type) {
             return optional_view(model_of(self).opacities, model_of(self).size(), self);
           },
           "(N,) float32: probability that a ray through the centre stops; None: opaque disks.")
+      .def_property_readonly(
+          "drop_log_odds",
+          [](const py::object& self) {
+            return optional_view(model_of(self).drop_log_odds, model_of(self).size(), self);
+          },
+          "(N,) float32: by how much the log odds of losing a return exceed those of other splats "
+          "at "
+          "the same range and incidence; None: not measured.")
       .def_property_readonly(
           "classes",
           [](const py::object& self) {

@@ -108,6 +108,7 @@ void put_splats(ConsistentSplats made, SplatModel& model) {
 void put_reflectances(Reflectances made, SplatModel& model, BuildReport& report) {
   model.intensities = std::move(made.values);
   model.response = std::move(made.response);
+  model.drop_log_odds = std::move(made.drop_log_odds);
   report.reflectance_measured = !model.response.empty();
 }
 

@@ -78,6 +78,7 @@ void expect_same(const ConsistentSplats& a, const ConsistentSplats& b) {
 
 void expect_same(const Reflectances& a, const Reflectances& b) {
   EXPECT_EQ(count_different_unpadded(a.values, b.values), 0U) << "reflectances";
+  EXPECT_EQ(count_different_unpadded(a.drop_log_odds, b.drop_log_odds), 0U) << "lost beams";
   EXPECT_EQ(count_different_unpadded(a.response.range_gains, b.response.range_gains), 0U);
   EXPECT_EQ(count_different_unpadded(a.response.incidence_gains, b.response.incidence_gains), 0U);
   EXPECT_EQ(a.response.empty(), b.response.empty());
@@ -284,6 +285,15 @@ PointCloud room_with_intensities(float unit) {
     if (i % 100 == 7) cloud.intensities[i] = std::numeric_limits<float>::quiet_NaN();
   }
   return cloud;
+}
+
+TEST_F(ConsistentOnGpu, LostBeamsMatchTheCpu) {
+  PointCloud cloud = room_with_intensities(1);
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    const Vec3f sensor = cloud.sensor_positions[i];
+    cloud.empty_beams.push_back({sensor, normalized(cloud.positions[i] - sensor), 0, true});
+  }
+  EXPECT_TRUE(SideBySide(cloud).reflectances({}));
 }
 
 TEST_F(ConsistentOnGpu, ReflectancesMatchTheCpu) {

@@ -215,6 +215,7 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   ModelResult result;
   LoadOptions load = job.load;
   load.empty_beams = uses_empty_beams(job.build.recipe);
+  load.lost_beams = load.empty_beams;
   load.other_columns = KeptColumns::colors;
   const auto load_points = [&] {
     auto [cloud, loaded] = load_cloud(job.inputs, load, session.executor, session.progress);

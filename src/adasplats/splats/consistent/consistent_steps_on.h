@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -32,7 +35,12 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   std::size_t load(PointCloud cloud, const ClassTables& tables,
                    const GlobalContext* whole) override {
     [[maybe_unused]] const auto entered = backend_.enter();
-    const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
+    std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
+    std::ranges::replace(cloud.intensities, kLostIntensity,
+                         std::numeric_limits<float>::quiet_NaN());
+    std::vector<EmptyBeam> lost;
+    std::ranges::copy_if(empty, std::back_inserter(lost), &EmptyBeam::lost);
+    std::erase_if(empty, [](const EmptyBeam& beam) { return beam.lost; });
     const std::size_t beams = cloud.size() + (whole != nullptr ? whole->passing.size() : 0);
     beams_ = sample_beams(cloud, tables.removed, beams);
     if (whole != nullptr) append(beams_, sample_beams(whole->passing, {}, beams));
@@ -42,6 +50,11 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
       passing_ = backend_.load_in_given_order(whole->passing);
     } else if (!empty.empty()) {
       empty_ = backend_.load_in_given_order(ends_of(empty, empty_reach_m(cloud)));
+    }
+    if (!lost.empty() && !cloud.intensities.empty()) {
+      PointCloud ends = ends_of(lost, farthest_m(cloud));
+      ends.intensities.assign(ends.size(), kLostIntensity);
+      lost_ = backend_.load_in_given_order(std::move(ends));
     }
     if (cloud.has_beams() && !cloud.intensities.empty())
       removed_ = backend_.load_in_given_order(points_of_classes(cloud, tables.removed));
@@ -246,11 +259,13 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     [[maybe_unused]] const auto entered = backend_.enter();
     if (!rays_) order_rays(options);
     std::vector<RaysWithIntensities<Backend>> measured = {{&*rays_, &cloud_.intensities}};
-    std::optional<typename Backend::Rays> others;
-    if (removed_.size() > 0) {
-      others.emplace(
-          backend_.rays(removed_, points_of(removed_), options.min_range_m, RayEnds::at_surfaces));
-      measured.push_back({&*others, &removed_.intensities});
+    std::array<std::optional<typename Backend::Rays>, 2> others;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const typename Backend::Cloud& cloud = k == 0 ? removed_ : lost_;
+      if (cloud.size() == 0) continue;
+      others[k].emplace(
+          backend_.rays(cloud, points_of(cloud), options.min_range_m, RayEnds::at_surfaces));
+      measured.push_back({&*others[k], &cloud.intensities});
     }
     const IntensityResponse* response = whole_ && whole_->response ? &*whole_->response : nullptr;
     return ReflectancesOn<Backend>(backend_, disks, fallback, response).run(measured);
@@ -363,6 +378,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   typename Backend::Cloud empty_;    ///< ends_of() empty beams
   typename Backend::Cloud passing_;  ///< GlobalContext::passing
   typename Backend::Cloud removed_;  ///< points of removed classes, if intensities are measured
+  typename Backend::Cloud lost_;     ///< ends_of() lost beams, likewise
   typename Backend::Cells cells_;
   std::optional<typename Backend::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;

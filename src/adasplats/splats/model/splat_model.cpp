@@ -73,17 +73,20 @@ std::vector<T> whole_numbers(const std::filesystem::path& path, const Column& co
   return numbers;
 }
 
-std::vector<float> opacities_of(const std::filesystem::path& path, const Column& column,
-                                std::size_t rows) {
-  std::vector<float> opacities;
+constexpr int kMostDrop = 100;  // odds of e^100
+
+std::vector<float> numbers_within(const std::filesystem::path& path, const Column& column,
+                                  std::size_t rows, int low, int high) {
+  std::vector<float> numbers;
   for (std::size_t i = 0; i < rows; ++i) {
-    const double opacity = column.as_double(i);
-    if (!(opacity >= 0 && opacity <= 1))
-      throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ": opacity is " +
-                                           std::to_string(opacity) + ", expected 0 to 1");
-    opacities.push_back(static_cast<float>(opacity));
+    const double number = column.as_double(i);
+    if (!(number >= low && number <= high))
+      throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ": " + column.name + " is " +
+                                           std::to_string(number) + ", expected " +
+                                           std::to_string(low) + " to " + std::to_string(high));
+    numbers.push_back(static_cast<float>(number));
   }
-  return opacities;
+  return numbers;
 }
 
 std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, std::size_t rows) {
@@ -194,6 +197,7 @@ SplatModel opaque(SplatModel model) {
   keep(model.classes);
   keep(model.groups);
   keep(model.intensities);
+  keep(model.drop_log_odds);
   keep(model.colors);
   return model;
 }
@@ -231,6 +235,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
     columns.push_back({"group", ColumnType::u8, model.groups.data(), sizeof(SemanticGroup)});
   if (!model.intensities.empty())
     columns.push_back({"intensity", ColumnType::f32, model.intensities.data(), sizeof(float)});
+  if (!model.drop_log_odds.empty())
+    columns.push_back({"drop", ColumnType::f32, model.drop_log_odds.data(), sizeof(float)});
   if (!model.colors.empty())
     for (std::size_t k = 0; k < kRgbColumns.size(); ++k)
       columns.push_back({kRgbColumns[k], ColumnType::u8, &model.colors[0][k], sizeof(ColorBytes)});
@@ -266,7 +272,7 @@ SplatModel load_model(const std::filesystem::path& path) {
     model.disks.push_back(checked_disk(path, i, vec(position, i) - model.origin, vec(normal, i),
                                        radius.as_double(i)));
   if (const Column* opacities = table.find("opacity"))
-    model.opacities = opacities_of(path, *opacities, table.rows);
+    model.opacities = numbers_within(path, *opacities, table.rows, 0, 1);
   if (const Column* classes = table.find("class"))
     model.classes = whole_numbers<std::uint16_t>(path, *classes, table.rows, 0xffff);
   if (const Column* groups = table.find("group"))
@@ -274,6 +280,8 @@ SplatModel load_model(const std::filesystem::path& path) {
   if (const Column* intensities = table.find("intensity"))
     for (std::size_t i = 0; i < table.rows; ++i)
       model.intensities.push_back(static_cast<float>(intensities->as_double(i)));
+  if (const Column* drops = table.find("drop"))
+    model.drop_log_odds = numbers_within(path, *drops, table.rows, -kMostDrop, kMostDrop);
   model.colors = color_bytes(table.columns, table.rows);
   model.method = comment_value(table, kMethodComment);
   model.label_scheme = comment_value(table, kLabelsComment);

@@ -29,6 +29,9 @@ struct SplatModel {
   /// Reflectances if there is a `response`, else measured intensities of the seed point; empty if
   /// the points have none.
   std::vector<float> intensities;
+  /// By how much the log odds that a beam returns nothing exceed those of other splats at the same
+  /// range and incidence: glass, wet or black surfaces. Empty: not measured.
+  std::vector<float> drop_log_odds;
   std::vector<ColorBytes> colors;  ///< of the points (colors_of_disks()); empty if they have none
   IntensityResponse response;      ///< of the sensor that measured the intensities; empty: unknown
   std::string label_scheme;        ///< name or path for load_label_scheme; may be empty
@@ -50,10 +53,10 @@ std::vector<Disk> opaque_disks(const SplatModel& model);
 SplatModel opaque(SplatModel model);
 
 /// Writes a PLY file with one vertex per splat: x y z nx ny nz radius [opacity] [class] [group]
-/// [intensity] [red green blue] (x y z as doubles in world coordinates if the origin is not zero).
-/// Everything else is in comments "adasplats.KEY VALUE", the coordinate system in crs_comments(),
-/// the label scheme in "labels"; the response in "response_ranges_m", "response_range_gains",
-/// "response_cosines" and "response_cosine_gains"; the calibration in
+/// [intensity] [drop] [red green blue] (x y z as doubles in world coordinates if the origin is not
+/// zero). Everything else is in comments "adasplats.KEY VALUE", the coordinate system in
+/// crs_comments(), the label scheme in "labels"; the response in "response_ranges_m",
+/// "response_range_gains", "response_cosines" and "response_cosine_gains"; the calibration in
 /// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
 /// (rotation vector, shift), "calibration_smooth_s" and, one per scan, "calibration_pose": time,
 /// given position, rotation vector, shift.
@@ -61,8 +64,8 @@ void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads the files of save_model, and any other PLY file with x y z nx ny nz radius. Errors: data
 /// (no radius column, values that are not finite, radius <= 0, a normal whose length differs from 1
-/// by more than 1e-3, an opacity outside 0 to 1, an incomplete response or calibration). Without a
-/// response comment the response is empty.
+/// by more than 1e-3, an opacity outside 0 to 1, a `drop` outside -100 to 100, an incomplete
+/// response or calibration). Without a response comment the response is empty.
 SplatModel load_model(const std::filesystem::path& path);
 
 }  // namespace adasplats

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/scene/soft_disk.h"
 #include "adasplats/splats/model/any_model.h"
@@ -73,6 +74,21 @@ TEST(SplatModel, OpacitiesAreInTheFile) {
   model.opacities = {0.25F, 1.5F};
   save_model(folder.path() / "m.ply", model);
   expect_error(ErrorKind::data, {"m.ply", "splat 1: opacity is 1.5", "expected 0 to 1"},
+               [&] { load_model(folder.path() / "m.ply"); });
+}
+
+TEST(SplatModel, LogOddsOfLostBeamsAreInTheFile) {
+  const TemporaryFolder folder;
+  SplatModel model;
+  model.disks.assign(2, {{1, 2, 3}, 0.5F, {0, 0, 1}});
+  model.opacities = {0.25F, 1};
+  model.drop_log_odds = {-1.5F, 3};
+  save_model(folder.path() / "m.ply", model);
+  EXPECT_EQ(load_model(folder.path() / "m.ply").drop_log_odds, model.drop_log_odds);
+  EXPECT_EQ(opaque(model).drop_log_odds, std::vector<float>{3});
+  model.drop_log_odds[1] = kNaN;
+  save_model(folder.path() / "m.ply", model);
+  expect_error(ErrorKind::data, {"m.ply", "splat 1: drop is nan", "expected -100 to 100"},
                [&] { load_model(folder.path() / "m.ply"); });
 }
 

@@ -84,6 +84,14 @@ float empty_reach_m(const PointCloud& cloud) {
   return counts.empty_reach_m();
 }
 
+float farthest_m(const PointCloud& cloud) {
+  float farthest = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_beam(cloud.origin_kind(i)))
+      farthest = std::max(farthest, length(cloud.positions[i] - cloud.sensor_positions[i]));
+  return farthest;
+}
+
 void RangeCounts::add(float range_m) {
   const auto cm = static_cast<std::size_t>(std::min(range_m, kMax_m) / kUnit_m);
   if (cm >= counts_.size()) counts_.resize(cm + 1);

@@ -68,6 +68,8 @@ PointCloud ends_of(const std::vector<EmptyBeam>& beams, float reach_m);
 /// within this range, in whole centimetres. Farther surfaces may not return an echo. 0 without
 /// points.
 float empty_reach_m(const PointCloud& cloud);
+/// The largest range of a point with a beam; 0 without any.
+float farthest_m(const PointCloud& cloud);
 
 /// Histogram of ranges, for points that are not in memory at the same time.
 class RangeCounts {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "adasplats/core/fetch_add.h"
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/elementary.h"
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/reflectance/response_tables.h"
@@ -54,13 +57,18 @@ struct AddCounts {
   ADASPLATS_HD void operator()(std::size_t i, RayCount& all) const { all.rays += counts[i]; }
 };
 
+/// In place of the intensity of a beam without return.
+inline constexpr float kLostIntensity = -std::numeric_limits<float>::infinity();
+
 /// What one measured ray contributes to the disk that it met.
 struct Observation {
   static constexpr std::uint32_t kNone = 0xffffffffU;
   std::uint32_t disk = kNone;
-  float intensity = 0;        ///< divided by the unit of intensities, 0..1
+  float intensity = 0;        ///< divided by the unit of intensities, 0..1; or kLostIntensity
   float range_position = 0;   ///< position_among() the nodes of ranges
   float cosine_position = 0;  ///< position_among() the nodes of cosines of incidence
+
+  ADASPLATS_HD bool lost() const { return intensity < 0; }
 };
 
 /// Records the rays that meet the model near their ends, and counts them by disk.
@@ -89,11 +97,13 @@ struct ObserveRay {
     // Chosen well above the model's errors (median 3 cm, docs/results.md): a ray that ends farther
     // away met another object.
     const float tolerance_m = 0.2F + 0.005F * range_m;
-    if (!hit.valid() || !std::isfinite(intensity)) return {};
-    if (!(std::fabs(hit.t - range_m) < tolerance_m)) return {};
+    const bool lost = intensity == kLostIntensity;
+    if (!hit.valid() || (!std::isfinite(intensity) && !lost)) return {};
+    if (!lost && !(std::fabs(hit.t - range_m) < tolerance_m)) return {};
     const float cosine = std::min(std::fabs(dot(ray.direction, disks[hit.primitive].normal)), 1.0F);
     const double share = static_cast<double>(std::max(intensity, 0.0F)) * per_intensity;
-    return {hit.primitive, static_cast<float>(share), position_among(nodes.ranges_m, range_m),
+    return {hit.primitive, lost ? kLostIntensity : static_cast<float>(share),
+            position_among(nodes.ranges_m, lost ? hit.t : range_m),
             position_among(nodes.cosines, cosine)};
   }
 };
@@ -158,6 +168,7 @@ struct SumOfDisk {
     ValueSums sum;
     for (std::uint64_t k = begins[disk]; k < begins[disk + 1]; ++k) {
       const Observation& seen = observations[k];
+      if (seen.lost()) continue;
       const float gain = value_at(gains.of_ranges, seen.range_position) *
                          value_at(gains.of_cosines, seen.cosine_position);
       const double share = static_cast<double>(gain) * per_gain;
@@ -219,6 +230,92 @@ struct SetReflectances {
 using RangeSums = TableSums<ResponseNodes::kRanges>;
 using CosineSums = TableSums<ResponseNodes::kCosines>;
 
+// ---- lost beams ------------------------------------------------------------------------------
+
+/// Index of the node nearest to a position_among().
+ADASPLATS_HD inline std::size_t nearest_node(float position) {
+  return static_cast<std::size_t>(position + 0.5F);
+}
+
+/// By node: lost beams, and how many of them are expected, in units of kShareUnit.
+template <std::size_t N>
+struct LossSums {
+  std::array<std::int64_t, N> lost = {};
+  std::array<std::int64_t, N> expected = {};
+
+  ADASPLATS_HD LossSums& operator+=(const LossSums& other) {
+    for (std::size_t k = 0; k < N; ++k) {
+      lost[k] += other.lost[k];
+      expected[k] += other.expected[k];
+    }
+    return *this;
+  }
+};
+
+/// Shares of lost beams by range, and factors on them by incidence.
+struct LossRates {
+  std::array<float, ResponseNodes::kRanges> of_ranges;
+  std::array<float, ResponseNodes::kCosines> of_cosines;
+
+  ADASPLATS_HD double share(const Observation& seen) const {
+    constexpr double kMost = 0.9;
+    const double product = static_cast<double>(of_ranges[nearest_node(seen.range_position)]) *
+                           static_cast<double>(of_cosines[nearest_node(seen.cosine_position)]);
+    return product < kMost ? product : kMost;
+  }
+};
+
+/// Expects the loss of every beam.
+struct AddLossByRange {
+  const Observation* observations;
+
+  ADASPLATS_HD void operator()(std::size_t i, LossSums<ResponseNodes::kRanges>& sums) const {
+    const std::size_t node = nearest_node(observations[i].range_position);
+    sums.lost[node] += observations[i].lost() ? 1 : 0;
+    sums.expected[node] += whole_units(1);
+  }
+};
+
+/// Expects the losses by range.
+struct AddLossByCosine {
+  const Observation* observations;
+  LossRates rates;
+
+  ADASPLATS_HD void operator()(std::size_t i, LossSums<ResponseNodes::kCosines>& sums) const {
+    const std::size_t node = nearest_node(observations[i].cosine_position);
+    sums.lost[node] += observations[i].lost() ? 1 : 0;
+    sums.expected[node] += whole_units(rates.share(observations[i]));
+  }
+};
+
+/// Sets the log odds of a disk's losses relative to what the rates expect.
+struct SetDropLogOdds {
+  /// Rays that are added at the expected rate. Chosen on the even scans of kitti-0005, which give
+  /// a disk 10 rays on average: 2 predict the odd ones as well.
+  static constexpr double kPriorRays = 4;
+
+  const Observation* observations;
+  const std::uint64_t* begins;  ///< of the disks
+  LossRates rates;
+  float* log_odds;
+
+  ADASPLATS_HD void operator()(std::size_t disk) const {
+    std::int64_t lost = 0, expected = 0;
+    for (std::uint64_t k = begins[disk]; k < begins[disk + 1]; ++k) {
+      lost += observations[k].lost() ? 1 : 0;
+      expected += whole_units(rates.share(observations[k]));
+    }
+    const auto rays = static_cast<double>(begins[disk + 1] - begins[disk]);
+    if (rays == 0) {
+      log_odds[disk] = 0;
+      return;
+    }
+    const double usual = kShareUnit * static_cast<double>(expected) / rays;
+    const double share = (static_cast<double>(lost) + kPriorRays * usual) / (rays + kPriorRays);
+    log_odds[disk] = static_cast<float>(log_of(share * (1 - usual) / (usual * (1 - share))));
+  }
+};
+
 /// Adds an observation to the fit of the range gains, with the other gains and the reflectances
 /// fixed.
 struct AddToRanges {
@@ -229,6 +326,7 @@ struct AddToRanges {
 
   ADASPLATS_HD void operator()(std::size_t i, RangeSums& sums) const {
     const Observation& seen = observations[i];
+    if (seen.lost()) return;
     const auto gain = static_cast<double>(value_at(gains.of_cosines, seen.cosine_position));
     sums.add(seen.range_position, static_cast<double>(seen.intensity),
              static_cast<double>(values[seen.disk]) * gain * per_factor);
@@ -244,6 +342,7 @@ struct AddToCosines {
 
   ADASPLATS_HD void operator()(std::size_t i, CosineSums& sums) const {
     const Observation& seen = observations[i];
+    if (seen.lost()) return;
     const auto gain = static_cast<double>(value_at(gains.of_ranges, seen.range_position));
     sums.add(seen.cosine_position, static_cast<double>(seen.intensity),
              static_cast<double>(values[seen.disk]) * gain * per_factor);

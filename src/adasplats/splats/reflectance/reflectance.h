@@ -23,6 +23,9 @@ struct IntensityResponse {
 struct Reflectances {
   std::vector<float> values;  ///< one per disk; at least 0
   IntensityResponse response;
+  /// Per disk, by how much the log odds of losing a return exceed those at its ranges and
+  /// incidences; empty: no lost beams are known.
+  std::vector<float> drop_log_odds;
 };
 
 }  // namespace adasplats

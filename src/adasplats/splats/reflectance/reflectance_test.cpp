@@ -16,6 +16,7 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/splats/model_engine.h"
+#include "adasplats/splats/reflectance/element_steps.h"
 #include "adasplats/splats/reflectance/response_tables.h"
 
 namespace adasplats {
@@ -198,6 +199,42 @@ TEST(Reflectance, TooLittleGivesTheFallbackAndNoResponse) {
   PointCloud without_intensities = measured_ground(2000);
   without_intensities.intensities.clear();
   expect_fallback(without_intensities);
+}
+
+// A third of the beams is lost where x > 3, a twentieth elsewhere; of the disk in the middle all.
+// Oracle: the odds; and the reflectances without lost beams.
+TEST(Reflectance, LostBeamsGiveTheLogOddsOfDisks) {
+  const std::vector<Disk> disks = ground();
+  PointCloud cloud = measured_ground(150000);
+  PointCloud returned;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3f p = cloud.positions[i];
+    const bool middle = std::hypot(p.x, p.y) < 0.25F;
+    if (middle || Random(5, 0, i).uniform() < (p.x > 3.25F ? 1.0 / 3 : 0.05)) {
+      cloud.intensities[i] = kLostIntensity;
+      continue;
+    }
+    returned.positions.push_back(p);
+    returned.sensor_positions.push_back(cloud.sensor_positions[i]);
+    returned.intensities.push_back(cloud.intensities[i]);
+  }
+  const Reflectances found = measure(disks, cloud);
+  EXPECT_EQ(found.values, measure(disks, returned).values);
+  EXPECT_TRUE(measure(disks, returned).drop_log_odds.empty());
+  EXPECT_EQ(found.drop_log_odds, measure(disks, cloud, 3).drop_log_odds);
+  ASSERT_EQ(found.drop_log_odds.size(), disks.size());
+  double sums[2] = {}, counts[2] = {};
+  for (std::size_t d = 0; d < disks.size(); ++d) {
+    const Vec3f c = disks[d].center;
+    if (c.x == 0 && c.y == 0) {
+      EXPECT_GT(found.drop_log_odds[d], 4);
+      continue;
+    }
+    sums[c.x > 3.25F] += static_cast<double>(found.drop_log_odds[d]);
+    counts[c.x > 3.25F] += 1;
+  }
+  const double expected = std::log((1.0 / 2) / (0.05 / 0.95));
+  EXPECT_NEAR(sums[1] / counts[1] - sums[0] / counts[0], expected, 0.15 * expected);
 }
 
 TEST(Reflectance, BlackWorldIsBlack) {

@@ -31,8 +31,9 @@ inline constexpr double kMinReflectanceRange_m = 1e-3;
 /// the sensor to the intensities, by alternating least squares in five rounds. Uses the rays with a
 /// first hit within 0.2 m + 0.5 % of the range of the measured point. A disk with few rays is drawn
 /// to the disks with a similar normal in the same 0.4 m cell (with the weight of three rays), and
-/// those to the mean of all. Sums are integers: the same bytes on any number of threads and on
-/// every device.
+/// those to the mean of all. Rays with kLostIntensity also show which disks lose more returns than
+/// others at the same range and incidence. Sums are integers: the same bytes on any number of
+/// threads and on every device.
 ///
 /// `Backend` is RaysOnCpu or its GPU counterpart; element_steps.h has the work for one element.
 /// Memory: 32 bytes per ray.
@@ -73,6 +74,7 @@ class ReflectancesOn {
       fit_gains();
       fit_values(fallback.data());
     }
+    measure_losses();
     backend_.wait("measure reflectances");
     return result();
   }
@@ -167,6 +169,33 @@ class ReflectancesOn {
         ResponseNodes::kUnitCosine);
   }
 
+  void measure_losses() {
+    const auto by_range = backend_.template sum<LossSums<ResponseNodes::kRanges>>(
+        ray_count_, "count lost beams", AddLossByRange{observations_.data()});
+    if (std::ranges::all_of(by_range.lost, [](std::int64_t lost) { return lost == 0; })) return;
+    LossRates rates = {rates_of(by_range, 20), {}};
+    rates.of_cosines.fill(1.0F);
+    rates.of_cosines =
+        rates_of(backend_.template sum<LossSums<ResponseNodes::kCosines>>(
+                     ray_count_, "count lost beams", AddLossByCosine{observations_.data(), rates}),
+                 1);
+    drop_log_odds_ = backend_.template array<float>(disks_.size());
+    backend_.for_each(
+        disks_.size(), "count lost beams",
+        SetDropLogOdds{observations_.data(), begins_.data(), rates, drop_log_odds_.data()});
+  }
+
+  /// Lost over expected beams. One lost beam and `expected` ones are added to each node.
+  template <std::size_t N>
+  static std::array<float, N> rates_of(const LossSums<N>& sums, double expected) {
+    std::array<float, N> rates;
+    for (std::size_t k = 0; k < N; ++k)
+      rates[k] =
+          static_cast<float>((static_cast<double>(sums.lost[k]) + 1) /
+                             (kShareUnit * static_cast<double>(sums.expected[k]) + expected));
+    return rates;
+  }
+
   Reflectances result() const {
     constexpr ResponseNodes kNodes;
     Reflectances result;
@@ -177,6 +206,7 @@ class ReflectancesOn {
                        {gains_.of_ranges.begin(), gains_.of_ranges.end()},
                        {kNodes.cosines.begin(), kNodes.cosines.end()},
                        {gains_.of_cosines.begin(), gains_.of_cosines.end()}};
+    if (drop_log_odds_.size() > 0) result.drop_log_odds = backend_.on_host(drop_log_odds_);
     return result;
   }
 
@@ -193,6 +223,7 @@ class ReflectancesOn {
   Array<std::uint32_t> cells_;       ///< where they begin
   Array<ValueSums> sums_;            ///< of the disks
   Array<float> values_;              ///< of the disks, divided by the unit of intensities
+  Array<float> drop_log_odds_;       ///< of the disks; empty: no lost beams
 };
 
 }  // namespace adasplats
