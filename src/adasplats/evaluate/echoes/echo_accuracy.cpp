@@ -113,6 +113,8 @@ EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
   echo.cos_incidence = cos_incidence(scene.attributes.view, ray.direction, hit.primitive);
   echo.reflectance = hit.primitive < intensities.size() ? intensities[hit.primitive]
                                                         : std::numeric_limits<float>::quiet_NaN();
+  const auto& log_odds = scene.attributes.drop_log_odds;
+  if (hit.primitive < log_odds.size()) echo.drop_log_odds = log_odds[hit.primitive];
   return echo;
 }
 

@@ -52,12 +52,9 @@ BeamEnds ends_of(std::span<const SensorBeam> beams) {
   return found;
 }
 
-EchoConditions conditions_of(const SensorBeam& beam) {
-  return {beam.expected_m, beam.cos_incidence, beam.reflectance, beam.direction};
-}
-
 float drop_share(const SensorBeam& beam, const DropRules& rules) {
-  const double chance = drop_chance(rules, beam.expected_m, beam.cos_incidence, beam.reflectance);
+  const double chance =
+      drop_chance(rules, beam.expected_m, beam.cos_incidence, beam.reflectance, beam.drop_log_odds);
   return static_cast<float>(share_by_chance(beam, chance, !beam.returned(), {4, 2}, {4, 1}, 1));
 }
 
@@ -71,7 +68,7 @@ std::optional<DropFit> fit_unit_drop(std::span<const SensorBeam> beams, double m
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const SensorBeam& beam = beams[i];
     if (!beam.hit || !(static_cast<double>(beam.expected_m) < max_range_m)) continue;
-    all.echoes.push_back(conditions_of(beam));
+    all.echoes.push_back(beam.conditions());
     all.hit.push_back(1);
     all.lost.push_back(beam.returned() ? 0 : 1);
     all.places.push_back(beam.place);
@@ -89,7 +86,7 @@ std::optional<DropFit> fit_unit_drop(std::span<const SensorBeam> beams, double m
     const bool at_edge = found.ends[i] == BeamEnd::lost_at_edge && !fit.model.edge_runs.empty();
     const bool in_long_run = found.ends[i] == BeamEnd::lost_in_long_run;
     if (at_edge || in_long_run || fit.model.blocks(beams[i].direction)) continue;
-    echoes.push_back(conditions_of(beams[i]));
+    echoes.push_back(beams[i].conditions());
     lost.push_back(beams[i].returned() ? 0 : 1);
     of_echoes.push_back(i);
   }

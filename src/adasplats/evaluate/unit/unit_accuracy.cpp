@@ -84,9 +84,7 @@ BeamPrediction prediction_of(const SensorBeam& beam, const LidarModel& unit) {
   if (!unit.drop) return prediction;
   prediction.blocked = unit.drop->blocks(beam.direction);
   if (prediction.blocked) prediction.chance = 1;
-  if (prediction.chance < 1)
-    prediction.chance =
-        drop_probability(*unit.drop, {beam.expected_m, beam.cos_incidence, beam.reflectance, {}});
+  if (prediction.chance < 1) prediction.chance = drop_probability(*unit.drop, beam.conditions());
   return prediction;
 }
 

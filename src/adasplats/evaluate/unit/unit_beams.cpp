@@ -107,6 +107,7 @@ SensorBeam unit_beam(const EchoScene& scene, const FiredBeam& fired, const Ray& 
   beam.expected_m = echo.range_m;
   beam.cos_incidence = echo.cos_incidence;
   beam.reflectance = echo.reflectance;
+  beam.drop_log_odds = echo.drop_log_odds;
   const IntensityResponse* response = scene.attributes.response;
   beam.expected_intensity =
       echo.reflectance *

@@ -12,6 +12,7 @@
 #include "adasplats/core/progress.h"
 #include "adasplats/evaluate/echoes/echo_accuracy.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/ray_drop.h"
 
 namespace adasplats {
 
@@ -28,9 +29,14 @@ struct SensorBeam {
   float cos_incidence = 1;
   float reflectance = 0;         ///< of the model; NaN: unknown
   float expected_intensity = 0;  ///< with the model's response; NaN: unknown
+  float drop_log_odds = 0;       ///< of the model (SplatModel)
   Vec3f direction;               ///< in the scan's frame
 
   bool returned() const { return range_m == range_m; }
+  /// With the direction.
+  EchoConditions conditions() const {
+    return {expected_m, cos_incidence, reflectance, direction, drop_log_odds};
+  }
 };
 
 inline bool same_ring(const SensorBeam& a, const SensorBeam& b) {

@@ -68,7 +68,7 @@ class SplatValues {
         values[i] = {
             model.disks[i].normal,
             has_intensities_ ? model.intensities[i] : std::numeric_limits<float>::quiet_NaN(),
-            has_classes_ ? model.classes[i] : std::uint16_t{0}, 0};
+            has_classes_ ? model.classes[i] : std::uint16_t{0}, 0, 0};
     });
   }
 

@@ -114,8 +114,10 @@ PrimitiveAttributes ModelScene::model_attributes() const {
   attributes.classes = classes_of(model_);
   attributes.intensities = intensities_of(model_);
   attributes.view = view();
-  if (const SplatModel* model = splats(); model != nullptr && !model->response.empty())
-    attributes.response = &model->response;
+  if (const SplatModel* model = splats()) {
+    attributes.drop_log_odds = model->drop_log_odds;
+    if (!model->response.empty()) attributes.response = &model->response;
+  }
   return attributes;
 }
 

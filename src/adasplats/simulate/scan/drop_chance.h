@@ -59,23 +59,26 @@ ADASPLATS_HD inline double drop_logit(const DropRules& rules, const DropFeatures
   return sum;
 }
 
-/// Probability that an echo is lost, 0..1.
+/// Probability that an echo is lost, 0..1. `drop_log_odds`: of the splat, on top of the sensor's.
 ADASPLATS_HD inline double drop_chance(const DropRules& rules, float range_m, float cos_incidence,
-                                       float reflectance) {
+                                       float reflectance, float drop_log_odds) {
   const DropConditions echo =
       drop_conditions(range_m, cos_incidence, reflectance, rules.usual_reflectance);
-  return 1 / (1 + exp_of(-drop_logit(rules, drop_features(echo))));
+  const double logit = drop_logit(rules, drop_features(echo)) + static_cast<double>(drop_log_odds);
+  return 1 / (1 + exp_of(-logit));
 }
 
 /// Whether `drawn` is below drop_chance(). A bound decides most beams without logarithms and
 /// exponentials.
 ADASPLATS_HD inline bool is_lost(const DropRules& rules, float range_m, float cos_incidence,
-                                 float reflectance, double drawn) {
+                                 float reflectance, float drop_log_odds, double drawn) {
   const DropConditions echo =
       drop_conditions(range_m, cos_incidence, reflectance, rules.usual_reflectance);
   const double of_range = rules.weights[3];
   const double of_reflectance = rules.weights[6] + echo.range * rules.weights[7];
+  const auto of_splat = static_cast<double>(drop_log_odds);
   const double most =
+      of_splat +
       drop_logit(rules,
                  drop_features(echo, log_floor_of(echo.range), log_floor_of(echo.reflectance))) +
       kLogFloorError *
@@ -83,7 +86,7 @@ ADASPLATS_HD inline bool is_lost(const DropRules& rules, float range_m, float co
   // 1 + exp(x) is more than 2 + x + x^2 / 2 + x^3 / 6.
   const double x = -most;
   if (x > 0 && drawn * (2 + x * (1 + x * (0.5 + x * (1.0 / 6)))) >= 1) return false;
-  return drawn < 1 / (1 + exp_of(-drop_logit(rules, drop_features(echo))));
+  return drawn < 1 / (1 + exp_of(-(drop_logit(rules, drop_features(echo)) + of_splat)));
 }
 
 }  // namespace adasplats

@@ -27,8 +27,9 @@ struct PrimitiveValues {
   float reflectance = 0;  ///< or intensity if there is no response; NaN: none
   std::uint16_t class_id = 0;
   std::uint16_t instance = 0;
+  float drop_log_odds = 0;  ///< as in SplatModel
 };
-static_assert(sizeof(PrimitiveValues) == 20);
+static_assert(sizeof(PrimitiveValues) == 24);
 
 /// Rules for the reports of a sensor in a scene: plain values and pointers, of the host or a
 /// device.
@@ -148,7 +149,7 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
                                         ReportedReturn& reported) {
   const Firing& fired = rules.firings[firing];
   const bool known = echo.primitive < rules.primitive_count;
-  const PrimitiveValues none{{}, std::numeric_limits<float>::quiet_NaN(), 0, 0};
+  const PrimitiveValues none{{}, std::numeric_limits<float>::quiet_NaN(), 0, 0, 0};
   const PrimitiveValues values = known ? rules.primitives[echo.primitive] : none;
   float cosine = 1;
   if (rules.drop.on || rules.has_response)
@@ -162,7 +163,8 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
     const double drawn =
         has_fields ? fields.drop
                    : scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform();
-    if (is_lost(rules.drop, echo.range_m, cosine, values.reflectance, drawn)) return false;
+    if (is_lost(rules.drop, echo.range_m, cosine, values.reflectance, values.drop_log_odds, drawn))
+      return false;
   }
   auto range_m = static_cast<double>(echo.range_m);
   if (fired.ring < rules.range_offset_count) range_m -= rules.range_offsets_m[fired.ring];

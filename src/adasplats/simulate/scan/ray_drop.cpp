@@ -92,11 +92,11 @@ void check_sizes(std::size_t echoes, std::size_t others) {
 }
 
 /// Negative log-likelihood of the observations, and its derivatives.
-Likelihood likelihood_of(std::span<const Row> rows, std::span<const std::uint8_t> dropped,
-                         const Row& weights) {
+Likelihood likelihood_of(std::span<const Row> rows, std::span<const EchoConditions> echoes,
+                         std::span<const std::uint8_t> dropped, const Row& weights) {
   Likelihood sum;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double x = product(weights, rows[i]);
+    const double x = product(weights, rows[i]) + static_cast<double>(echoes[i].drop_log_odds);
     sum.add(rows[i], logistic(x), dropped[i] != 0 ? 1.0 : 0.0);
     // log(1 + exp(x)) without overflow
     sum.value += std::max(x, 0.0) + std::log1p(std::exp(-std::fabs(x))) - (dropped[i] != 0 ? x : 0);
@@ -175,7 +175,8 @@ DropRules drop_rules(const RayDropModel& model) {
 
 double drop_probability(const RayDropModel& model, const EchoConditions& echo) {
   if (model.blocks(echo.direction)) return 1;
-  return drop_chance(drop_rules(model), echo.range_m, echo.cos_incidence, echo.reflectance);
+  return drop_chance(drop_rules(model), echo.range_m, echo.cos_incidence, echo.reflectance,
+                     echo.drop_log_odds);
 }
 
 RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
@@ -197,7 +198,7 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
   // Starts from the share of drops, close enough for Newton's method; steps that overshoot are
   // halved.
   model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(reported));
-  Likelihood at = likelihood_of(rows, dropped, model.weights);
+  Likelihood at = likelihood_of(rows, echoes, dropped, model.weights);
   constexpr int kMaxSteps = 50, kMaxHalvings = 20;
   for (int step = 0; step < kMaxSteps; ++step) {
     Row change = newton_step(at);
@@ -205,7 +206,7 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
     const double before = at.value;
     for (int halving = 0; halving < kMaxHalvings; ++halving) {
       for (std::size_t k = 0; k < kN; ++k) model.weights[k] = from[k] - change[k];
-      at = likelihood_of(rows, dropped, model.weights);
+      at = likelihood_of(rows, echoes, dropped, model.weights);
       if (at.value <= before) break;
       for (double& part : change) part /= 2;
     }

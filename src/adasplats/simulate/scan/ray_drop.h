@@ -18,6 +18,7 @@ struct EchoConditions {
   float cos_incidence = 1;  ///< 1: the beam meets the surface head on
   float reflectance = 0;    ///< of the splat, in the unit of the measured intensities; NaN: unknown
   Vec3f direction = {};     ///< of the beam in the sensor's frame; zero: unknown
+  float drop_log_odds = 0;  ///< of the splat (SplatModel)
 };
 
 /// Rules for CPU and GPU, without the blocked directions.
@@ -25,8 +26,9 @@ DropRules drop_rules(const RayDropModel& model);
 /// Probability that an echo is dropped, 0..1; 1 in a blocked direction.
 double drop_probability(const RayDropModel& model, const EchoConditions& echo);
 
-/// Fits weights by penalised maximum likelihood (Newton's method): dropped[i] of echoes[i].
-/// Errors: data (fewer than 100 of either kind), std::logic_error (sizes differ).
+/// Fits weights by penalised maximum likelihood (Newton's method): dropped[i] of echoes[i]. They
+/// are what the sensor adds to the log odds of the splats. Errors: data (fewer than 100 of either
+/// kind), std::logic_error (sizes differ).
 RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
                           std::span<const std::uint8_t> dropped);
 

@@ -66,6 +66,28 @@ TEST(RayDrop, LogisticIsRecoveredFromDraws) {
   EXPECT_NEAR(expected / drawn, 1, 1e-4);
 }
 
+/// Oracle: the model of the sensor, whatever the splats add to it.
+TEST(RayDrop, LogOddsOfSplatsAreNotTheSensors) {
+  const RayDropModel truth = some_model();
+  Draws draws;
+  for (std::size_t i = 0; i < 200000; ++i) {
+    Random random(4, 0, i);
+    EchoConditions echo = random_echo(random);
+    echo.drop_log_odds = static_cast<float>(random.uniform(-3, 3));
+    draws.dropped.push_back(random.uniform() < drop_probability(truth, echo) ? 1 : 0);
+    draws.echoes.push_back(echo);
+  }
+  const RayDropModel found = fit_ray_drop(draws.echoes, draws.dropped);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    EchoConditions echo = draws.echoes[i];
+    EXPECT_NEAR(drop_probability(found, echo), drop_probability(truth, echo), 0.05);
+    const double before = drop_probability(truth, echo);
+    echo.drop_log_odds += 1;
+    const double odds = before / (1 - before) * std::exp(1.0);
+    EXPECT_NEAR(drop_probability(truth, echo), odds / (1 + odds), 1e-6);
+  }
+}
+
 /// Oracle: with one kind of echo the share of drops is the probability.
 TEST(RayDrop, EqualEchoesGiveTheirShare) {
   const std::vector<EchoConditions> echoes(1000, {20, 0.5F, 0.3F});
@@ -190,10 +212,13 @@ TEST(RayDrop, BeamsAreLostBelowTheirProbability) {
     for (int i = 0; i < 3000; ++i) {
       EchoConditions echo = random_echo(random);
       if (i % 10 == 0) echo.reflectance = kNaN;
-      const double chance = drop_chance(rules, echo.range_m, echo.cos_incidence, echo.reflectance);
+      echo.drop_log_odds = static_cast<float>(random.uniform(-4, 4));
+      const double chance = drop_chance(rules, echo.range_m, echo.cos_incidence, echo.reflectance,
+                                        echo.drop_log_odds);
       // Any number, and those beside the chance.
       for (const double drawn : {random.uniform(), chance * (1 - 1e-12), chance * (1 + 1e-12)}) {
-        const bool is = is_lost(rules, echo.range_m, echo.cos_incidence, echo.reflectance, drawn);
+        const bool is = is_lost(rules, echo.range_m, echo.cos_incidence, echo.reflectance,
+                                echo.drop_log_odds, drawn);
         ASSERT_EQ(is, drawn < chance) << drawn << " " << chance;
         (is ? lost : kept) += 1;
       }

@@ -19,7 +19,7 @@
 
 namespace adasplats {
 
-/// Attributes of primitives; each is empty or has one value per primitive.
+/// Attributes of primitives; each but the log odds is empty or has one value per primitive.
 struct PrimitiveAttributes {
   std::span<const std::uint16_t> classes;
   std::span<const std::uint16_t> instances;
@@ -27,6 +27,7 @@ struct PrimitiveAttributes {
   /// For the incidence angle; primitives beyond the view are assumed perpendicular to the beam.
   SceneView view;
   const IntensityResponse* response = nullptr;
+  std::span<const float> drop_log_odds;  ///< as in SplatModel; those past the end: 0
 };
 
 /// Frame of the points of a scan during which the sensor moves.

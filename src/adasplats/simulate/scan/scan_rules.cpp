@@ -45,6 +45,7 @@ PrimitiveTable primitive_table(const PrimitiveAttributes& attributes, const Exec
                                                  : std::numeric_limits<float>::quiet_NaN();
       if (table.has_classes) values.class_id = attributes.classes[i];
       if (table.has_instances) values.instance = attributes.instances[i];
+      if (i < attributes.drop_log_odds.size()) values.drop_log_odds = attributes.drop_log_odds[i];
     }
   });
   return table;
