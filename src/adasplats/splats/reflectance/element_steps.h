@@ -234,7 +234,8 @@ using CosineSums = TableSums<ResponseNodes::kCosines>;
 
 /// Index of the node nearest to a position_among().
 ADASPLATS_HD inline std::size_t nearest_node(float position) {
-  return static_cast<std::size_t>(position + 0.5F);
+  const auto below = static_cast<std::size_t>(position);
+  return position - static_cast<float>(below) < 0.5F ? below : below + 1;
 }
 
 /// By node: lost beams, and how many of them are expected, in units of kShareUnit.
