@@ -366,35 +366,27 @@ std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& s
 
 // ---- lost beams ------------------------------------------------------------------------------
 
-/// A number for each sector of a degree of each ring.
-class Sectors {
- public:
-  explicit Sectors(std::size_t rings) : values_(rings * kViewBins) {}
-
-  std::uint32_t& at(std::size_t ring, double azimuth_rad) {
-    return values_[ring * kViewBins + view_bin(azimuth_rad)];
-  }
-  std::uint32_t& operator[](std::size_t k) { return values_[k]; }
-  std::size_t size() const { return values_.size(); }
-
- private:
-  std::vector<std::uint32_t> values_;
-};
+/// Number of the sector of a degree of a ring.
+std::size_t sector_of(std::size_t ring, double azimuth_rad) {
+  return ring * kViewBins + view_bin(azimuth_rad);
+}
 
 struct LostBeam {
   EmptyBeam beam;
-  std::uint32_t sector;
+  std::size_t sector;
 };
 
 /// The lost beams of one scan, and beams by sector.
 struct LostOfScan {
   std::vector<LostBeam> beams;
-  Sectors returned, lost;
+  std::vector<std::uint32_t> returned, lost;
 };
 
 LostOfScan lost_of_scan(const PointCloud& cloud, const ScanRings& scan, const SweptRings& sweep,
                         const EmptyBeamOptions& options) {
-  LostOfScan found{{}, Sectors(sweep.points.size()), Sectors(sweep.points.size())};
+  LostOfScan found;
+  found.returned.resize(sweep.points.size() * kViewBins);
+  found.lost.resize(found.returned.size());
   if (sweep.columns == 0) return found;
   const double step_rad = kTurn_rad / static_cast<double>(sweep.columns);
   const Mat3d sensor_from_world = scan.world_from_sensor.transposed();
@@ -407,7 +399,7 @@ LostOfScan lost_of_scan(const PointCloud& cloud, const ScanRings& scan, const Sw
     for (std::size_t k = 0; k < points.size(); ++k) {
       const AzimuthPoint& last = points[k];
       const AzimuthPoint& next = points[(k + 1) % points.size()];
-      ++found.returned.at(ring, last.azimuth_rad);
+      ++found.returned[sector_of(ring, last.azimuth_rad)];
       const double gap_rad = wrapped_rad(next.azimuth_rad - last.azimuth_rad);
       const auto steps = static_cast<int>(std::round(gap_rad / step_rad));
       if (steps < 2 || gap_rad > 2 * options.max_away_rad) continue;
@@ -420,11 +412,12 @@ LostOfScan lost_of_scan(const PointCloud& cloud, const ScanRings& scan, const Sw
         const double up = up_last + share * (up_next - up_last);
         const double flat = std::sqrt(std::max(1 - up * up, 0.0));
         const Vec3d direction = {flat * std::cos(azimuth_rad), flat * std::sin(azimuth_rad), up};
-        ++found.lost.at(ring, azimuth_rad);
+        const std::size_t sector = sector_of(ring, azimuth_rad);
+        ++found.lost[sector];
         found.beams.push_back(
             {{from + static_cast<float>(share) * way,
               vec_cast<float>(normalized(scan.world_from_sensor * direction)), scan.scan, true},
-             static_cast<std::uint32_t>(ring * kViewBins + view_bin(azimuth_rad))});
+             sector});
       }
     }
   }
@@ -446,11 +439,11 @@ bool has_moved(const PointCloud& cloud, std::span<const ScanRings> scans) {
 
 /// Adds the lost beams of all scans except those in sectors that the vehicle blocks.
 void add_lost(const PointCloud& cloud, std::span<const ScanRings> scans,
-              std::vector<LostOfScan> of_scans, std::vector<EmptyBeam>& beams) {
+              const std::vector<LostOfScan>& of_scans, std::vector<EmptyBeam>& beams) {
   constexpr std::size_t kMinScans = 3;
   if (of_scans.empty()) return;
-  Sectors seen(of_scans.front().lost.size() / kViewBins), mostly_lost = seen;
-  for (LostOfScan& scan : of_scans) {
+  std::vector<std::size_t> seen(of_scans.front().lost.size()), mostly_lost = seen;
+  for (const LostOfScan& scan : of_scans) {
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const std::uint32_t returned = scan.returned[k], lost = scan.lost[k];
       seen[k] += returned + lost > 0 ? 1 : 0;
@@ -460,7 +453,7 @@ void add_lost(const PointCloud& cloud, std::span<const ScanRings> scans,
   const bool may_block = has_moved(cloud, scans);
   for (const LostOfScan& scan : of_scans)
     for (const LostBeam& lost : scan.beams) {
-      const std::uint32_t k = lost.sector;
+      const std::size_t k = lost.sector;
       const bool blocked = may_block && seen[k] >= kMinScans && 4 * mostly_lost[k] >= 3 * seen[k];
       if (!blocked) beams.push_back(lost.beam);
     }
@@ -506,8 +499,7 @@ std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeam
   if (looked_at.empty()) return {};
   const FieldOfView view = view_of(cloud, scans, executor);
   std::vector<std::vector<EmptyBeam>> of_scans(looked_at.size());
-  std::vector<LostOfScan> lost(options.lost ? looked_at.size() : 0,
-                               LostOfScan{{}, Sectors(0), Sectors(0)});
+  std::vector<LostOfScan> lost(options.lost ? looked_at.size() : 0);
   executor.for_chunks(looked_at.size(), 1, [&](std::size_t k, std::size_t) {
     const std::size_t s = looked_at[k];
     const SweptRings sweep = sweep_of(cloud, scans[s], std::move(elevations_rad[s]), options);
@@ -516,7 +508,7 @@ std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeam
   });
   std::vector<EmptyBeam> beams;
   for (const auto& part : of_scans) beams.insert(beams.end(), part.begin(), part.end());
-  add_lost(cloud, scans, std::move(lost), beams);
+  add_lost(cloud, scans, lost, beams);
   return beams;
 }
 
