@@ -110,6 +110,7 @@ void put_reflectances(Reflectances made, SplatModel& model, BuildReport& report)
   model.response = std::move(made.response);
   model.drop_log_odds = std::move(made.drop_log_odds);
   report.reflectance_measured = !model.response.empty();
+  report.drop_measured = !model.drop_log_odds.empty();
 }
 
 bool shows_reflectances(const PointCloud& cloud) {

@@ -51,6 +51,7 @@ struct BuildReport {
   std::optional<ConsistentReport> consistent;  ///< of the consistent method
   bool ray_checked = false;           ///< consistent: splats were checked against measured rays
   bool reflectance_measured = false;  ///< enough rays to measure reflectances
+  bool drop_measured = false;         ///< lost beams were found, so splats have log odds of them
   OriginCounts origins{};             ///< of the points, by OriginKind
   bool oriented = true;  ///< normals face the sensors; false: some sensor positions are unknown
   std::vector<StepTime> steps;

@@ -362,6 +362,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["oriented"] = built.oriented;
   json["ray_checked"] = built.ray_checked;
   json["reflectance_measured"] = built.reflectance_measured;
+  json["drop_measured"] = built.drop_measured;
   if (result.calibrated)
     json["calibration"] = calibration_json(*result.calibrated, result.calibration);
   json["seconds"]["total"] = result.seconds;
