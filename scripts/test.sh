@@ -170,7 +170,7 @@ built=true
 if ! scripts/setup.sh --for test; then
   count_failure setup
 else
-  wanted names && check names tools/check_names.sh
+  wanted names && check names tools/check_names.py
   wanted names && check figures tools/make_figures.py --check
   if wanted layers; then
     check layers tools/check_layers.py
