@@ -184,6 +184,16 @@ CALIBRATION_PARTS = [
             ("without poses", "no_poses"), ("without ranges", "no_ranges"),
             ("without elevations", "no_elevations"), ("without mount", "no_mount"),
             ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
+REFINEMENT = [
+    *((f"< 10 cm, {title}", f"{key}/within/0.10", "0.0 %") for title, key in (
+        ("opaque splats", "without"), ("refined", "refined"),
+        ("opaque above 0.3", "opaque above 0.3"))),
+    *((f"lost beams, F1: {title}", f"{key}/sensor/{at}/f1", "0.000")
+      for at, rule in (("lost", "chance above 1/2"), ("lost_by_rate", "as many as expected"))
+      for title, key in ((f"{rule}, without `drop`", "no drop"), ("with it", "refined"))),
+    *((f"rank correlation of intensities, {title}", f"{key}/sensor/intensity/rank_correlation",
+       "0.000") for title, key in (("one for all splats", "one intensity"),
+                                   ("of each splat", "refined")))]
 MOUNTS = [
     ("remaining rotation error, degrees", "mount/turn_left_deg", "0.000"),
     ("remaining shift", "mount/shift_left_m", "0.0 cm"),
@@ -272,7 +282,7 @@ THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *T
 # Name: (default key of the rows, columns). A column without values is omitted.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
-          "parts": ("drives", CALIBRATION_PARTS),
+          "parts": ("drives", CALIBRATION_PARTS), "refinement": ("drives", REFINEMENT),
           "mounts": ("mounts", MOUNTS), "streets": ("streets", STREETS),
           "lidar4d": ("lidar4d", LIDAR4D),
           "segmentation": ("networks", SEGMENTATION),
