@@ -5,6 +5,7 @@
 //
 // Usage: check_viewer.mjs PROGRAM MODEL [OPTIONS]    the program and a model with classes
 //        check_viewer.mjs --mock PAGE [OPTIONS]      a built page and the mock server
+//        check_viewer.mjs --malformed PAGE           only the mock server's malformed data
 //   --shots FOLDER    save screenshots there
 //   --page FOLDER     use the built page in this folder, not the one in the program
 //   --with OPTION     pass an option to 'adasplats view'; repeatable
@@ -431,7 +432,7 @@ async function checkAll(server, { shots, page }, folder) {
 }
 
 const { options, words } = readArguments(
-  'check_viewer.mjs PROGRAM MODEL | --mock PAGE [--with OPTION]',
+  'check_viewer.mjs PROGRAM MODEL | --mock PAGE | --malformed PAGE [--with OPTION]',
   2,
   { with: [] },
   { with: (options, value) => options.with.push(value) },
@@ -439,14 +440,16 @@ const { options, words } = readArguments(
 await requireBrowser(options, 'ws');
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-viewer-'));
 const mock = words[0] === '--mock';
-const server = mock
-  ? mockServer(resolve(words[1]))
-  : realServer(resolve(words[0]), resolve(words[1]), options.with);
+const malformed = words[0] === '--malformed';
+const server = () =>
+  mock
+    ? mockServer(resolve(words[1]))
+    : realServer(resolve(words[0]), resolve(words[1]), options.with);
 let passed = 0;
 let failed = 0;
 try {
-  const results = [await checkAll(server, options, folder)];
-  if (mock) results.push(await checkMalformed(resolve(words[1])));
+  const results = malformed ? [] : [await checkAll(server(), options, folder)];
+  if (mock || malformed) results.push(await checkMalformed(resolve(words[1])));
   for (const t of results) [passed, failed] = [passed + t.passed, failed + t.failed];
 } catch (error) {
   if (/viewer is missing|built without/i.test(error.message)) skip(error.message);
