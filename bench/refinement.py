@@ -19,7 +19,7 @@ import sys
 
 import numpy as np
 
-from calibration import drives, report_of
+from calibration import Drive, drives, report_of
 from provenance import provenance_of
 from units import NUMPY_TYPES
 
@@ -84,14 +84,8 @@ def write_changed(source, change, target):
     target.write_bytes("\n".join(lines).encode() + end + splats.tobytes())
 
 
-class Drive:
+class RefinedDrive(Drive):
     """Models of one drive, judged on its held-out scans."""
-
-    def __init__(self, program, folder, training, held_out, model_flags, beam_flags):
-        self.program, self.folder = program, folder
-        self.training, self.model_flags = training, model_flags
-        self.held_out, self.beam_flags = held_out, beam_flags
-        folder.mkdir(parents=True, exist_ok=True)
 
     def judged(self, model):
         """Held-out figures of a model in the folder."""
@@ -106,7 +100,7 @@ class Drive:
                          pathlib.Path(f"{stem}-unit.json"))
         return {**figures_of(beams), "sensor": sensor_figures_of(unit)}
 
-    def row(self):
+    def refined_row(self):
         row = {}
         for name, flags in FLAGS.items():
             model = self.folder / f"{name}.ply"
@@ -115,8 +109,9 @@ class Drive:
             row[name] = {"splats": made["primitives"], **self.judged(model)}
         for name, change in CHANGES.items():
             model = self.folder / f"{name.replace(' ', '-')}.ply"
-            if not model.exists():
-                write_changed(self.folder / "refined.ply", change, model)
+            source = self.folder / "refined.ply"
+            if not model.exists() or model.stat().st_mtime < source.stat().st_mtime:
+                write_changed(source, change, model)
             row[name] = self.judged(model)
         return row
 
@@ -142,8 +137,8 @@ def main():
     for name, use, training, held_out, model_flags, beam_flags in drives(data):
         if name == "kitti-0005":
             model_flags, beam_flags = [], []
-        row = Drive(program, out / name.replace(" ", "-"), training, held_out, model_flags,
-                    beam_flags).row()
+        row = RefinedDrive(program, out / name.replace(" ", "-"), training, held_out, model_flags,
+                           beam_flags).refined_row()
         rows.append({"name": name, "use": use, **row})
         for model, figures in row.items():
             print(f"| {name} | {use} | {model} | {cells_of(figures)} |", flush=True)
