@@ -62,7 +62,7 @@ void read_times(const Input& input) {
 
 void read_boxes(const Input& input) {
   const MovingBoxes boxes(input.file);
-  boxes.contains(0.5, {1, 2, 3});
+  boxes.object_at(0.5, {1, 2, 3});
 }
 
 void open_kitti(const Input& input) { require_sound(open_kitti_sequence(input.folder)); }

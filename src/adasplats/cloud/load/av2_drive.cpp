@@ -221,7 +221,7 @@ class Av2Reader final : public ScanReader {
       scan.lasers.push_back(at.ring);
       scan.times_s.push_back(time_s);
       if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.contains(time_s, pose.world_from_sensor * point) ? 1 : 0);
+        scan.in_boxes.push_back(boxes_.object_at(time_s, pose.world_from_sensor * point));
     }
     scan.intensities = scale_.scaled(std::move(sweep.points.intensities), file);
     return scan;

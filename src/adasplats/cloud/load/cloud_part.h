@@ -51,9 +51,9 @@ struct CloudPart {
   DeclaredClock declared_clock = DeclaredClock::none;  ///< which is this, if the file declares it
   /// Of files without sensor positions (read_file_part()): why they are one scan.
   std::optional<SensorFrame> sensor_frame;
-  std::vector<Vec3f> scan_origins;     ///< of sequences with an origin per point, sensor frames
-  std::vector<std::uint8_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
-  std::vector<std::string> remarks;    ///< warnings on columns, without the file's name
+  std::vector<Vec3f> scan_origins;      ///< of sequences with an origin per point, sensor frames
+  std::vector<std::uint16_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
+  std::vector<std::string> remarks;     ///< warnings on columns, without the file's name
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence

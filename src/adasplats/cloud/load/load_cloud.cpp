@@ -433,7 +433,8 @@ Kept in_boxes(const Gathered& gathered) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     const CloudPart& part = gathered.parts[p];
     for (std::size_t i = 0; i < part.size(); ++i)
-      if (gathered.kept[p][i] != 0) flags.push_back(has_boxes(part) ? part.in_boxes[i] : 0);
+      if (gathered.kept[p][i] != 0)
+        flags.push_back(has_boxes(part) && part.in_boxes[i] != 0 ? 1 : 0);
   }
   return flags;
 }

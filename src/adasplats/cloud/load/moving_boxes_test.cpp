@@ -19,14 +19,14 @@ TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
                                                         "0,1.0,7,Car,0,0,0,1,4,2,1.5,0\n"
                                                         "0,1.0,8,Car,1,0,20,1,4,2,1.5,0\n"
                                                         "1,1.1,7,Car,0,1,0,1,4,2,1.5,0\n"));
-  EXPECT_TRUE(boxes.contains(1.0, {2.1, 0, 1}));
-  EXPECT_FALSE(boxes.contains(1.0, {2.6, 0, 1}));
-  EXPECT_TRUE(boxes.contains(1.05, {2.6, 0, 1}));  // half way
-  EXPECT_FALSE(boxes.contains(1.05, {-1.8, 0, 1}));
-  EXPECT_TRUE(boxes.contains(1.15, {3.1, 0, 1}));  // stays for 0.1 s after the last
-  EXPECT_FALSE(boxes.contains(1.25, {1, 0, 1}));
-  EXPECT_FALSE(boxes.contains(1.0, {0, 20, 1}));  // parked
-  EXPECT_FALSE(boxes.contains(1.0, {0, 0, 2.1}));
+  EXPECT_EQ(boxes.object_at(1.0, {2.1, 0, 1}), 1);
+  EXPECT_EQ(boxes.object_at(1.0, {2.6, 0, 1}), 0);
+  EXPECT_EQ(boxes.object_at(1.05, {2.6, 0, 1}), 1);  // half way
+  EXPECT_EQ(boxes.object_at(1.05, {-1.8, 0, 1}), 0);
+  EXPECT_EQ(boxes.object_at(1.15, {3.1, 0, 1}), 1);  // stays for 0.1 s after the last
+  EXPECT_EQ(boxes.object_at(1.25, {1, 0, 1}), 0);
+  EXPECT_EQ(boxes.object_at(1.0, {0, 20, 1}), 0);  // parked
+  EXPECT_EQ(boxes.object_at(1.0, {0, 0, 2.1}), 0);
 }
 
 TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
@@ -46,8 +46,20 @@ TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
   const MovingBoxes boxes(folder.write("boxes.csv", std::string(kBoxNames) +
                                                         "0,0,1,Car,0,0,0,0,4,1,1,3.1\n"
                                                         "1,1,1,Car,0,0,0,0,4,1,1,-3.1\n"));
-  EXPECT_TRUE(boxes.contains(0.5, {1.9, 0, 0}));  // at pi, not at 0 turned the long way round
-  EXPECT_FALSE(boxes.contains(0.25, {0, 1.9, 0}));
+  EXPECT_EQ(boxes.object_at(0.5, {1.9, 0, 0}), 1);  // at pi, not at 0 turned the long way round
+  EXPECT_EQ(boxes.object_at(0.25, {0, 1.9, 0}), 0);
+}
+
+TEST(MovingBoxes, NumberTheObjectsByTheirIdsAndTheNearestCounts) {
+  const TemporaryFolder folder;
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kBoxNames) +
+                                                        "0,0,9,Truck,0,0,0,0,8,2,3,0\n"
+                                                        "0,0,4,Person,0,3,0,0,1,1,2,0\n"));
+  ASSERT_EQ(boxes.tracks().size(), 2U);
+  EXPECT_EQ(boxes.tracks()[0].id, 4U);
+  EXPECT_EQ(boxes.tracks()[1].label, "Truck");
+  EXPECT_EQ(boxes.object_at(0, {3, 0, 0}), 1);  // in both
+  EXPECT_EQ(boxes.object_at(0, {0, 0, 0}), 2);
 }
 
 TEST(MovingBoxes, WhatIsWrongIsNamed) {
@@ -59,6 +71,14 @@ TEST(MovingBoxes, WhatIsWrongIsNamed) {
     MovingBoxes(folder.write("b.csv", std::string(kBoxNames) + "0,0,1,Car,0,0,0,0,4,1,1,0\n"
                                                                "0,0,1,Car,0,0,0,0,4,1,1,left\n"));
   });
+  const auto reject = [&](const std::string& row, const std::string& said) {
+    expect_error(ErrorKind::data, {"c.csv", said}, [&] {
+      MovingBoxes(folder.write("c.csv", kBoxNames + ("0,0,1,Car,0,0,0,0,4,1,1,0\n" + row)));
+    });
+  };
+  reject("1,1,1,Car,0,0,0,0,4,0,1,0\n", "the size of the box is not positive");
+  reject("1,1,1.5,Car,0,0,0,0,4,1,1,0\n", "'id' is not a whole number");
+  reject("1,0,1,Car,0,5,0,0,4,1,1,0\n", "object 1 has two boxes at 0.000000 s");
   expect_error(ErrorKind::no_input, {"cannot be read"},
                [&] { MovingBoxes(folder.path() / "none.csv"); });
 }

@@ -138,7 +138,7 @@ class SweepReader final : public ScanReader {
       const bool own = timed && std::isfinite(times[i]);
       const double time_s = own ? times_.time_s(times[i], pose.time_s) : pose.time_s;
       const Vec3d world = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
-      scan.in_boxes.push_back(boxes_.contains(time_s, world) ? 1 : 0);
+      scan.in_boxes.push_back(boxes_.object_at(time_s, world));
     }
   }
 

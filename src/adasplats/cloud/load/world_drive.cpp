@@ -76,7 +76,7 @@ class FrameReader final : public ScanReader {
     scan.lasers.reserve(frame.size());
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
       if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.contains(frame.times[i], frame.positions[i]) ? 1 : 0);
+        scan.in_boxes.push_back(boxes_.object_at(frame.times[i], frame.positions[i]));
       const RigidTransform pose = pose_at(frame.times[i]);
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
       const auto [laser, origin] = beam_of_point(pose.inverse() * frame.positions[i]);

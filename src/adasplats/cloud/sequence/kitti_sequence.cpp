@@ -100,7 +100,7 @@ void take_labels(const std::filesystem::path& path, KittiScan& scan) {
 }
 
 template <class T>
-void keep_outside(const std::vector<std::uint8_t>& in_boxes, std::vector<T>& values) {
+void keep_outside(const std::vector<std::uint16_t>& in_boxes, std::vector<T>& values) {
   if (values.size() != in_boxes.size()) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -86,8 +86,8 @@ struct KittiScan {
   std::vector<std::uint16_t> lasers;
   /// When each point was measured, s in the clock of the poses; empty: unknown.
   std::vector<double> times_s;
-  /// 1 for points on objects that move, as somebody annotated them; empty: none is.
-  std::vector<std::uint8_t> in_boxes;
+  /// The annotated moving object that each point is on (MovingBoxes::object_at()); empty: none.
+  std::vector<std::uint16_t> in_boxes;
 };
 
 /// The beam that measured point `i` of scan number `index`, in the scan's frame, corrected by the
