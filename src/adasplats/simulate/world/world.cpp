@@ -155,6 +155,31 @@ void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                     impl_->geometries[object.geometry]->tracer(executor), depth, hits, executor);
 }
 
+void World::add_hits(std::span<const Ray> rays, std::span<const double> times_s,
+                     std::span<Hit> hits, const Executor& executor) const {
+  if (rays.size() != times_s.size() || rays.size() != hits.size())
+    throw std::logic_error("World: expected a time and a hit per ray");
+  if (rays.empty()) return;
+  const auto [first, last] = std::ranges::minmax_element(times_s);
+  const double begin_s = *first, duration_s = *last - *first;
+  ScanRays scan;
+  scan.rays.assign(rays.begin(), rays.end());
+  scan.firings.resize(rays.size());
+  for (std::size_t i = 0; duration_s > 0 && i < rays.size(); ++i)
+    scan.firings[i].share = static_cast<float>((times_s[i] - begin_s) / duration_s);
+  scan.bundles = bundles_of(scan.rays);
+  std::vector<ObjectPose> knots;
+  for (const std::size_t i : impl_->in_all_scans) {
+    const PlacedObject& placed = impl_->objects[i];
+    if (placed.geometry->primitives == 0 || !placed.is_there(begin_s, *last)) continue;
+    knots.clear();
+    const ObjectSighting object =
+        sighting_of(placed, begin_s, duration_s, impl_->scene_origin, knots);
+    add_object_hits(scan, object, knots.data(), placed.geometry->tracer(executor), 1, hits,
+                    executor);
+  }
+}
+
 void World::sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
                   ObjectSightings& all) const {
   const double duration_s = motion.knots.empty() ? 0.0 : std::max(0.0, scan_duration_s);

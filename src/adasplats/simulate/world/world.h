@@ -105,6 +105,12 @@ class World {
                 const ScanMotion& motion, double scan_duration_s, int depth, std::span<Hit> hits,
                 const Executor& executor) const;
 
+  /// Merges the nearest hits of objects into those of rays that were cast at their own times, such
+  /// as measured beams: hits[i] of rays[i], relative to the scene's local origin, at times_s[i].
+  /// Objects of a single scan are left out. Throws std::logic_error if sizes differ.
+  void add_hits(std::span<const Ray> rays, std::span<const double> times_s, std::span<Hit> hits,
+                const Executor& executor) const;
+
   /// Appends the objects present in a scan, in the order of addition, with the data that a device
   /// needs to cast them like add_hits().
   void sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
