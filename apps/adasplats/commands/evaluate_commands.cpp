@@ -163,8 +163,8 @@ std::string result_text(const HeldOutResult& result) {
   add_row(table, "all", result.all);
   if (result.with_given) add_row(table, "all, as given", result.with_given->all);
   if (result.registered) add_row(table, "all, registered to the model", result.registered->all);
-  for (const auto* parts :
-       {&result.by_range, &result.by_incidence, &result.by_surroundings, &result.by_class}) {
+  for (const auto* parts : {&result.by_range, &result.by_incidence, &result.by_surroundings,
+                            &result.by_motion, &result.by_class}) {
     if (!parts->empty()) table.add_row({});
     for (const auto& [name, accuracy] : *parts) add_row(table, name, accuracy);
   }

@@ -21,6 +21,8 @@ constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr float kNearSurface_m = 0.5F;
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint8_t kNoBin = 255;
 constexpr float kMinUp = static_cast<float>(EmptyBeamOptions{}.min_up);
 
 /// The stored result of one beam.
@@ -31,6 +33,7 @@ struct Beam {
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
   std::int8_t elevation_deg = 0;   ///< rounded down
   bool upward = false;             ///< in the world
+  bool moving = false;             ///< on a moving object, as far as known
   Surroundings surroundings = Surroundings::rough;
   std::uint16_t class_id = 0;  ///< 0 without labels
 };
@@ -121,22 +124,51 @@ void add_intensities(float measured, float predicted, CastScan& scan) {
 
 /// What the casts of all scans share.
 struct CastSettings {
-  const Tracer& tracer;
-  const PrimitiveAttributes& scene;
-  Vec3d scene_origin;
+  const BeamScene& scene;
   const LabelScheme& labels;
   const ResimulateOptions& options;
   Bins ranges;
   Bins incidences;
 };
 
+/// Casts beams into the scene and its objects at the times of the points.
+void cast_beams(const BeamScene& scene, std::span<const Ray> rays, const KittiScan& scan,
+                double scan_time_s, std::span<const std::uint32_t> selected, std::span<Hit> hits,
+                const Executor& executor) {
+  scene.tracer.nearest(rays, hits, executor);
+  if (scene.world == nullptr) return;
+  std::vector<double> times_s(rays.size(), scan_time_s);
+  for (std::size_t k = 0; !scan.times_s.empty() && k < rays.size(); ++k)
+    times_s[k] = scan.times_s[selected[k]];
+  scene.world->add_hits(rays, times_s, hits, executor);
+}
+
+/// Whether a point is on a moving object.
+bool is_moving(const KittiScan& scan, std::size_t i, const LabelScheme& labels) {
+  if (!scan.in_boxes.empty() && scan.in_boxes[i] != 0) return true;
+  return !scan.classes.empty() && labels.find(scan.classes[i])->mobility == Mobility::moving;
+}
+
+/// Incidence and intensity of a beam that hit the scene, not an object.
+void add_hit_figures(const CastSettings& setting, const Ray& ray, const Hit& hit, float intensity,
+                     Beam& beam, CastScan& result) {
+  const PrimitiveAttributes& scene = setting.scene.attributes;
+  beam.incidence_bin = kNoBin;
+  if (hit.primitive >= scene.view.primitive_count()) return;
+  const double cosine = cos_incidence(scene.view, ray.direction, hit.primitive);
+  beam.incidence_bin = setting.incidences.bin_of(std::acos(cosine) * kDegreesPerRadian);
+  if (std::fabs(beam.error_m) <= kNearSurface_m)
+    add_intensities(intensity, expected_intensity(scene, ray, hit), result);
+}
+
 CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, std::size_t index,
                    const Executor& executor) {
-  const KittiScan scan = read_kitti_scan(sequence, index);
+  const KittiScan scan = setting.options.drop_moving ? read_kitti_scan(sequence, index)
+                                                     : read_all_returns(sequence, index);
   const std::vector<std::uint32_t> selected =
       select_points(scan, sequence.scans[index], setting.labels, setting.options);
   RigidTransform scene_from_sensor = sequence.trajectory[index].world_from_sensor;
-  scene_from_sensor.translation = scene_from_sensor.translation - setting.scene_origin;
+  scene_from_sensor.translation = scene_from_sensor.translation - setting.scene.origin;
 
   CastScan result;
   result.beams.resize(selected.size());
@@ -153,7 +185,8 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
       rays[k] = cast[k].ray;
     }
   });
-  setting.tracer.nearest(rays, hits, executor);
+  cast_beams(setting.scene, rays, scan, sequence.trajectory[index].time_s, selected, hits,
+             executor);
   const auto surroundings = surroundings_of(result.measured.positions, executor);
   for (std::size_t k = 0; k < selected.size(); ++k) {
     const double range_m = cast[k].range_m;
@@ -164,15 +197,14 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
     beam.surroundings = surroundings[k];
     beam.upward = rays[k].direction.z > kMinUp;
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
+    beam.moving = is_moving(scan, selected[k], setting.labels);
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.primitive = hits[k].primitive;
-    const double cosine = cos_incidence(setting.scene.view, rays[k].direction, hits[k].primitive);
-    beam.incidence_bin = setting.incidences.bin_of(std::acos(cosine) * kDegreesPerRadian);
-    if (!scan.intensities.empty() && std::fabs(beam.error_m) <= kNearSurface_m)
-      add_intensities(scan.intensities[selected[k]],
-                      expected_intensity(setting.scene, rays[k], hits[k]), result);
+    add_hit_figures(setting, rays[k], hits[k],
+                    scan.intensities.empty() ? kUnknown : scan.intensities[selected[k]], beam,
+                    result);
     result.predicted.positions.push_back(vec_cast<float>(
         measured[k].origin + predicted_m / range_m * (measured[k].end - measured[k].origin)));
   }
@@ -296,13 +328,11 @@ void check(const ResimulateOptions& options) {
 
 }  // namespace
 
-ResimulateResult resimulate(const Tracer& tracer, const PrimitiveAttributes& scene,
-                            Vec3d scene_origin, const KittiSequence& sequence,
+ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequence,
                             const LabelScheme& labels, const ResimulateOptions& options,
                             const Executor& executor, ProgressSink& progress, KeepBeams keep) {
   check(options);
-  const CastSettings setting{
-      tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
+  const CastSettings setting{scene, labels, options, range_bins(options), incidence_bins()};
   std::vector<Beam> beams;
   std::vector<float> measured_intensities, predicted_intensities;
   MeanCloudDistance clouds;
@@ -330,6 +360,12 @@ ResimulateResult resimulate(const Tracer& tracer, const PrimitiveAttributes& sce
   }
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });
+  if (!options.drop_moving) {
+    for (const bool moving : {false, true})
+      result.by_motion.emplace_back(
+          moving ? "moving" : "still",
+          accuracy_where(beams, [&](const Beam& beam) { return beam.moving == moving; }));
+  }
   result.clouds = clouds.mean();
   if (!measured_intensities.empty())
     result.intensities = intensity_agreement(predicted_intensities, measured_intensities);

@@ -16,6 +16,7 @@
 #include "adasplats/evaluate/intensity_agreement.h"
 #include "adasplats/scene/scene.h"
 #include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/world/world.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -23,7 +24,7 @@ namespace adasplats {
 struct ResimulateOptions {
   double min_range_m = 2.5;  ///< beams with measured ranges outside these are left out
   double max_range_m = 50.0;
-  bool drop_moving = true;    ///< leave out beams on moving classes
+  bool drop_moving = true;    ///< leave out beams on moving classes and in boxes of moving objects
   bool drop_movable = false;  ///< leave out beams on movable classes (parked cars) as well
 };
 
@@ -67,18 +68,29 @@ struct ResimulateResult {
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_surroundings;  ///< flat, rough, edge
-  std::vector<std::pair<std::string, BeamAccuracy>> by_class;         ///< names of the label scheme
+  /// "still", "moving": in boxes of moving objects and of moving classes; empty if `drop_moving`.
+  std::vector<std::pair<std::string, BeamAccuracy>> by_motion;
+  std::vector<std::pair<std::string, BeamAccuracy>> by_class;  ///< names of the label scheme
   /// "-25 deg", ...: elevation of the beam in the sensor's frame, rounded down. Different biases
   /// show differences between lasers, which no model can predict.
   std::vector<std::pair<std::string, BeamAccuracy>> by_elevation;
   std::vector<ScanErrors> errors;  ///< one per scan of the sequence; empty unless beams are kept
 };
 
+/// What beams are cast into.
+struct BeamScene {
+  const Tracer& tracer;
+  const PrimitiveAttributes& attributes;
+  Vec3d origin;                  ///< world coordinates of its local origin, m
+  const World* world = nullptr;  ///< its objects; null: none
+};
+
 /// Casts each measured beam of a held-out sequence again, from its origin (sequence.beams) through
 /// the measured point, and compares ranges. Incidence is the angle to the normal of the hit
-/// surface.
-ResimulateResult resimulate(const Tracer& tracer, const PrimitiveAttributes& scene,
-                            Vec3d scene_origin, const KittiSequence& sequence,
+/// surface. `scene.world`: its objects are where they were at the time of each beam (or of its
+/// scan, if points have no times); their hits count in all figures but those by incidence and of
+/// intensities.
+ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequence,
                             const LabelScheme& labels, const ResimulateOptions& options,
                             const Executor& executor, ProgressSink& progress,
                             KeepBeams keep = KeepBeams::no);

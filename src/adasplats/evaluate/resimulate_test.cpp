@@ -59,8 +59,8 @@ class Resimulate : public ::testing::Test {
     const SceneView scene{disks, nullptr};
     const auto tracer = make_brute_force_tracer(scene);
     ProgressSink quiet;
-    return resimulate(*tracer, {.view = scene}, origin_, held_out, semantickitti_labels(), options,
-                      Executor(2), quiet, keep);
+    return resimulate({*tracer, {.view = scene}, origin_}, held_out, semantickitti_labels(),
+                      options, Executor(2), quiet, keep);
   }
 
   std::filesystem::path folder_;
@@ -179,7 +179,7 @@ TEST_F(Resimulate, HoleOfKnownShare) {
   ProgressSink quiet;
   const std::vector<float> intensities = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F};
   const ResimulateResult r =
-      resimulate(*tracer, {.intensities = intensities, .view = scene}, origin_, sequence(points),
+      resimulate({*tracer, {.intensities = intensities, .view = scene}, origin_}, sequence(points),
                  semantickitti_labels(), {}, Executor(1), quiet);
   EXPECT_DOUBLE_EQ(r.all.no_hit, 0.3);
   ASSERT_TRUE(r.intensities);

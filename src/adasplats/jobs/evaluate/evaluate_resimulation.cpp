@@ -256,8 +256,8 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
                                     const HeldOutExtras& extras, Session& session) {
   const LabelScheme scheme = load_label_scheme(labels);
   const auto cast = [&](const KittiSequence& scans, KeepBeams keep = KeepBeams::no) {
-    return resimulate(scene.tracer(), scene.attributes(), scene.origin(), scans, scheme, options,
-                      session.executor, session.progress, keep);
+    return resimulate({scene.tracer(), scene.attributes(), scene.origin(), scene.world()}, scans,
+                      scheme, options, session.executor, session.progress, keep);
   };
   require_same_place(scene, sequence);
   HeldOutResult result;
@@ -290,7 +290,7 @@ HeldOutResult evaluate_resimulation(const ResimulateJob& job, Session& session) 
     throw Error(ErrorKind::usage,
                 "`drop_movable` has no effect: " + sequence.folder.string() + " has no labels");
   }
-  const ModelScene scene(job.model, "", session);
+  const ModelScene scene(job.model, "", session, WorldFiles::taken);
   HeldOutExtras extras = job.extras;
   if (!job.picture.empty() || !job.errors.empty()) extras.keep = KeepBeams::yes;
   HeldOutResult result =
@@ -362,6 +362,7 @@ nlohmann::ordered_json to_json(const ResimulateResult& result) {
   add("by_range", result.by_range);
   add("by_incidence", result.by_incidence);
   add("by_surroundings", result.by_surroundings);
+  add("by_motion", result.by_motion);
   add("by_class", result.by_class);
   add("by_elevation", result.by_elevation);
   return json;
