@@ -107,6 +107,15 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
   }
 }
 
+MovingBoxes::MovingBoxes(std::vector<BoxTrack> tracks) : tracks_(std::move(tracks)) {
+  for (const BoxTrack& track : tracks_) {
+    const bool is_first = end_s_ < begin_s_;
+    const double begin_s = track.boxes.front().time_s, end_s = track.boxes.back().time_s;
+    begin_s_ = is_first ? begin_s : std::min(begin_s_, begin_s);
+    end_s_ = is_first ? end_s : std::max(end_s_, end_s);
+  }
+}
+
 TimedBox BoxTrack::at(double time_s) const {
   const auto after = std::ranges::upper_bound(boxes, time_s, {}, &TimedBox::time_s);
   const TimedBox& b = after == boxes.end() ? boxes.back() : *after;
@@ -140,6 +149,19 @@ std::uint16_t MovingBoxes::object_at(double time_s, Vec3d point) const {
     }
   }
   return object;
+}
+
+std::vector<std::uint16_t> MovingBoxes::objects_in(const KittiSequence& drive, std::size_t index,
+                                                   const KittiScan& scan,
+                                                   const Executor& executor) const {
+  const TimedPose& pose = drive.trajectory[index];
+  std::vector<std::uint16_t> objects(scan.positions.size());
+  executor.for_chunks(objects.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      objects[i] = object_at(scan.times_s.empty() ? pose.time_s : scan.times_s[i],
+                             pose.world_from_sensor * beam_of(drive, index, scan, i).end);
+  });
+  return objects;
 }
 
 }  // namespace adasplats

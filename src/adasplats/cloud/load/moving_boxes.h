@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
@@ -40,6 +42,9 @@ class MovingBoxes {
   /// than 65,535 objects).
   explicit MovingBoxes(const std::filesystem::path& path);
 
+  /// Of tracks with at least one box each.
+  explicit MovingBoxes(std::vector<BoxTrack> tracks);
+
   bool empty() const { return tracks_.empty(); }
   /// Whether the times of all boxes, moving or not, overlap a time span.
   bool overlaps(double begin_s, double end_s) const {
@@ -51,6 +56,9 @@ class MovingBoxes {
   /// 0.2 m; of several the one whose middle is nearest; 0: none. Boxes are held for one step before
   /// the first and after the last.
   std::uint16_t object_at(double time_s, Vec3d point) const;
+  /// object_at() of all points of scan number `index` of a drive (KittiScan::in_boxes).
+  std::vector<std::uint16_t> objects_in(const KittiSequence& drive, std::size_t index,
+                                        const KittiScan& scan, const Executor& executor) const;
 
  private:
   std::vector<BoxTrack> tracks_;

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/traffic/find_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
+
+std::size_t points_of(const ClusterTrack& track) {
+  std::size_t count = 0;
+  for (const Cluster& cluster : track) count += cluster.points.size();
+  return count;
+}
+
+/// Whether a cluster is in a box with a margin.
+bool contains(const TimedBox& box, const Cluster& cluster, double margin_m) {
+  const Vec3d off = cluster.middle - box.middle;
+  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
+  return std::fabs(c * off.x + s * off.y) <= box.half_size.x + margin_m &&
+         std::fabs(-s * off.x + c * off.y) <= box.half_size.y + margin_m &&
+         std::fabs(off.z) <= box.half_size.z + margin_m;
+}
+
+/// The motion at the first or last boxes of a track, m/s.
+Vec3d velocity_at_end(const BoxTrack& track, bool first) {
+  constexpr std::size_t kBoxes = 4;
+  const std::size_t count = std::min(kBoxes, track.boxes.size());
+  const TimedBox& a = track.boxes[first ? 0 : track.boxes.size() - count];
+  const TimedBox& b = track.boxes[first ? count - 1 : track.boxes.size() - 1];
+  return (1 / (b.time_s - a.time_s)) * (b.middle - a.middle);
+}
+
+/// The box of a track at a time, beyond its ends in uniform motion.
+TimedBox extrapolated(const BoxTrack& track, double time_s) {
+  TimedBox box = track.at(time_s);
+  const double before_s = track.boxes.front().time_s - time_s;
+  const double behind_s = time_s - track.boxes.back().time_s;
+  if (before_s > 0) box.middle = box.middle - before_s * velocity_at_end(track, true);
+  if (behind_s > 0) box.middle = box.middle + behind_s * velocity_at_end(track, false);
+  return box;
+}
+
+/// Whether a track goes on with another one, or both are parts of one object: where the second one
+/// begins or ends, it is in the first one's box and moves like it.
+bool is_same_object(const BoxTrack& a, const BoxTrack& b, const ClusterTrack& clusters_of_b,
+                    double margin_m) {
+  constexpr double kGap_s = 1.5, kDrift_mps = 0.8, kSlower_mps = 3;
+  for (const bool first : {true, false}) {
+    const Cluster& cluster = first ? clusters_of_b.front() : clusters_of_b.back();
+    const double gap_s = std::max(
+        {0.0, a.boxes.front().time_s - cluster.time_s, cluster.time_s - a.boxes.back().time_s});
+    if (gap_s > kGap_s) continue;
+    const bool at_first = cluster.time_s < 0.5 * (a.boxes.front().time_s + a.boxes.back().time_s);
+    if (length(velocity_at_end(a, at_first) - velocity_at_end(b, first)) < kSlower_mps &&
+        contains(extrapolated(a, cluster.time_s), cluster, margin_m + kDrift_mps * gap_s))
+      return true;
+  }
+  return false;
+}
+
+/// Which track every cluster belongs to.
+class Owners {
+ public:
+  Owners(std::span<const LoosePoints> loose, std::vector<std::vector<Cluster>> clusters)
+      : loose_(loose), clusters_(std::move(clusters)) {
+    for (const std::vector<Cluster>& of_scan : clusters_)
+      owners_.emplace_back(of_scan.size(), kNobody);
+  }
+
+  const std::vector<std::vector<Cluster>>& clusters() const { return clusters_; }
+
+  /// The clusters with a point in common with those of the track.
+  void set(const ClusterTrack& track, std::size_t owner) {
+    for (const Cluster& cluster : track)
+      for (std::size_t k = 0; k < clusters_[cluster.scan].size(); ++k)
+        if (clusters_[cluster.scan][k].points.front() == cluster.points.front())
+          owners_[cluster.scan][k] = owner;
+  }
+
+  /// Gives all clusters of one track to another.
+  void join(std::size_t from, std::size_t to) {
+    for (std::vector<std::size_t>& of_scan : owners_) std::ranges::replace(of_scan, from, to);
+  }
+
+  /// Gives an object all clusters in its boxes that are nobody's or of one with a larger number.
+  void absorb(const BoxTrack& boxes, std::size_t owner, double margin_m) {
+    for (std::size_t scan = 0; scan < clusters_.size(); ++scan) {
+      for (std::size_t k = 0; k < clusters_[scan].size(); ++k) {
+        const Cluster& cluster = clusters_[scan][k];
+        if (owners_[scan][k] <= owner || cluster.time_s < boxes.boxes.front().time_s - kReach_s ||
+            cluster.time_s > boxes.boxes.back().time_s + kReach_s)
+          continue;
+        if (contains(boxes.at(cluster.time_s), cluster, margin_m)) owners_[scan][k] = owner;
+      }
+    }
+  }
+
+  /// The clusters of an object, one per scan.
+  ClusterTrack track_of(std::size_t owner) const {
+    ClusterTrack track;
+    for (std::size_t scan = 0; scan < clusters_.size(); ++scan) {
+      std::vector<std::uint32_t> points;
+      for (std::size_t k = 0; k < clusters_[scan].size(); ++k)
+        if (owners_[scan][k] == owner)
+          points.insert(points.end(), clusters_[scan][k].points.begin(),
+                        clusters_[scan][k].points.end());
+      if (points.empty()) continue;
+      std::ranges::sort(points);
+      track.push_back(cluster_of(loose_[scan], scan, std::move(points)));
+    }
+    return track;
+  }
+
+ private:
+  static constexpr double kReach_s = 0.01;
+
+  std::span<const LoosePoints> loose_;
+  std::vector<std::vector<Cluster>> clusters_;
+  std::vector<std::vector<std::size_t>> owners_;
+};
+
+}  // namespace
+
+std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
+                                 FunctionRef<double(Vec3d)> height_below,
+                                 const FindBoxesOptions& options, const Executor& executor) {
+  std::vector<std::vector<Cluster>> clusters;
+  for (const LoosePoints& of_scan : loose)
+    clusters.push_back(clusters_of(of_scan, clusters.size(), options.clusters, executor));
+  std::vector<ClusterTrack> tracks = track_clusters(clusters, options.tracks);
+  std::ranges::stable_sort(tracks, std::ranges::greater{}, points_of);
+  Owners owners(loose, std::move(clusters));
+  for (std::size_t t = 0; t < tracks.size(); ++t) owners.set(tracks[t], t);
+  const auto fit = [&](std::size_t t) -> std::optional<BoxTrack> {
+    const ClusterTrack track = owners.track_of(t);
+    if (track.size() < options.tracks.min_scans) return std::nullopt;
+    return fit_boxes(track, loose, height_below, options.boxes);
+  };
+  std::vector<std::optional<BoxTrack>> fits;
+  for (std::size_t t = 0; t < tracks.size(); ++t) fits.push_back(fit(t));
+  std::vector<BoxTrack> found;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (fits[t]) fits[t] = fit(t);  // others may have got clusters of it
+    for (std::size_t other = t + 1; fits[t] && other < tracks.size(); ++other) {
+      if (!fits[other] || !is_same_object(*fits[t], *fits[other], tracks[other], options.margin_m))
+        continue;
+      owners.join(other, t);
+      fits[other].reset();
+      fits[t] = fit(t);
+      other = t;  // the longer track may go on with others
+    }
+    if (!fits[t]) continue;
+    owners.absorb(*fits[t], t, options.margin_m);
+    std::optional<BoxTrack> boxes = fit(t);
+    if (!boxes) continue;
+    boxes->id = found.size() + 1;
+    found.push_back(std::move(*boxes));
+  }
+  return found;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/traffic/find_moving.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <utility>
+
+#include "adasplats/traffic/ground_heights.h"
+
+namespace adasplats {
+namespace {
+
+/// Distances in scans to those that say what is free: near ones for fast objects, far ones for slow
+/// ones.
+constexpr std::array<std::size_t, 10> kOffsets = {1, 2, 3, 4, 6, 8, 11, 15, 20, 26};
+
+/// Consecutive scans that are in memory.
+class Window {
+ public:
+  Window(const KittiSequence& drive, std::span<const std::size_t> scans,
+         const SeenSpaceOptions& options)
+      : drive_(drive), scans_(scans), options_(options) {}
+
+  /// Reads scans up to number `k` of the chosen ones; `ground` gets their points.
+  void read_to(std::size_t k, GroundHeights& ground) {
+    for (; end_ < scans_.size() && end_ <= k; ++end_) {
+      KittiScan scan = read_all_returns(drive_, scans_[end_]);
+      ground.add(drive_, scans_[end_], scan);
+      SeenSpace seen(drive_, scans_[end_], scan, options_);
+      entries_.push_back({std::move(scan), std::move(seen)});
+    }
+  }
+  void forget_before(std::size_t k) {
+    for (; begin_ < k && begin_ < end_; ++begin_) entries_.pop_front();
+  }
+  const KittiScan& scan(std::size_t k) const { return entries_[k - begin_].scan; }
+  /// What the scans around `k` saw.
+  std::vector<const SeenSpace*> others_of(std::size_t k) const {
+    std::vector<const SeenSpace*> others;
+    for (const std::size_t offset : kOffsets) {
+      if (k >= offset) others.push_back(&entries_[k - offset - begin_].seen);
+      if (k + offset < end_) others.push_back(&entries_[k + offset - begin_].seen);
+    }
+    return others;
+  }
+
+ private:
+  struct Entry {
+    KittiScan scan;
+    SeenSpace seen;
+  };
+  const KittiSequence& drive_;
+  std::span<const std::size_t> scans_;
+  const SeenSpaceOptions& options_;
+  std::size_t begin_ = 0, end_ = 0;  ///< of the chosen scans
+  std::deque<Entry> entries_;
+};
+
+}  // namespace
+
+std::vector<BoxTrack> find_moving(const KittiSequence& drive, std::span<const std::size_t> scans,
+                                  const FindMovingOptions& options, const Executor& executor,
+                                  ProgressSink& progress) {
+  progress.begin_step("find moving objects", scans.size());
+  Window window(drive, scans, options.seen);
+  GroundHeights ground;
+  std::vector<LoosePoints> loose;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    window.forget_before(k - std::min(k, kOffsets.back()));
+    window.read_to(k + kOffsets.back(), ground);
+    loose.push_back(loose_points(drive, scans[k], window.scan(k), window.others_of(k),
+                                 options.loose, executor));
+    progress.advance(k + 1);
+  }
+  const auto height_below = [&](Vec3d point) { return ground.at(point.x, point.y); };
+  std::vector<BoxTrack> found = find_boxes(loose, height_below, options.boxes, executor);
+  progress.end_step();
+  return found;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+/// A beam that passed through the box of an object, in the object's frame.
+struct PassingBeam {
+  Vec3d origin;     ///< m
+  Vec3d direction;  ///< unit
+};
+
+/// The points of an object in one scan, in the object's frame.
+struct ObjectScan {
+  std::size_t scan = 0;              ///< its number in the drive
+  double time_s = 0;                 ///< mean of its points
+  std::vector<Vec3d> points;         ///< m
+  std::vector<Vec3d> origins;        ///< where their beams began, m
+  std::vector<float> intensities;    ///< as measured; empty: unknown
+  std::vector<PassingBeam> passing;  ///< that show where the object is not
+};
+
+/// An object that moved through a recording. Its frame: origin in the middle of its box, x ahead, y
+/// left, z up.
+struct RecordedObject {
+  std::uint64_t id = 0;
+  std::string label;  ///< of the boxes; may be empty
+  Vec3d size_m;       ///< length, width, height
+  Trajectory world_from_object;
+  std::vector<ObjectScan> scans;
+
+  std::size_t points() const;
+};
+
+/// The object of a box track, without points. Its x axis is the axis of the boxes along which it
+/// moves; if it moves less than 1 m, the longer one.
+RecordedObject object_of(const BoxTrack& track);
+
+/// Collects the points of objects (KittiScan::in_boxes) scan by scan, and the beams that passed
+/// through their boxes. A point is placed by the pose of its object at its time; without times, at
+/// the time of the scan. Points lower than 5 cm above the bottom of the box are ground and are
+/// skipped.
+class ObjectCollector {
+ public:
+  explicit ObjectCollector(std::span<const BoxTrack> tracks);
+  /// Adds scan number `index` of a drive; `scan` is of read_all_returns().
+  void add(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
+           const Executor& executor);
+  /// One object per track, in their order; some have no points.
+  std::vector<RecordedObject> take() { return std::move(objects_); }
+
+ private:
+  void add_passing(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
+                   const Executor& executor);
+
+  std::vector<RecordedObject> objects_;
+};
+
+}  // namespace adasplats
