@@ -12,6 +12,7 @@
 #include "adasplats/jobs/city/make_city.h"
 #include "adasplats/jobs/city/tile_choice.h"
 #include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/model/make_traffic.h"
 #include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/output/output_check.h"
 #include "adasplats/jobs/provenance/provenance.h"
@@ -95,6 +96,9 @@ class ModelCommand final : public Command {
     require(writes(add_path(app, "-o,--output", job_.output,
                             "Model to write, PLY; with --tile: folder of a city"),
                    {".ply", ""}));
+    app.add_flag(
+        "--traffic", traffic_,
+        "Model the moving objects in --boxes, too; the output is a folder with a world file");
     app.add_flag("--overwrite", job_.overwrite, "Replace an existing city");
     add_settings(app, job_.tiles);
     visit_settings(job_.memory, [&app](const Setting& setting, double& value) {
@@ -159,6 +163,11 @@ class ModelCommand final : public Command {
         run_plan(session);
       else
         run_city(session);
+      return;
+    }
+    if (traffic_) {
+      require_folder_apart(job_.output, job_.inputs);
+      run_traffic_of(session);
       return;
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
@@ -257,6 +266,18 @@ class ModelCommand final : public Command {
           (result.was_done ? " already done\n" : " done\n"));
   }
 
+  void run_traffic_of(Session& session) {
+    const TrafficResult result = run_traffic(job_, job_.output, session);
+    session.report.update(to_json(result));
+    TextTable table({"object", "scans", "points", "splats", "shift of boxes"});
+    for (const TrafficObject& object : result.objects)
+      table.add_row({object.name, grouped(object.scans), grouped(object.points),
+                     object.left_out.empty() ? grouped(object.splats) : object.left_out,
+                     centimetres(object.aligned.median_shift_m)});
+    print(table.text() + "\n" + (job_.output / "world.toml").string() + ": " +
+          grouped(result.scene.built.primitives) + " splats\n");
+  }
+
   void run_city(Session& session) {
     const CityResult result = make_city(job_, session);
     session.report.update(to_json(result));
@@ -296,6 +317,7 @@ class ModelCommand final : public Command {
   CityJob job_;
   MethodChoice recipe_;
   bool plan_ = false;
+  bool traffic_ = false;
   std::optional<TileKey> only_tile_;
 };
 

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/jobs/model/make_traffic.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/open_inputs.h"
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/traffic/find_moving.h"
+#include "adasplats/traffic/object_cloud.h"
+
+namespace adasplats {
+namespace {
+
+/// A kind of objects: words that its labels contain, its class of SemanticKITTI, and whether it is
+/// a vehicle, which is symmetric.
+struct ObjectKind {
+  std::string_view word;
+  std::string_view class_name;
+  bool is_vehicle;
+};
+
+/// The first match counts.
+constexpr std::array<ObjectKind, 14> kKinds = {{{"motorcycl", "moving-motorcyclist", false},
+                                                {"scooter", "moving-motorcyclist", false},
+                                                {"bicycl", "moving-bicyclist", false},
+                                                {"cyclist", "moving-bicyclist", false},
+                                                {"pedestrian", "moving-person", false},
+                                                {"person", "moving-person", false},
+                                                {"truck", "moving-truck", true},
+                                                {"trailer", "moving-truck", true},
+                                                {"tram", "moving-on-rails", true},
+                                                {"train", "moving-on-rails", true},
+                                                {"bus", "moving-bus", true},
+                                                {"van", "moving-car", true},
+                                                {"car", "moving-car", true},
+                                                {"vehicle", "moving-other-vehicle", true}}};
+
+ObjectKind kind_of(const std::string& label) {
+  const std::string lower = lower_case(label);
+  for (const ObjectKind& kind : kKinds)
+    if (lower.find(kind.word) != std::string::npos) return kind;
+  return {"", "moving-other-vehicle", false};
+}
+
+/// "044-car": letters, digits and hyphens only.
+std::string file_name_of(const RecordedObject& object) {
+  std::string name = std::to_string(object.id);
+  if (name.size() < 3) name.insert(0, 3 - name.size(), '0');
+  name += '-';
+  for (const char c : lower_case(object.label.empty() ? "object" : object.label)) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (is_plain || name.back() != '-') name += is_plain ? c : '-';
+  }
+  while (name.back() == '-') name.pop_back();
+  return name;
+}
+
+/// The drive as the model read it, with its corrections, and the numbers of the chosen scans.
+struct ChosenScans {
+  KittiSequence drive;
+  std::vector<std::size_t> scans;
+};
+
+ChosenScans open_again(const ModelJob& job, Session& session) {
+  const OpenInputs opened(job.inputs, job.load, session.executor, session.progress);
+  if (!opened.inputs().front().sequence)
+    throw Error(ErrorKind::usage, job.inputs.front().string() +
+                                      ": traffic needs scans with times and their trajectory");
+  ChosenScans chosen{*opened.inputs().front().sequence, {}};
+  for (std::size_t k = job.load.first_scan;
+       k < chosen.drive.scans.size() && chosen.scans.size() < job.load.scan_count;
+       k += job.load.scan_stride)
+    chosen.scans.push_back(k);
+  return chosen;
+}
+
+/// The points of the moving objects in the chosen scans.
+std::vector<RecordedObject> collect_objects(const ChosenScans& chosen, const MovingBoxes& boxes,
+                                            Session& session) {
+  ObjectCollector collector(boxes.tracks());
+  session.progress.begin_step("collect objects", chosen.scans.size());
+  for (std::size_t k = 0; k < chosen.scans.size(); ++k) {
+    KittiScan scan = read_all_returns(chosen.drive, chosen.scans[k]);
+    scan.in_boxes = boxes.objects_in(chosen.drive, chosen.scans[k], scan, session.executor);
+    collector.add(chosen.drive, chosen.scans[k], scan, session.executor);
+    session.progress.advance(k + 1);
+  }
+  session.progress.end_step();
+  return collector.take();
+}
+
+/// Changes measured intensities to reflectances by the response of the scene's sensor at each
+/// point's range, at the incidence of most surfaces.
+void to_reflectances(const IntensityResponse& response, PointCloud& cloud) {
+  constexpr float kCosine = 0.8F;
+  if (response.empty()) return;
+  for (std::size_t i = 0; i < cloud.intensities.size(); ++i) {
+    const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
+    const float gain = response.gain(range_m, kCosine);
+    if (gain > 0) cloud.intensities[i] /= gain;
+  }
+}
+
+/// The splats of an object from all of its points.
+SplatModel body_of(PointCloud cloud, const ModelJob& job, Session& session) {
+  ModelOptions options;
+  options.build.recipe = job.build.recipe;
+  options.build.remove = DynamicRemoval::none;
+  options.build.reflectances = false;
+  options.build.trust_origins = true;
+  options.calibration.on = false;
+  if (auto* const ours = std::get_if<ConsistentOptions>(&options.build.recipe))
+    ours->refine = false;  // objects in a world are opaque
+  ProgressSink silence;
+  Session quiet{session.executor, silence, session.seed, session.device};
+  return make_model([&cloud] { return cloud; }, options, quiet).first;
+}
+
+/// Models one object and writes its files; fills in what the caller does not know yet.
+void write_object(RecordedObject& object, const ModelJob& job, const IntensityResponse& response,
+                  const std::filesystem::path& folder, Session& session, TrafficObject& made) {
+  constexpr std::size_t kMinPoints = 100;
+  constexpr float kMirrorApart_m = 0.15F;
+  made.scans = object.scans.size();
+  made.points = object.points();
+  if (made.points < kMinPoints) {
+    made.left_out = "fewer than " + std::to_string(kMinPoints) + " points";
+    return;
+  }
+  made.aligned = align_scans(object, {}, session.executor);
+  made.begin_s = object.world_from_object.front().time_s;
+  made.end_s = object.world_from_object.back().time_s;
+  if (object.world_from_object.size() < 2) {
+    made.left_out = "seen once";
+    return;
+  }
+  PointCloud cloud = cloud_of(object);
+  to_reflectances(response, cloud);
+  if (kind_of(object.label).is_vehicle)
+    made.mirrored_points = add_mirrored(cloud, kMirrorApart_m, session.executor);
+  SplatModel body;
+  try {
+    body = body_of(std::move(cloud), job, session);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::data) throw;
+    made.left_out = error.what();
+    return;
+  }
+  made.splats = body.size();
+  save_model(folder / (made.name + ".ply"), body);
+  write_trajectory_csv(folder / (made.name + ".csv"), object.world_from_object);
+}
+
+/// As MovingBoxes reads them.
+std::string boxes_text(const MovingBoxes& boxes) {
+  std::string text = "time,id,label,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
+  for (const BoxTrack& track : boxes.tracks()) {
+    for (const TimedBox& box : track.boxes) {
+      text += exact_text(box.time_s) + "," + std::to_string(track.id) + "," + track.label + ",0";
+      for (const double value : {box.middle.x, box.middle.y, box.middle.z, 2 * box.half_size.x,
+                                 2 * box.half_size.y, 2 * box.half_size.z, box.yaw_rad})
+        text += "," + exact_text(value);
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::string world_text(const std::vector<TrafficObject>& objects) {
+  std::string text = "model = \"scene.ply\"\n";
+  for (const TrafficObject& object : objects) {
+    if (!object.left_out.empty()) continue;
+    text += "\n[[object]]\nname = \"" + object.name + "\"\ngeometry = \"objects/" + object.name +
+            ".ply\"\nclass = " + std::to_string(object.class_id) + "\ntrajectory = \"objects/" +
+            object.name + ".csv\"\npresent = \"during\"\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder,
+                          Session& session) {
+  if (job.inputs.size() != 1) throw Error(ErrorKind::usage, "`traffic` is of one drive");
+  OutputFolder output(folder, false, "model", {{"traffic", true}});
+  TrafficResult result;
+  ChosenScans chosen = open_again(job, session);
+  ModelJob without = job;
+  MovingBoxes boxes;
+  if (job.load.boxes.empty()) {
+    boxes = MovingBoxes(
+        find_moving(chosen.drive, chosen.scans, {}, session.executor, session.progress));
+    without.load.boxes = output.path() / "boxes.csv";
+    write_file(without.load.boxes, boxes_text(boxes));
+  } else {
+    boxes = MovingBoxes(job.load.boxes);
+  }
+  auto [scene, made] = make_model(without, session);
+  result.scene = std::move(made);
+  save_model(output.path() / "scene.ply", scene);
+  if (!result.scene.calibration.empty()) apply(result.scene.calibration, chosen.drive);
+  std::vector<RecordedObject> objects = collect_objects(chosen, boxes, session);
+  std::filesystem::create_directory(output.path() / "objects");
+  const LabelScheme scheme = semantickitti_labels();
+  session.progress.begin_step("model objects", objects.size());
+  for (RecordedObject& object : objects) {
+    TrafficObject& entry = result.objects.emplace_back();
+    entry.id = object.id;
+    entry.label = object.label;
+    entry.name = file_name_of(object);
+    entry.class_id = scheme.find(kind_of(object.label).class_name)->id;
+    entry.size_m = object.size_m;
+    write_object(object, job, scene.response, output.path() / "objects", session, entry);
+    session.progress.advance(result.objects.size());
+  }
+  session.progress.end_step();
+  write_file(output.path() / "world.toml", world_text(result.objects));
+  output.commit();
+  return result;
+}
+
+nlohmann::ordered_json to_json(const TrafficResult& result) {
+  nlohmann::ordered_json json = to_json(result.scene);
+  json["objects"] = nlohmann::ordered_json::array();
+  for (const TrafficObject& object : result.objects)
+    json["objects"].push_back({{"id", object.id},
+                               {"label", object.label},
+                               {"name", object.name},
+                               {"class", object.class_id},
+                               {"size_m", {object.size_m.x, object.size_m.y, object.size_m.z}},
+                               {"times_s", {object.begin_s, object.end_s}},
+                               {"scans", object.scans},
+                               {"points", object.points},
+                               {"mirrored_points", object.mirrored_points},
+                               {"splats", object.splats},
+                               {"scans_aligned", object.aligned.scans},
+                               {"median_shift_m", object.aligned.median_shift_m},
+                               {"median_turn_rad", object.aligned.median_turn_rad},
+                               {"left_out", object.left_out}});
+  return json;
+}
+
+}  // namespace adasplats

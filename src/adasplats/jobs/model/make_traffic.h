@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/session/session.h"
+#include "adasplats/traffic/align_object.h"
+
+namespace adasplats {
+
+/// One object of the boxes.
+struct TrafficObject {
+  std::uint64_t id = 0;
+  std::string label;
+  std::string name;            ///< of its files, such as "044-car"
+  std::uint16_t class_id = 0;  ///< of SemanticKITTI
+  Vec3d size_m;                ///< length, width, height
+  double begin_s = 0, end_s = 0;
+  std::size_t scans = 0, points = 0, mirrored_points = 0, splats = 0;
+  AlignReport aligned;
+  std::string left_out;  ///< why it is not in the world; empty: it is
+};
+
+struct TrafficResult {
+  ModelResult scene;
+  std::vector<TrafficObject> objects;
+};
+
+/// Models a drive with boxes of its moving objects: the scene without them, and each object in its
+/// own frame with its trajectory. Writes into `folder`: scene.ply, world.toml, and by object
+/// objects/NAME.ply and objects/NAME.csv. Errors: usage (no boxes, not one drive), those of
+/// make_model.
+TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder,
+                          Session& session);
+
+/// The keys of a report.
+nlohmann::ordered_json to_json(const TrafficResult& result);
+
+}  // namespace adasplats
