@@ -95,7 +95,10 @@ void read_text_file(const Input& input) {
 }
 
 void read_pickle(const Input& input) {
-  require_sound(data_frame_of("a.pkl", std::string(input.bytes)), input.bytes.size());
+  const FrameTable table = frame_table_of("a.pkl", std::string(input.bytes));
+  require_sound(table.numbers, input.bytes.size());
+  for (const auto& [name, texts] : table.texts)
+    require(texts.size() == table.numbers.rows, "a text a row");
 }
 
 void read_arrow(const Input& input) {

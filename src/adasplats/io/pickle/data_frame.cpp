@@ -18,19 +18,21 @@ namespace {
 
 constexpr std::size_t kMaxUnpacked = std::size_t{1} << 30;
 constexpr std::size_t kMaxParts = 4096;
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 26;
 constexpr std::string_view kGzipStart = "\x1f\x8b";
 
 /// Builds a table from a pickle.
 class DataFrameReader {
  public:
-  explicit DataFrameReader(const PickledValues& pickle) : pickle_(pickle) {}
+  DataFrameReader(const PickledValues& pickle, bool with_texts)
+      : pickle_(pickle), with_texts_(with_texts) {}
 
-  Table read() {
+  FrameTable read() {
     const PickleValue& frame = pickle_.root();
     if (!made_by(pickle_, frame).ends_with("DataFrame")) throw fault("holds no data frame");
     if (const PickleValue* const columns = argument_of(pickle_, frame, 0)) {
       read_dictionary(*columns);
-      return std::move(table_);
+      return {std::move(table_), std::move(texts_)};
     }
     const PickleValue* const state = state_of(pickle_, frame);
     const PickleValue* manager = nullptr;
@@ -42,7 +44,7 @@ class DataFrameReader {
       read_blocks(*blocks, argument_of(pickle_, *manager, 1));
     else
       read_old_blocks(state_of(pickle_, *manager));
-    return std::move(table_);
+    return {std::move(table_), std::move(texts_)};
   }
 
  private:
@@ -63,11 +65,28 @@ class DataFrameReader {
     if (array.length != table_.rows)
       throw fault("columns of " + std::to_string(table_.rows) + " and of " +
                   std::to_string(array.length) + " rows");
-    if (array.is_objects) return;
-    if (table_.find(name) != nullptr) throw fault("two columns " + shown(name));
+    if (array.is_objects && !with_texts_) return;
+    if (table_.find(name) != nullptr || texts_.contains(name))
+      throw fault("two columns " + shown(name));
+    if (array.is_objects) {
+      texts_.emplace(name, texts_of(array, line));
+      return;
+    }
     used_bytes_ += array.bytes_of_line();
     if (used_bytes_ > pickle_.size_bytes()) throw fault("columns share their values");
     table_.columns.push_back(array.column(name, line));
+  }
+
+  std::vector<std::string> texts_of(const PickledArray& array, std::size_t line) {
+    std::vector<std::string> texts;
+    if (array.objects == nullptr) throw fault("a column of objects without objects");
+    for (std::size_t i = 0; i < array.length; ++i) {
+      const PickleValue& value = pickle_[(*array.objects)[array.index_of(line, i)]];
+      texts.emplace_back(value.kind == PickleKind::text ? value.text : std::string_view());
+      text_bytes_ += sizeof(std::string) + texts.back().size();
+      if (text_bytes_ > kMaxTextBytes) throw fault("more than 64 MiB of texts");
+    }
+    return texts;
   }
 
   /// DataFrame({name: array, ...}).
@@ -81,6 +100,7 @@ class DataFrameReader {
       PickledArray array;
       if (values.kind == PickleKind::sequence) {
         array.is_objects = true;
+        array.objects = &values.items;
         array.length = values.items.size();
       } else {
         array = pickled_array(pickle_, values);
@@ -180,22 +200,38 @@ class DataFrameReader {
   }
 
   const PickledValues& pickle_;
+  bool with_texts_;
   Table table_;
+  std::map<std::string, std::vector<std::string>, std::less<>> texts_;
   bool has_rows_ = false;
-  std::size_t used_bytes_ = 0;
+  std::size_t used_bytes_ = 0, text_bytes_ = 0;
 };
+
+/// The bytes of a pickle, gzipped or not.
+std::string read_pickle_bytes(const std::filesystem::path& path) {
+  std::string bytes = read_file(path);
+  if (bytes.starts_with(kGzipStart)) bytes = gunzipped(path, bytes, kMaxUnpacked);
+  return bytes;
+}
 
 }  // namespace
 
 Table data_frame_of(const std::filesystem::path& path, std::string pickle) {
   const PickledValues values(path, std::move(pickle));
-  return DataFrameReader(values).read();
+  return DataFrameReader(values, false).read().numbers;
 }
 
 Table read_data_frame(const std::filesystem::path& path) {
-  std::string bytes = read_file(path);
-  if (bytes.starts_with(kGzipStart)) bytes = gunzipped(path, bytes, kMaxUnpacked);
-  return data_frame_of(path, std::move(bytes));
+  return data_frame_of(path, read_pickle_bytes(path));
+}
+
+FrameTable frame_table_of(const std::filesystem::path& path, std::string pickle) {
+  const PickledValues values(path, std::move(pickle));
+  return DataFrameReader(values, true).read();
+}
+
+FrameTable read_frame_table(const std::filesystem::path& path) {
+  return frame_table_of(path, read_pickle_bytes(path));
 }
 
 }  // namespace adasplats

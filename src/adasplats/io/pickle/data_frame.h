@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +25,17 @@ Table read_data_frame(const std::filesystem::path& path);
 
 /// The same for the bytes of a pickle; `path` is for messages.
 Table data_frame_of(const std::filesystem::path& path, std::string pickle);
+
+/// A data frame with its columns of objects by name: texts, and empty texts for other objects
+/// (None, NaN).
+struct FrameTable {
+  Table numbers;
+  std::map<std::string, std::vector<std::string>, std::less<>> texts;
+};
+
+/// Same as read_data_frame() and data_frame_of(), with texts: at most 64 MiB.
+FrameTable read_frame_table(const std::filesystem::path& path);
+FrameTable frame_table_of(const std::filesystem::path& path, std::string pickle);
 
 /// A column of a data frame: float64, int64, bool (0 or 1) or text, with a value for each row.
 struct FrameColumn {

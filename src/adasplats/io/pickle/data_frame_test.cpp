@@ -50,6 +50,24 @@ TEST(DataFrame, ReadsWhatPandasWrites) {
   EXPECT_EQ(values_of(mixed, "k"), (Doubles{-1, 2}));
 }
 
+// Oracle: what pandas was given.
+TEST(DataFrame, TextsOfPandas) {
+  const FrameTable mixed = frame_table_of("f", from_base64(io_test::kPandasMixed));
+  EXPECT_EQ(mixed.numbers.columns.size(), 2U);
+  ASSERT_EQ(mixed.texts.size(), 1U);
+  EXPECT_EQ(mixed.texts.at("s"), (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(DataFrame, TextsThatWeWrite) {
+  const FrameTable table = frame_table_of("f", our_frame());
+  EXPECT_EQ(table.numbers.columns.size(), 3U);
+  EXPECT_EQ(table.texts.at("s"), (std::vector<std::string>{"ä", ""}));
+  const std::vector<FrameColumn> twice = {{"s", std::vector<std::string>{"a"}},
+                                          {"s", std::vector<std::string>{"b"}}};
+  expect_error(ErrorKind::data, {"two columns 's'"},
+               [&] { frame_table_of("f", pickled_data_frame(twice)); });
+}
+
 // Oracle: round trip; tests/exports lets pandas read them.
 TEST(DataFrame, ReadsWhatWeWrite) {
   const TemporaryFolder folder;

@@ -114,13 +114,11 @@ PickledArray array_of_state(const PickledValues& pickle, const PickleValue& stat
 Column PickledArray::column(std::string_view name, std::size_t line) const {
   Column column;
   column.name = name;
-  const std::size_t first = by_columns ? line : line * length;
-  const std::size_t step = by_columns ? lines : 1;
   with_type(type, [&](auto zero) {
     using Value = decltype(zero);
     std::vector<Value> values(length);
     for (std::size_t i = 0; i < length; ++i)
-      std::memcpy(&values[i], bytes.data() + (first + i * step) * sizeof(Value), sizeof(Value));
+      std::memcpy(&values[i], bytes.data() + index_of(line, i) * sizeof(Value), sizeof(Value));
     column.values = std::move(values);
   });
   return column;

@@ -20,6 +20,10 @@ struct PickledArray {
   std::size_t lines = 1, length = 0;
   bool by_columns = false;  ///< Fortran order: the values of a line are not adjacent
 
+  /// Index of a value of a line. `line` is below `lines`, `i` below `length`.
+  std::size_t index_of(std::size_t line, std::size_t i) const {
+    return by_columns ? line + i * lines : line * length + i;
+  }
   /// Size of a line of numbers.
   std::size_t bytes_of_line() const { return lines == 0 ? 0 : bytes.size() / lines; }
   /// A line of numbers as a column. `line` is below `lines`.
