@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/load/av2_tables.h"
+#include "adasplats/cloud/load/box_files.h"
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/sensor_drive.h"
@@ -31,7 +33,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kNanosecond_s = 1e-9;
 constexpr std::size_t kLasersOfUnit = 32;
 constexpr const char* kUnitModel = "velodyne-vlp-32c";  // both LiDARs
 
@@ -41,92 +42,10 @@ constexpr std::array<std::uint16_t, kLasersOfUnit> kBeamOfLaser = {
     2,  16, 6,  13, 0,  12, 4,  9,  7,  11, 8,  5,  10, 14, 3,  1,
     26, 30, 20, 17, 23, 28, 24, 21, 19, 25, 15, 27, 22, 29, 18, 31};
 
-Error av2_fault(const fs::path& file, const std::string& what) {
-  return {ErrorKind::data, file.string() + ": " + what};
-}
-
-/// A table of a log. Errors: no_input if it is missing.
-ArrowTable read_log_table(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored))
-    throw Error(ErrorKind::no_input,
-                file.string() +
-                    ": is missing; an Argoverse 2 log contains sensors/lidar, "
-                    "calibration/egovehicle_SE3_sensor.feather and city_SE3_egovehicle.feather");
-  return read_arrow_file(file);
-}
-
-const Column& av2_column(const fs::path& file, const ArrowTable& table, std::string_view name) {
-  const Column* const column = table.numbers.find(name);
-  if (column == nullptr)
-    throw av2_fault(file, "has no column of numbers '" + std::string(name) + "'");
-  return *column;
-}
-
-/// The poses of a table, one in each row.
-std::vector<RigidTransform> poses_of_rows(const fs::path& file, const ArrowTable& table) {
-  const Column& qw = av2_column(file, table, "qw");
-  const Column& qx = av2_column(file, table, "qx");
-  const Column& qy = av2_column(file, table, "qy");
-  const Column& qz = av2_column(file, table, "qz");
-  const Column& x = av2_column(file, table, "tx_m");
-  const Column& y = av2_column(file, table, "ty_m");
-  const Column& z = av2_column(file, table, "tz_m");
-  constexpr double kTolerance = 1e-3;
-  std::vector<RigidTransform> poses;
-  for (std::size_t row = 0; row < table.numbers.rows; ++row) {
-    const Quaternion q = {qw.as_double(row), qx.as_double(row), qy.as_double(row),
-                          qz.as_double(row)};
-    const Vec3d place = {x.as_double(row), y.as_double(row), z.as_double(row)};
-    const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    const std::string where = "row " + std::to_string(row) + " (from 0): ";
-    if (!(std::fabs(norm - 1) <= kTolerance))
-      throw av2_fault(file, where + "the quaternion qw, qx, qy, qz has length " + exact_text(norm) +
-                                ", expected 1");
-    if (!is_finite(place)) throw av2_fault(file, where + "tx_m, ty_m, tz_m is not finite");
-    poses.push_back(
-        {rotation_from_quaternion(q.w / norm, q.x / norm, q.y / norm, q.z / norm), place});
-  }
-  return poses;
-}
-
-std::int64_t whole_ns(const fs::path& file, const ArrowTable& table, std::size_t row) {
-  const Column& stamps = av2_column(file, table, "timestamp_ns");
-  if (const auto* const exact = std::get_if<std::vector<std::int64_t>>(&stamps.values))
-    return (*exact)[row];
-  throw av2_fault(file, "column 'timestamp_ns' is not of 64-bit integers");
-}
-
-/// The poses of the vehicle by their exact stamps, and over time.
-struct Av2Poses {
-  fs::path file;
-  std::map<std::int64_t, RigidTransform> by_stamp_ns;
-  Trajectory track;  ///< seconds resolve 60 ns; of nearer stamps the first
-};
-
-Av2Poses read_av2_poses(const fs::path& folder) {
-  Av2Poses poses;
-  poses.file = folder / "city_SE3_egovehicle.feather";
-  const ArrowTable table = read_log_table(poses.file);
-  const std::vector<RigidTransform> city_from_vehicle = poses_of_rows(poses.file, table);
-  for (std::size_t row = 0; row < city_from_vehicle.size(); ++row)
-    poses.by_stamp_ns.emplace(whole_ns(poses.file, table, row), city_from_vehicle[row]);
-  if (poses.by_stamp_ns.empty()) throw av2_fault(poses.file, "holds no poses");
-  for (const auto& [stamp_ns, pose] : poses.by_stamp_ns) {
-    const double time_s = kNanosecond_s * static_cast<double>(stamp_ns);
-    if (poses.track.empty() || time_s > poses.track.back().time_s)
-      poses.track.push_back({time_s, pose});
-  }
-  // The points of the last sweep are later than its stamp.
-  constexpr double kSweepOfAv2_s = 0.1;
-  poses.track = with_extrapolated_ends(std::move(poses.track), kSweepOfAv2_s);
-  return poses;
-}
-
 std::array<RigidTransform, 2> read_av2_mounts(const fs::path& folder) {
   const fs::path file = folder / "calibration" / "egovehicle_SE3_sensor.feather";
-  const ArrowTable table = read_log_table(file);
-  const std::vector<RigidTransform> mounts = poses_of_rows(file, table);
+  const ArrowTable table = read_av2_table(file);
+  const std::vector<RigidTransform> mounts = av2_poses_of_rows(file, table);
   const auto names = table.texts.find("sensor_name");
   if (names == table.texts.end()) throw av2_fault(file, "has no column of text 'sensor_name'");
   std::array<RigidTransform, 2> of_units;
@@ -221,7 +140,8 @@ class Av2Reader final : public ScanReader {
       scan.lasers.push_back(at.ring);
       scan.times_s.push_back(time_s);
       if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.object_at(time_s, pose.world_from_sensor * point));
+        scan.in_boxes.push_back(boxes_.object_at(boxes_.time_of_point(pose.time_s, time_s),
+                                                 pose.world_from_sensor * point));
     }
     scan.intensities = scale_.scaled(std::move(sweep.points.intensities), file);
     return scan;
@@ -327,16 +247,6 @@ double require_beams(const DriveInput& drive, const Av2Reader& reader,
   throw Error(ErrorKind::data, drive.folder.string() + text.data());
 }
 
-MovingBoxes boxes_of_sweeps(const DriveInput& drive, const Trajectory& sweeps) {
-  if (drive.boxes.empty()) return {};
-  MovingBoxes boxes(drive.boxes);
-  if (!boxes.overlaps(sweeps.front().time_s, sweeps.back().time_s))
-    throw Error(ErrorKind::data, drive.boxes.string() +
-                                     ": no box has a time within the scans; the clocks differ, or "
-                                     "the boxes belong to another drive");
-  return boxes;
-}
-
 Av2Units units_of_log(const DriveInput& drive) {
   Av2Units units{read_av2_mounts(drive.folder), {}};
   const auto* const chosen = std::ranges::find(kAv2Sensors, drive.topic);
@@ -379,7 +289,7 @@ KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
   const IntensityScale scale = scale_of_scans(Av2Points(units.chosen), sequence.scans);
   const auto reader =
       std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file), units, scale,
-                                  boxes_of_sweeps(drive, sequence.trajectory));
+                                  boxes_of_drive(drive, sequence.scans, sequence.trajectory));
   const double median_rad = require_beams(drive, *reader, sequence.scans);
   sequence.reader = reader;
   std::array<char, 160> text{};

@@ -57,7 +57,10 @@ class Av2Court {
       if (cones.sensor == "velodyne-vlp-32c") cones_ = cones;
     write_poses(sweeps);
     write_mounts("up_lidar", "down_lidar");
-    for (int k = 0; k < sweeps; ++k) write_sweep(k);
+    for (int k = 0; k < sweeps; ++k) {
+      write_sweep(k);
+      sweep_ends.push_back(world.size());
+    }
   }
 
   static RigidTransform vehicle_at(std::int64_t stamp_ns) {
@@ -95,6 +98,7 @@ class Av2Court {
   TemporaryFolder folder;
   std::vector<Vec3d> world, origins;  ///< of the points
   std::vector<int> lasers;
+  std::vector<std::size_t> sweep_ends;  ///< in `world`
 
  private:
   struct Sweep {
@@ -159,6 +163,40 @@ TEST(Av2Drive, PointsInTheCityAndBeamsOfTwoLidars) {
   const RigidTransform second = Av2Court::vehicle_at(kFirst_ns + kSweep_ns);
   EXPECT_LT(length(cloud.scan_poses[1].world_from_sensor.translation - second.translation), 1e-6);
   EXPECT_NE(report.drives[0].facts.points_in.find("Argoverse 2"), std::string::npos);
+}
+
+// Annotators draw a box around the points of a sweep, whenever they were measured. Oracle: the
+// points of each sweep in its own box.
+TEST(Av2Drive, BoxesAreThoseOfTheSweepOfAPoint) {
+  const Av2Court court;
+  const Vec3d half_size = {1.5, 0.5, 1.5}, margin = {0.2, 0.2, 0.2};
+  std::vector<std::int64_t> stamps;
+  PoseTable boxes;
+  std::size_t expected = 0, i = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d middle = {3.0 * k, 12, 1.5};  // along a wall at 30 m/s
+    stamps.push_back(kFirst_ns + k * kSweep_ns);
+    boxes.add(Av2Court::vehicle_at(stamps.back()).inverse() * RigidTransform{{}, middle});
+    for (const std::size_t end = court.sweep_ends[static_cast<std::size_t>(k)]; i < end; ++i) {
+      const Vec3d away = court.world[i] - middle, reach = half_size + margin;
+      expected += std::fabs(away.x) <= reach.x && std::fabs(away.y) <= reach.y &&
+                  std::fabs(away.z) <= reach.z;
+    }
+  }
+  std::vector<arrow_test::ArrowColumn> columns = boxes.after(numbers("timestamp_ns", stamps));
+  const auto sides = [](double side) { return std::vector<double>(3, side); };
+  columns.push_back(texts("track_uuid", {"a", "a", "a"}));
+  columns.push_back(texts("category", {"BUS", "BUS", "BUS"}));
+  columns.push_back(numbers("length_m", sides(2 * half_size.x)));
+  columns.push_back(numbers("width_m", sides(2 * half_size.y)));
+  columns.push_back(numbers("height_m", sides(2 * half_size.z)));
+  court.folder.write("annotations.feather", arrow_file({columns}));
+  LoadOptions options;
+  options.boxes = court.folder.path();
+  const auto [cloud, report] = court.load(options);
+  ASSERT_GT(expected, 100U);
+  EXPECT_EQ(report.in_boxes, expected);
+  EXPECT_EQ(cloud.size() + expected, court.world.size());
 }
 
 // Oracle: the beams of one LiDAR among those that were cast, in their order.

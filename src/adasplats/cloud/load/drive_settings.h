@@ -42,7 +42,7 @@ inline Words<SweepPoints> words_of(SweepPoints) { return kSweepPoints; }
 struct DriveSettings {
   /// Of the vehicle or of the sensor, as read by read_trajectory.
   std::filesystem::path trajectory;
-  /// Boxes of moving objects (MovingBoxes); points in them are removed from scans with times.
+  /// Boxes of moving objects (read_box_file()); points in them are removed from scans.
   std::filesystem::path boxes;
   /// Lever arm: position of the sensor in the frame of the trajectory's poses, m. Not set: the
   /// poses are the sensor's own, or the mount is recognised.

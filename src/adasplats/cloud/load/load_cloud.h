@@ -169,13 +169,15 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                 .min = 0,
                 .exclusive_min = true},
         load.selection.resolution_m);
-  visit(Setting{.name = "boxes",
-                .help = "Boxes of objects over time (CSV: "
-                        "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw); points in moving "
-                        "boxes are removed from scans with times",
-                .value = "FILE",
-                .group = kGroup},
-        load.boxes);
+  visit(
+      Setting{.name = "boxes",
+              .help = "Boxes of objects over time: annotations of PandaSet, Argoverse 2, nuScenes "
+                      "or KITTI raw, or CSV "
+                      "(time,id,stationary,x,y,z,size_x,size_y,size_z,yaw); points in moving "
+                      "boxes are removed from scans",
+              .value = "PATH",
+              .group = kGroup},
+      load.boxes);
   visit_scan_settings(load, kGroup, visit);
   visit(Setting{.name = "beams_from_poses",
                 .help = "Use the poses as beam origins, even if the sensor is recognised",

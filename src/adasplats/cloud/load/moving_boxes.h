@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
@@ -23,7 +25,7 @@ struct TimedBox {
 
 /// The boxes of one object by time.
 struct BoxTrack {
-  std::uint64_t id = 0;  ///< as the file has it
+  std::uint64_t id = 0;  ///< as the file has it, or the number of its first appearance, from 1
   std::string label;     ///< empty if the file has none
   std::vector<TimedBox> boxes;
 
@@ -31,27 +33,43 @@ struct BoxTrack {
   TimedBox at(double time_s) const;
 };
 
+/// The drive that boxes are read for, as far as their files refer to it.
+struct BoxDrive {
+  std::vector<std::filesystem::path> scans;  ///< by time
+  Trajectory poses;                          ///< of the scans: world_from_sensor
+  std::string lidar;  ///< of kPandaSetSensors, whose cuboids are preferred; empty: pandar64
+  std::string scene;  ///< of nuScenes; empty: the only one
+};
+
+/// What a box file contains, in world coordinates.
+struct BoxContent {
+  std::vector<BoxTrack> moving;    ///< by ascending id, their boxes by ascending time
+  double begin_s = 0, end_s = -1;  ///< times of all boxes, of stationary objects too
+  /// Boxes enclose the points of the scan at their time, which the sensor measured a little earlier
+  /// or later.
+  bool are_of_scans = false;
+};
+
 /// Annotated boxes of moving objects over time.
 class MovingBoxes {
  public:
   MovingBoxes() = default;
-  /// Reads a CSV with the columns time, id, stationary (0: it moves), x, y, z (of the centre, world
-  /// coordinates, m), size_x, size_y, size_z (m), yaw (rad), and optionally label. Other columns
-  /// and stationary boxes are skipped. Errors: data with the line (numbers that are not finite,
-  /// sides that are not positive, ids that are not whole, two boxes of an object at one time, more
-  /// than 65,535 objects).
-  explicit MovingBoxes(const std::filesystem::path& path);
+  explicit MovingBoxes(BoxContent content) : content_(std::move(content)) {}
+  /// Reads a box file or the annotations of a data set: read_box_file().
+  explicit MovingBoxes(const std::filesystem::path& path, const BoxDrive& drive = {});
 
-  /// Of tracks with at least one box each.
-  explicit MovingBoxes(std::vector<BoxTrack> tracks);
-
-  bool empty() const { return tracks_.empty(); }
+  bool empty() const { return content_.moving.empty(); }
   /// Whether the times of all boxes, moving or not, overlap a time span.
   bool overlaps(double begin_s, double end_s) const {
-    return begin_s_ <= end_s_ && begin_s <= end_s_ && end_s >= begin_s_;
+    return content_.begin_s <= content_.end_s && begin_s <= content_.end_s &&
+           end_s >= content_.begin_s;
   }
   /// By ascending id.
-  std::span<const BoxTrack> tracks() const { return tracks_; }
+  std::span<const BoxTrack> tracks() const { return content_.moving; }
+  /// The time for object_at() of a point at `point_s` in the scan with the stamp `scan_s`.
+  double time_of_point(double scan_s, double point_s) const {
+    return content_.are_of_scans ? scan_s : point_s;
+  }
   /// The number, from 1, of the object whose box contains a world point at a time, with a margin of
   /// 0.2 m; of several the one whose middle is nearest; 0: none. Boxes are held for one step before
   /// the first and after the last.
@@ -61,8 +79,7 @@ class MovingBoxes {
                                         const KittiScan& scan, const Executor& executor) const;
 
  private:
-  std::vector<BoxTrack> tracks_;
-  double begin_s_ = 0, end_s_ = -1;  ///< of all boxes in the file
+  BoxContent content_;
 };
 
 }  // namespace adasplats

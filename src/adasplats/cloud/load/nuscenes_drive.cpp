@@ -28,25 +28,19 @@ namespace fs = std::filesystem;
 constexpr const char* kLidarChannel = "LIDAR_TOP";
 constexpr double kMicrosecond_s = 1e-6;
 
-/// A scene by its table.
-struct SceneRow {
-  fs::path tables;
-  std::string token, name;
-};
-
-std::vector<SceneRow> scenes_of(const fs::path& root) {
-  std::vector<SceneRow> scenes;
-  for (const fs::path& tables : nuscenes_tables(root))
+std::vector<NuscenesSceneRow> scenes_of(const std::vector<fs::path>& folders) {
+  std::vector<NuscenesSceneRow> scenes;
+  for (const fs::path& tables : folders)
     for_each_json_row(tables / "scene.json", [&](const JsonRow& row) {
       scenes.push_back({tables, row.text("token"), row.text("name")});
     });
   return scenes;
 }
 
-std::string list_of_scenes(const std::vector<SceneRow>& scenes) {
+std::string list_of_scenes(const std::vector<NuscenesSceneRow>& scenes) {
   constexpr std::size_t kMaxListed = 20;
   std::set<std::string> names;
-  for (const SceneRow& scene : scenes) names.insert(scene.name);
+  for (const NuscenesSceneRow& scene : scenes) names.insert(scene.name);
   std::string list;
   std::size_t listed = 0;
   for (const std::string& name : names) {
@@ -58,25 +52,11 @@ std::string list_of_scenes(const std::vector<SceneRow>& scenes) {
   return list;
 }
 
-SceneRow scene_by_name(const fs::path& root, const std::string& name) {
-  const std::vector<SceneRow> scenes = scenes_of(root);
-  if (scenes.empty()) throw Error(ErrorKind::data, root.string() + ": its tables contain no scene");
-  const auto found = std::ranges::find(scenes, name, &SceneRow::name);
-  if (found != scenes.end()) return *found;
-  const bool is_one = std::ranges::all_of(
-      scenes, [&](const SceneRow& scene) { return scene.name == scenes.front().name; });
-  if (name.empty() && is_one) return scenes.front();
-  throw Error(ErrorKind::usage,
-              root.string() +
-                  (name.empty() ? ": has several scenes; choose one with `scene`: "
-                                : ": has no scene '" + name + "'; it has ") +
-                  list_of_scenes(scenes));
-}
-
 /// Reads the tables of one scene, in the order of their references.
 class SceneReader {
  public:
-  SceneReader(fs::path root, SceneRow scene) : root_(std::move(root)), row_(std::move(scene)) {}
+  SceneReader(fs::path root, NuscenesSceneRow scene)
+      : root_(std::move(root)), row_(std::move(scene)) {}
 
   NuscenesScene read() {
     scene_.name = row_.name;
@@ -185,7 +165,7 @@ class SceneReader {
   }
 
   fs::path root_;
-  SceneRow row_;
+  NuscenesSceneRow row_;
   NuscenesScene scene_;
   std::unordered_map<std::string, RigidTransform> ego_from_sensor_;
   std::unordered_set<std::string> samples_;
@@ -211,8 +191,24 @@ std::vector<fs::path> nuscenes_tables(const fs::path& root) {
   return folders;
 }
 
+NuscenesSceneRow find_nuscenes_scene(const fs::path& root, const std::vector<fs::path>& tables,
+                                     const std::string& name) {
+  const std::vector<NuscenesSceneRow> scenes = scenes_of(tables);
+  if (scenes.empty()) throw Error(ErrorKind::data, root.string() + ": its tables contain no scene");
+  const auto found = std::ranges::find(scenes, name, &NuscenesSceneRow::name);
+  if (found != scenes.end()) return *found;
+  const bool is_one = std::ranges::all_of(
+      scenes, [&](const NuscenesSceneRow& scene) { return scene.name == scenes.front().name; });
+  if (name.empty() && is_one) return scenes.front();
+  throw Error(ErrorKind::usage,
+              root.string() +
+                  (name.empty() ? ": has several scenes; choose one with `scene`: "
+                                : ": has no scene '" + name + "'; it has ") +
+                  list_of_scenes(scenes));
+}
+
 NuscenesScene read_nuscenes_scene(const fs::path& root, const std::string& name) {
-  return SceneReader(root, scene_by_name(root, name)).read();
+  return SceneReader(root, find_nuscenes_scene(root, nuscenes_tables(root), name)).read();
 }
 
 namespace {

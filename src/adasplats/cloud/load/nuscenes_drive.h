@@ -19,6 +19,12 @@ struct NuscenesScan {
   TimedPose pose;                ///< ego_pose * calibrated_sensor, in the axes of the tables
 };
 
+/// A row of scene.json.
+struct NuscenesSceneRow {
+  std::filesystem::path tables;  ///< folder
+  std::string token, name;
+};
+
 struct NuscenesScene {
   std::string name;
   std::vector<NuscenesScan> scans;  ///< by time
@@ -27,6 +33,12 @@ struct NuscenesScene {
 
 /// The table folders of a data root, by name: v1.0-mini, v1.0-trainval, ...
 std::vector<std::filesystem::path> nuscenes_tables(const std::filesystem::path& root);
+
+/// The scene of a name in table folders, the first if several have it; an empty name: the only one.
+/// `root` is for messages. Errors: usage (with a list), no_input, data.
+NuscenesSceneRow find_nuscenes_scene(const std::filesystem::path& root,
+                                     const std::vector<std::filesystem::path>& tables,
+                                     const std::string& name);
 
 /// Reads one scene from the tables (the devkit's docs/schema_nuscenes.md), row by row: memory grows
 /// with the samples of the scene, not with sample_data.json and ego_pose.json. `name`: empty for

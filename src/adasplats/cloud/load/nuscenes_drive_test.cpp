@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -76,7 +77,8 @@ class NuscenesCourt {
     return load_cloud(std::span(&folder_.path(), 1), options, Executor(2), quiet);
   }
 
-  std::vector<Vec3d> world;  ///< in the order of the times
+  std::vector<Vec3d> world;          ///< in the order of the times
+  std::vector<std::size_t> scan_of;  ///< of each point
 
  private:
   void add_scan(int k) {
@@ -98,6 +100,7 @@ class NuscenesCourt {
         if (!range_m) continue;
         const Vec3f p = vec_cast<float>(*range_m * way);
         world.push_back(lidar * vec_cast<double>(p));
+        scan_of.push_back(static_cast<std::size_t>(k));
         for (const float v : {p.x, p.y, p.z, 17.0F, static_cast<float>(ring)}) values.push_back(v);
         labels += static_cast<char>(world.back().z < 0.05 ? 24 : 0);
       }
@@ -151,6 +154,39 @@ TEST(NuscenesDrive, PointsPosesClassesAndIntensities) {
   }
   EXPECT_NE(report.drives[0].facts.labels.find("2 of 4 scans"), std::string::npos);
   EXPECT_EQ(labels_of_tree(court.path())->name(), "nuscenes");
+}
+
+// A box along a wall at the times of the keyframes 0 and 2; scan 1 is half way. Oracle: the points
+// in it.
+TEST(NuscenesDrive, PointsInBoxesOfTheSceneAreLeftOut) {
+  NuscenesCourt court;
+  for (const int k : {0, 1}) court["category"][k]["token"] = "category " + std::to_string(k);
+  court["category"].push_back({{"token", "bus"}, {"name", "vehicle.bus"}, {"index", 16}});
+  court["instance"] = {{{"token", "i"}, {"category_token", "bus"}}};
+  court["sample_annotation"] = Rows::array();
+  court["sample"][0]["timestamp"] = 1'500'000'000'000'000;
+  court["sample"][1]["timestamp"] = 1'500'000'000'600'000;
+  for (const int k : {0, 2}) {
+    Rows box = {{"sample_token", "s" + std::to_string(k)}, {"instance_token", "i"}};
+    put_pose({{}, {3.0 * k, 12, 1.5}}, box);
+    box["size"] = {1, 3, 3};  // width, length, height
+    court["sample_annotation"].push_back(box);
+  }
+  court.write();
+  LoadOptions options;
+  options.scan_count = 3;
+  const std::size_t all = court.load("scene-0001", options).first.size();
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    const std::size_t scan = court.scan_of[i];
+    const Vec3d away = court.world[i] - Vec3d{3.0 * static_cast<double>(scan), 12, 1.5};
+    expected += std::fabs(away.x) <= 1.7 && std::fabs(away.y) <= 0.7 && std::fabs(away.z) <= 1.7;
+  }
+  options.boxes = court.path();
+  const auto [cloud, report] = court.load("scene-0001", options);
+  ASSERT_GT(expected, 20U);
+  EXPECT_EQ(report.in_boxes, expected);
+  EXPECT_EQ(cloud.size() + expected, all);
 }
 
 TEST(NuscenesDrive, ASingleScanIsADrive) {

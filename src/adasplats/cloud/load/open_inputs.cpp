@@ -11,6 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/cloud/load/box_files.h"
+#include "adasplats/cloud/load/boxed_drive.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
@@ -119,6 +121,21 @@ void require_sound(const LoadOptions& options) {
   check_settings(options);
 }
 
+void require_drive_of_boxes(const LoadOptions& options, std::span<const OpenInput> inputs) {
+  if (options.boxes.empty()) return;
+  const auto has_boxes = [](const OpenInput& input) {
+    return input.is_frame_drive || is_kitti_raw_drive(input.input.path);
+  };
+  const auto drives = std::ranges::count_if(inputs, has_boxes);
+  if (drives == 0)
+    throw usage(
+        "`boxes` needs a drive of KITTI raw or another data set, or a folder of scans with times "
+        "and a `trajectory`; no input is one");
+  if (drives > 1 && is_of_numbered_scans(options.boxes))
+    throw usage(options.boxes.string() +
+                ": KITTI's tracklets are of one drive, but several inputs are drives");
+}
+
 void require_applicable_options(const LoadOptions& options, std::span<const OpenInput> inputs) {
   const auto is_sequence = [](const OpenInput& input) { return input.input.is_sequence; };
   const bool any_drive = std::ranges::any_of(inputs, &OpenInput::is_frame_drive);
@@ -137,8 +154,7 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
         "`extent`, `level` and `resolution` select points of files; they do not apply to drives");
   if (options.beams_from_poses && !any_sequence)
     throw usage("`beams_from_poses` needs a sequence folder; no input is one");
-  if (!options.boxes.empty() && !any_drive)
-    throw usage("`boxes` needs a folder of scans with times and a `trajectory`; no input is one");
+  require_drive_of_boxes(options, inputs);
   const bool states_frames = options.points_in == PointsIn::sensor ||
                              options.sweep_points != SweepPoints::found ||
                              !options.scan_times.empty();
@@ -220,7 +236,7 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   require_registered(inputs_);
   for (OpenInput& input : inputs_)
     if (input.input.is_sequence && !input.sequence)
-      input.sequence = open_sequence(input.input.path, options, executor);
+      input.sequence = with_boxes(open_sequence(input.input.path, options, executor), options);
 }
 
 bool OpenInputs::are_drives() const {

@@ -43,26 +43,10 @@ const Column& panda_column(const fs::path& file, const Table& table, std::string
   return *column;
 }
 
-/// The frames of a folder by their numbers: NN.pkl.gz, or NN.pkl.
-std::map<std::size_t, fs::path> numbered_frames(const fs::path& folder) {
-  std::map<std::size_t, fs::path> frames;
-  for (const char* extension : {".gz", ".pkl"}) {
-    for (const fs::path& file : files_by_name(folder, extension)) {
-      const bool is_packed = file.extension() == ".gz";
-      if (is_packed && file.stem().extension() != ".pkl") continue;
-      const auto number = number_in_name(is_packed ? file.stem() : file.filename());
-      if (!number) continue;
-      const auto [twin, is_new] = frames.emplace(*number, file);
-      if (!is_new) throw panda_fault(file, "has the same frame number as " + twin->second.string());
-    }
-  }
-  return frames;
-}
-
 /// One frame per pose. Errors: data if one is missing or has no pose.
 std::vector<fs::path> frames_of_poses(const fs::path& folder, std::size_t poses,
                                       const fs::path& poses_file) {
-  const std::map<std::size_t, fs::path> frames = numbered_frames(folder);
+  const std::map<std::size_t, fs::path> frames = pandaset_frames(folder);
   const std::string has = poses_file.string() + " has " + std::to_string(poses) + " poses";
   std::vector<fs::path> files;
   for (std::size_t k = 0; k < poses; ++k) {
@@ -82,12 +66,7 @@ std::vector<fs::path> frames_of_poses(const fs::path& folder, std::size_t poses,
 /// The poses of the frames at their times.
 Trajectory read_panda_poses(const fs::path& lidar) {
   const fs::path poses_file = lidar / "poses.json", times_file = lidar / "timestamps.json";
-  std::vector<double> times_s;
-  for_each_json_row(times_file, [&](const JsonRow& row) {
-    if (!times_s.empty() && !(row.real() > times_s.back()))
-      throw row.fault("the time is not after the previous one");
-    times_s.push_back(row.real());
-  });
+  const std::vector<double> times_s = pandaset_times(times_file);
   Trajectory poses;
   std::vector<PlacedQuaternion> placed;
   for_each_json_row(poses_file, [&](const JsonRow& row) {
@@ -188,7 +167,7 @@ std::map<fs::path, fs::path> class_files_of(const DriveInput& drive,
                                             const std::vector<fs::path>& files) {
   std::map<fs::path, fs::path> classes;
   const fs::path folder = drive.folder / "annotations" / "semseg";
-  const std::map<std::size_t, fs::path> labels = numbered_frames(folder);
+  const std::map<std::size_t, fs::path> labels = pandaset_frames(folder);
   if (!drive.with_classes || labels.empty()) return classes;
   for (std::size_t k = 0; k < files.size(); ++k) {
     const auto found = labels.find(k);
@@ -242,6 +221,7 @@ WorldFrames world_frames_of(const DriveInput& drive, std::size_t sensor) {
   frames.poses_file = lidar / "poses.json";
   frames.vehicle = read_panda_poses(lidar);
   frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
+  for (const TimedPose& pose : frames.vehicle) frames.stamps_s.push_back(pose.time_s);
   // The poses are at one end of the Pandar64's sweeps; the PandarGT begins half a sweep earlier.
   constexpr double kSweep_s = 0.1;
   for (std::size_t sweep = 0; sweep <= sensor; ++sweep)
@@ -256,9 +236,34 @@ WorldFrames world_frames_of(const DriveInput& drive, std::size_t sensor) {
 
 }  // namespace
 
+std::map<std::size_t, fs::path> pandaset_frames(const fs::path& folder) {
+  std::map<std::size_t, fs::path> frames;
+  for (const char* extension : {".gz", ".pkl"}) {
+    for (const fs::path& file : files_by_name(folder, extension)) {
+      const bool is_packed = file.extension() == ".gz";
+      if (is_packed && file.stem().extension() != ".pkl") continue;
+      const auto number = number_in_name(is_packed ? file.stem() : file.filename());
+      if (!number) continue;
+      const auto [twin, is_new] = frames.emplace(*number, file);
+      if (!is_new) throw panda_fault(file, "has the same frame number as " + twin->second.string());
+    }
+  }
+  return frames;
+}
+
+std::vector<double> pandaset_times(const fs::path& file) {
+  std::vector<double> times_s;
+  for_each_json_row(file, [&](const JsonRow& row) {
+    if (!times_s.empty() && !(row.real() > times_s.back()))
+      throw row.fault("the time is not after the previous one");
+    times_s.push_back(row.real());
+  });
+  return times_s;
+}
+
 bool is_pandaset_rig(const fs::path& folder) {
   constexpr std::ptrdiff_t kMinPoints = 1000;
-  const std::map<std::size_t, fs::path> frames = numbered_frames(folder / "lidar");
+  const std::map<std::size_t, fs::path> frames = pandaset_frames(folder / "lidar");
   if (frames.empty()) return false;
   for (const std::size_t k : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
     const fs::path& file = std::next(frames.begin(), static_cast<std::ptrdiff_t>(k))->second;

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string_view>
+#include <vector>
 
 #include "adasplats/cloud/load/data_tree.h"
 
@@ -33,6 +36,13 @@ KittiSequence open_pandaset_drive(const DriveInput& drive, const Executor& execu
 /// Whether both LiDARs have at least 1000 points in each of three frames (the first, the middle and
 /// the last); false without frames. Errors: data (a damaged frame).
 bool is_pandaset_rig(const std::filesystem::path& folder);
+
+/// The frames of a folder by their numbers: NN.pkl.gz, or NN.pkl. Errors: data for two files of one
+/// number.
+std::map<std::size_t, std::filesystem::path> pandaset_frames(const std::filesystem::path& folder);
+
+/// The times in a timestamps.json. Errors: no_input, data (times that do not ascend).
+std::vector<double> pandaset_times(const std::filesystem::path& file);
 
 /// annotations/semseg/classes.json; empty without labels.
 ClassNames pandaset_class_names(const std::filesystem::path& folder);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -44,6 +45,7 @@ class PandaCourt {
     nlohmann::json poses = nlohmann::json::array(), times = poses;
     for (std::size_t scan = 0; scan < scans; ++scan) {
       write_scan(sensor, firings, scan);
+      scan_ends.push_back(world.size());
       // In the middle of the sweep, so that the first and the last reach beyond the poses.
       const double pose_s = kPandaSweep_s * (static_cast<double>(scan) + 0.5);
       const RigidTransform mount = is_mounted ? kPandaMount : RigidTransform{};
@@ -70,6 +72,7 @@ class PandaCourt {
   }
 
   std::vector<Vec3d> world, origins;        ///< of the Pandar64
+  std::vector<std::size_t> scan_ends;       ///< in `world`
   std::vector<Vec3d> gt_world, gt_origins;  ///< of the PandarGT
 
  private:
@@ -117,6 +120,40 @@ class PandaCourt {
   bool has_both_;
   TemporaryFolder folder_;
 };
+
+// Annotators draw a cuboid around the points of a frame, whenever they were measured. Oracle: the
+// points of each frame in its own cuboid.
+TEST(PandaSetDrive, CuboidsAreThoseOfTheFrameOfAPoint) {
+  const PandaCourt court(5, false);
+  const Vec3d size = {3, 1, 3}, margin = {0.2, 0.2, 0.2};
+  std::size_t expected = 0, i = 0;
+  for (std::size_t k = 0; k < 5; ++k) {
+    const Vec3d middle = {-6 + 3.0 * static_cast<double>(k), 12, 1.5};  // along a wall at 30 m/s
+    const auto one = [](double value) { return std::vector<double>{value}; };
+    court.put_frame("annotations/cuboids/0" + std::to_string(k) + ".pkl.gz",
+                    {{"uuid", std::vector<std::string>{"a"}},
+                     {"label", std::vector<std::string>{"Bus"}},
+                     {"yaw", one(0)},
+                     {"stationary", std::vector<bool>{false}},
+                     {"position.x", one(middle.x)},
+                     {"position.y", one(middle.y)},
+                     {"position.z", one(middle.z)},
+                     {"dimensions.x", one(size.x)},
+                     {"dimensions.y", one(size.y)},
+                     {"dimensions.z", one(size.z)}});
+    for (const Vec3d reach = 0.5 * size + margin; i < court.scan_ends[k]; ++i) {
+      const Vec3d away = court.world[i] - middle;
+      expected += std::fabs(away.x) <= reach.x && std::fabs(away.y) <= reach.y &&
+                  std::fabs(away.z) <= reach.z;
+    }
+  }
+  LoadOptions options;
+  options.boxes = court.path();
+  const auto [cloud, report] = court.load(options);
+  ASSERT_GT(expected, 100U);
+  EXPECT_EQ(report.in_boxes, expected);
+  EXPECT_EQ(cloud.size() + expected, court.world.size());
+}
 
 // Oracle: where the beams of the court began. Mounts that differ are recognize_sensor_test's.
 TEST(PandaSetDrive, PointsOriginsClassesAndIntensities) {

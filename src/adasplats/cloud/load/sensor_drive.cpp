@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "adasplats/cloud/load/box_files.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/sequence/pose_check.h"
@@ -136,7 +137,8 @@ class SweepReader final : public ScanReader {
         times_.kind != PointTimes::Kind::none && times.size() == scan.positions.size();
     for (std::size_t i = 0; i < scan.positions.size(); ++i) {
       const bool own = timed && std::isfinite(times[i]);
-      const double time_s = own ? times_.time_s(times[i], pose.time_s) : pose.time_s;
+      const double point_s = own ? times_.time_s(times[i], pose.time_s) : pose.time_s;
+      const double time_s = boxes_.time_of_point(pose.time_s, point_s);
       const Vec3d world = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
       scan.in_boxes.push_back(boxes_.object_at(time_s, world));
     }
@@ -445,8 +447,7 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
       frames.poses.by + (drive.given_mount() ? ", with the stated mount"
                                              : ", assumed to be those of the points' frame");
   sequence.facts.unchecked = verify_poses(sequence, executor);
-  MovingBoxes boxes;
-  if (!drive.boxes.empty()) boxes = MovingBoxes(drive.boxes);
+  MovingBoxes boxes = boxes_of_drive(drive, frames.files, frames.poses.of_scans);
   const bool has_point_times = frames.times.kind != PointTimes::Kind::none;
   if (has_point_times && !frames.times.fits)
     throw Error(ErrorKind::data, drive.folder.string() +

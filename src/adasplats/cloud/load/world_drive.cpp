@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -59,7 +60,10 @@ class FrameReader final : public ScanReader {
         vehicle_(frames.vehicle),
         sensor_(std::move(sensor)),
         boxes_(std::move(boxes)),
-        with_classes_(with_classes) {}
+        with_classes_(with_classes) {
+    for (std::size_t k = 0; k < frames.stamps_s.size(); ++k)
+      stamps_s_.emplace(frames.files[k], frames.stamps_s[k]);
+  }
 
   RigidTransform pose_at(double time_s) const {
     return interpolate(vehicle_, time_s) * sensor_.vehicle_from_sensor;
@@ -74,9 +78,12 @@ class FrameReader final : public ScanReader {
     scan.positions.reserve(frame.size());
     scan.origins.reserve(frame.size());
     scan.lasers.reserve(frame.size());
+    const auto stamp = stamps_s_.find(file);
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+      const double scan_s = stamp == stamps_s_.end() ? frame.times[i] : stamp->second;
       if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.object_at(frame.times[i], frame.positions[i]));
+        scan.in_boxes.push_back(
+            boxes_.object_at(boxes_.time_of_point(scan_s, frame.times[i]), frame.positions[i]));
       const RigidTransform pose = pose_at(frame.times[i]);
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
       const auto [laser, origin] = beam_of_point(pose.inverse() * frame.positions[i]);
@@ -101,6 +108,7 @@ class FrameReader final : public ScanReader {
   Trajectory vehicle_;
   WorldSensor sensor_;
   MovingBoxes boxes_;
+  std::map<std::filesystem::path, double> stamps_s_;
   bool with_classes_;
 };
 
@@ -322,7 +330,7 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
   require_covered(frames, overview);
   MovingBoxes boxes;
   if (!drive.boxes.empty()) {
-    boxes = MovingBoxes(drive.boxes);
+    boxes = MovingBoxes(drive.boxes, {{}, {}, drive.topic, drive.scene});
     require_boxes_of(drive, boxes, overview);
   }
   KittiSequence sequence;

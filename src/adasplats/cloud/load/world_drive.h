@@ -22,6 +22,8 @@ struct WorldFrames {
   std::shared_ptr<const ScanSource> source = scans_in_files();  ///< reads them
   Trajectory vehicle;                ///< in the clock of the points; not empty
   std::filesystem::path poses_file;  ///< for messages
+  /// Of the files, in the clock of annotated boxes (BoxContent::are_of_scans); empty: none.
+  std::vector<double> stamps_s;
   /// Mount of the sensor on the vehicle if it is not recognised; none: then it is unknown.
   std::optional<RigidTransform> own_mount;
   std::string others;      ///< name of the points that FileScan::left_out counts

@@ -15,8 +15,8 @@ namespace adasplats {
 namespace {
 
 constexpr double kCell_rad = 0.5 * std::numbers::pi / 180;
-constexpr double kMinRange_m = 0.1;  // a point at its sensor would make its logarithm infinite
-constexpr double kSteep = 0.5;       // sine of the angle below the horizon
+constexpr double kMinLogRange_m = 0.1;  // the logarithm of a point at its sensor is infinite
+constexpr double kSteep = 0.5;          // sine of the angle below the horizon
 
 /// Cell of a direction on the faces of a cube, where poles are nothing special.
 std::uint64_t cell_of(Vec3d direction) {
@@ -100,7 +100,7 @@ SweepView view_along(const SweepSample& sample, const ClockPair& clock,
   });
   const auto n = static_cast<double>(view.points);
   double logarithms = 0;
-  for (const double range_m : ranges_m) logarithms += std::log(std::max(range_m, kMinRange_m));
+  for (const double range_m : ranges_m) logarithms += std::log(std::max(range_m, kMinLogRange_m));
   view.scatter = entropy_of(keys, executor) + 3 * logarithms / n;
   view.share_far = static_cast<double>(std::ranges::count(far, std::uint8_t{1})) / n;
   view.median_range_m = upper_median_of(ranges_m);

@@ -28,7 +28,7 @@ constexpr double kTargetReach_m = kSourceReach_m + kMaxApart_m;  // where they c
 constexpr double kColumn_m = 1, kUpright_m = 1;
 // Beams of 2 degrees are 0.7 m apart at 20 m: finer cells would show the pattern of the beams.
 constexpr double kVoxel_m = 0.5;
-constexpr std::size_t kMaxPoints = 1000, kMinPoints = 200;  // of a pair
+constexpr std::size_t kMaxPairPoints = 1000, kMinPairPoints = 200;  // of a pair
 
 constexpr std::size_t kWithoutMotion = 1;
 
@@ -92,7 +92,7 @@ NearPoints near_points(const KittiScan& scan, double reach_m) {
   return near;
 }
 
-/// Points of columns that something fills upright; at most kMaxPoints, evenly taken.
+/// Points of columns that something fills upright; at most kMaxPairPoints, evenly taken.
 std::vector<Vec3d> upright_points(const NearPoints& near) {
   const Grid columns(near.middle, kSourceReach_m, kColumn_m);
   struct Heights {
@@ -112,10 +112,10 @@ std::vector<Vec3d> upright_points(const NearPoints& near) {
   std::vector<Vec3d> upright;
   for (const Vec3d p : near.points)
     if (heights_at(p).high - heights_at(p).low >= kUpright_m) upright.push_back(p);
-  if (upright.size() <= kMaxPoints) return upright;
+  if (upright.size() <= kMaxPairPoints) return upright;
   std::vector<Vec3d> taken;
-  for (std::size_t k = 0; k < kMaxPoints; ++k)
-    taken.push_back(upright[k * upright.size() / kMaxPoints]);
+  for (std::size_t k = 0; k < kMaxPairPoints; ++k)
+    taken.push_back(upright[k * upright.size() / kMaxPairPoints]);
   return taken;
 }
 
@@ -179,7 +179,7 @@ class ScanPair {
       if (scan) near[k] = near_points(*scan, kReach_m[k]);
       if (k == 0 && near[k]) moved = upright_points(*near[k]);
     });
-    if (!near[0] || !near[1] || moved.size() < kMinPoints) return std::nullopt;
+    if (!near[0] || !near[1] || moved.size() < kMinPairPoints) return std::nullopt;
     return ScanPair(near[0]->middle, std::move(moved), *near[1]);
   }
 

@@ -93,6 +93,8 @@ std::array<double, kCount> JsonRow::reals(const char* key) const {
   return numbers;
 }
 
+std::array<double, 3> JsonRow::triple(const char* key) const { return reals<3>(key); }
+
 Mat3d JsonRow::rotation(const std::array<double, 4>& wxyz, const char* key) const {
   constexpr double kTolerance = 1e-3;
   const auto [w, x, y, z] = wxyz;

@@ -32,6 +32,8 @@ class JsonRow {
   JsonRow object(const char* key) const;
   /// The value, if the element is a finite number.
   double real() const;
+  /// The numbers of an array of three.
+  std::array<double, 3> triple(const char* key) const;
   /// A matrix from an array of three arrays of three numbers, by rows.
   std::array<double, 9> matrix(const char* key) const;
   /// A pose from an array of three numbers and a quaternion w, x, y, z.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adasplats/cloud/load/boxed_drive.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/rig_of_drive.h"
@@ -199,8 +200,10 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
   if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packets_of.empty())
     throw Error(ErrorKind::usage, "`packet_sensor` is for a packet capture or a recording");
-  if (!is_drive && !scans.boxes.empty())
-    throw Error(ErrorKind::usage, "`boxes` need scans with times and a `trajectory`");
+  if (!is_drive && !scans.boxes.empty() && !is_kitti_raw_drive(resolve_cloud_input(scans.sequence)))
+    throw Error(ErrorKind::usage,
+                "`boxes` need a drive of KITTI raw or another data set, or scans with times and a "
+                "`trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
                              !(scans.mount_rotation_deg == Vec3d{}) ||
                              scans.points_in != PointsIn::found ||
@@ -219,7 +222,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
                                         " are motion-compensated");
     set_raw_motions(all.beams, all.trajectory, load_trajectory(scans.motion));
   }
-  return with_scans(std::move(all), scans.scans);
+  return with_scans(with_boxes(std::move(all), scans), scans.scans);
 }
 
 HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,
