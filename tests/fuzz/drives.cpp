@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -46,6 +47,21 @@ void require_sound(const KittiSequence& sequence) {
   }
 }
 
+void require_sound(const MovingBoxes& boxes) {
+  for (const BoxTrack& track : boxes.tracks()) {
+    require(!track.boxes.empty(), "a box a track");
+    for (std::size_t k = 0; k < track.boxes.size(); ++k) {
+      const TimedBox& box = track.boxes[k];
+      require(is_finite(box.middle) && std::isfinite(box.yaw_rad), "boxes that are finite");
+      require(std::min({box.half_size.x, box.half_size.y, box.half_size.z}) > 0,
+              "sizes that are positive");
+      require(k == 0 || box.time_s > track.boxes[k - 1].time_s, "times that ascend");
+    }
+    boxes.object_at(track.boxes.front().time_s, track.boxes.front().middle);
+  }
+  boxes.object_at(0.5, {1, 2, 3});
+}
+
 }  // namespace
 
 void read_pose_file(const Input& input) {
@@ -61,8 +77,17 @@ void read_times(const Input& input) {
 }
 
 void read_boxes(const Input& input) {
-  const MovingBoxes boxes(input.file);
-  boxes.object_at(0.5, {1, 2, 3});
+  BoxDrive drive;
+  for (int k = 0; k < 4; ++k) {
+    drive.scans.push_back("000000000" + std::to_string(k) + ".bin");
+    drive.poses.push_back({0.1 * k, {{}, {1.0 * k, 0, 0}}});
+  }
+  require_sound(MovingBoxes(input.file, drive));
+}
+
+void read_box_folder(const Input& input) {
+  for (const std::string_view lidar : kPandaSetSensors)
+    require_sound(MovingBoxes(input.folder, {{}, {}, std::string(lidar), ""}));
 }
 
 void open_kitti(const Input& input) { require_sound(open_kitti_sequence(input.folder)); }

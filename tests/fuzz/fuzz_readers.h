@@ -47,6 +47,7 @@ void read_network_bytes(const Input& input);
 void read_pose_file(const Input& input);
 void read_times(const Input& input);
 void read_boxes(const Input& input);
+void read_box_folder(const Input& input);
 void open_kitti(const Input& input);
 void open_kitti_raw(const Input& input);
 void open_pandaset(const Input& input);

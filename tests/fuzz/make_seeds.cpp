@@ -333,8 +333,6 @@ void add_poses(Seeds& seeds) {
              "secs nsecs x y z qx qy qz qw\n1 5 0 0 0 0 0 0 1\n"});
   seeds.add("poses-tum", {"1 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0.6 0.8\n"});
   seeds.add("scan-times", {"0\n0.1\n0.2\n"});
-  seeds.add("boxes", {"time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n0,1,0,1,2,3,4,2,1.5,0.1\n"
-                      "1,1,0,2,2,3,4,2,1.5,3.1\n0.5,2,1,0,0,0,1,1,1,0\n"});
   std::string scan;
   for (const float value : {1.0F, 2.0F, 3.0F, 0.5F, -1.0F, 2.0F, 3.0F, 0.25F})
     scan += bytes_of(value);
@@ -365,6 +363,64 @@ void add_av2(Seeds& seeds) {
       {sweep, arrow_file({{arrow_test::texts("t", {"a", "bc"})}, {arrow_test::texts("t", {""})}})});
 }
 
+void add_av2_boxes(Seeds& seeds) {
+  using arrow_test::numbers;
+  using Doubles = std::vector<double>;
+  const auto poses = [](std::size_t rows, const Doubles& x) {
+    const std::vector<std::int64_t> stamps = {1'000'000'000, 1'100'000'000};
+    std::vector<arrow_test::ArrowColumn> columns = {
+        numbers("timestamp_ns", stamps), numbers("tx_m", x), numbers("qw", Doubles(rows, 1))};
+    for (const char* name : {"qx", "qy", "qz", "ty_m", "tz_m"})
+      columns.push_back(numbers(name, Doubles(rows, 0)));
+    return columns;
+  };
+  std::vector<arrow_test::ArrowColumn> boxes = poses(2, {10, 12});
+  for (const char* name : {"length_m", "width_m", "height_m"})
+    boxes.push_back(numbers(name, Doubles{4, 4}));
+  boxes.push_back(arrow_test::texts("track_uuid", {"a", "a"}));
+  boxes.push_back(arrow_test::texts("category", {"BUS", "BUS"}));
+  seeds.add(
+      "boxes-av2",
+      {joined({arrow_test::arrow_file({boxes}), arrow_test::arrow_file({poses(2, {0, 1})})})});
+}
+
+void add_boxes(Seeds& seeds) {
+  seeds.add("boxes", {"time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n0,1,0,1,2,3,4,2,1.5,0.1\n"
+                      "1,1,0,2,2,3,4,2,1.5,3.1\n0.5,2,1,0,0,0,1,1,1,0\n"});
+  const std::string item =
+      "<item><tx>9</tx><ty>2</ty><tz>-1.7</tz><rx>0</rx><ry>0</ry><rz>1.5</rz></item>";
+  seeds.add("boxes-kitti",
+            {"<?xml version=\"1.0\"?>\n<boost_serialization><tracklets><count>1</count>\n<item>"
+             "<objectType>Car</objectType><h>1.5</h><w>2</w><l>4</l><first_frame>1</first_frame>"
+             "<poses><count>2</count>" +
+             item + item + "</poses></item></tracklets></boost_serialization>\n"});
+  const std::vector<double> zeros(3, 0), ones(3, 1);
+  const std::vector<FrameColumn> cuboids = {
+      {"uuid", std::vector<std::string>{"a", "b", "c"}},
+      {"label", std::vector<std::string>{"Car", "Car", "Bus"}},
+      {"yaw", zeros},
+      {"stationary", std::vector<bool>{false, false, true}},
+      {"position.x", zeros},
+      {"position.y", zeros},
+      {"position.z", zeros},
+      {"dimensions.x", ones},
+      {"dimensions.y", ones},
+      {"dimensions.z", ones},
+      {"cuboids.sibling_id", std::vector<std::string>{"b", "a", ""}},
+      {"cuboids.sensor_id", std::vector<std::int64_t>{0, 1, -1}}};
+  seeds.add("boxes-pandaset", {joined({"[0.5]", gzipped(pickled_data_frame(cuboids))})});
+  const std::string box = R"("instance_token":"i","size":[2,4,1.5],"rotation":[1,0,0,0],)";
+  seeds.add("boxes-nuscenes",
+            {joined({R"([{"token":"A","name":"scene-0001"}])",
+                     R"([{"token":"s","scene_token":"A","timestamp":1500000000000000},)"
+                     R"({"token":"t","scene_token":"A","timestamp":1500000000500000}])",
+                     R"([{"sample_token":"s",)" + box + R"("translation":[1,2,3]},)" +
+                         R"({"sample_token":"t",)" + box + R"("translation":[3,2,3]}])",
+                     R"([{"token":"i","category_token":"c"}])",
+                     R"([{"token":"c","name":"vehicle.car"}])"})});
+  add_av2_boxes(seeds);
+}
+
 void add_drives(Seeds& seeds) {
   const std::string day = "2011-09-26 13:02:";
   seeds.add(
@@ -383,6 +439,7 @@ void add_drives(Seeds& seeds) {
                      "[0.05]", gzipped(pickled_data_frame(points)), R"({"7":"Road","8":"Car"})",
                      gzipped(pickled_data_frame(classes))})});
   add_av2(seeds);
+  add_boxes(seeds);
   const std::string pose = R"("rotation":[1,0,0,0],"translation":[1,2,3]}])";
   seeds.add(
       "nuscenes",
