@@ -8,7 +8,6 @@
 
 #include "adasplats/cloud/load/av2_drive.h"
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/pandaset_drive.h"
@@ -17,6 +16,7 @@
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -82,12 +82,12 @@ void read_boxes(const Input& input) {
     drive.scans.push_back("000000000" + std::to_string(k) + ".bin");
     drive.poses.push_back({0.1 * k, {{}, {1.0 * k, 0, 0}}});
   }
-  require_sound(MovingBoxes(input.file, drive));
+  require_sound(MovingBoxes(read_box_file(input.file, drive)));
 }
 
 void read_box_folder(const Input& input) {
   for (const std::string_view lidar : kPandaSetSensors)
-    require_sound(MovingBoxes(input.folder, {{}, {}, std::string(lidar), ""}));
+    require_sound(MovingBoxes(read_box_file(input.folder, {{}, {}, std::string(lidar), ""})));
 }
 
 void open_kitti(const Input& input) { require_sound(open_kitti_sequence(input.folder)); }

@@ -147,10 +147,9 @@ void move_scans(const std::vector<Correction>& corrections, RecordedObject& obje
     for (Vec3d& origin : scan.origins) origin = corrected * origin;
     for (PassingBeam& beam : scan.passing)
       beam = {corrected * beam.origin, corrected.rotation * beam.direction};
-    const RigidTransform pose =
-        interpolate(object.world_from_object, scan.time_s) * corrected.inverse();
+    scan.world_from_object = scan.world_from_object * corrected.inverse();
     if (moved.empty() || scan.time_s > moved.back().time_s + kApart_s)
-      moved.push_back({scan.time_s, pose});
+      moved.push_back({scan.time_s, scan.world_from_object});
   }
   const auto end = [&](const TimedPose& given, const Correction& correction) {
     return TimedPose{given.time_s, given.world_from_sensor * correction.transform().inverse()};

@@ -39,6 +39,7 @@ RecordedObject wrong_boxes(const std::vector<Vec3d>& errors) {
     ObjectScan scan;
     scan.scan = k;
     scan.time_s = time_s;
+    scan.world_from_object = box;
     for (const Vec3d& point : points_on_box(random, 200)) {
       scan.points.push_back(box.inverse() * (truth * point));
       scan.origins.push_back(box.inverse() * Vec3d{-20, 10, 2});

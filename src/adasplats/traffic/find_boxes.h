@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/traffic/fit_boxes.h"
 #include "adasplats/traffic/loose_points.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/traffic/find_boxes.h"

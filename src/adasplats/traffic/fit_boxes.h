@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/traffic/track_clusters.h"
 

@@ -88,8 +88,8 @@ RecordedObject object_of(const BoxTrack& track) {
   return object;
 }
 
-ObjectCollector::ObjectCollector(std::span<const BoxTrack> tracks) {
-  for (const BoxTrack& track : tracks) objects_.push_back(object_of(track));
+ObjectCollector::ObjectCollector(const MovingBoxes& boxes) : are_of_scans_(boxes.are_of_scans()) {
+  for (const BoxTrack& track : boxes.tracks()) objects_.push_back(object_of(track));
 }
 
 void ObjectCollector::add(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
@@ -104,7 +104,8 @@ void ObjectCollector::add(const KittiSequence& drive, std::size_t index, const K
     RecordedObject& object = objects_.at(scan.in_boxes[i] - 1U);
     const double time_s = scan.times_s.empty() ? pose.time_s : scan.times_s[i];
     const RigidTransform object_from_sensor =
-        interpolate(object.world_from_object, time_s).inverse() * pose.world_from_sensor;
+        interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : time_s).inverse() *
+        pose.world_from_sensor;
     const MeasuredBeam beam = beam_of(drive, index, scan, i);
     const Vec3d point = object_from_sensor * beam.end;
     if (point.z < -0.5 * object.size_m.z + kGround_m) continue;
@@ -129,14 +130,17 @@ void ObjectCollector::add_passing(const KittiSequence& drive, std::size_t index,
     RecordedObject& object = objects_[number];
     if (object.scans.empty() || object.scans.back().scan != index) return;
     ObjectScan& of_scan = object.scans.back();
+    of_scan.world_from_object =
+        interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : of_scan.time_s);
     const Vec3d half_size = kPassing * 0.5 * object.size_m;
     const RigidTransform sensor_from_object =
-        pose.world_from_sensor.inverse() * interpolate(object.world_from_object, of_scan.time_s);
+        pose.world_from_sensor.inverse() * of_scan.world_from_object;
     for (std::size_t i = 0; i < scan.positions.size(); ++i) {
       if (scan.in_boxes[i] == number + 1) continue;
       const MeasuredBeam beam = beam_of(drive, index, scan, i);
       if (!may_pass(beam, sensor_from_object.translation, length(half_size))) continue;
-      const double time_s = scan.times_s.empty() ? pose.time_s : scan.times_s[i];
+      const bool at_scan = scan.times_s.empty() || are_of_scans_;
+      const double time_s = at_scan ? pose.time_s : scan.times_s[i];
       const RigidTransform object_from_sensor =
           interpolate(object.world_from_object, time_s).inverse() * pose.world_from_sensor;
       const Vec3d origin = object_from_sensor * beam.origin, end = object_from_sensor * beam.end;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/executor.h"
 
 namespace adasplats {
@@ -23,8 +23,10 @@ struct PassingBeam {
 
 /// The points of an object in one scan, in the object's frame.
 struct ObjectScan {
-  std::size_t scan = 0;              ///< its number in the drive
-  double time_s = 0;                 ///< mean of its points
+  std::size_t scan = 0;  ///< its number in the drive
+  double time_s = 0;     ///< mean of its points
+  /// The pose of the object at that time; of boxes of scans that at the time of the scan.
+  RigidTransform world_from_object;
   std::vector<Vec3d> points;         ///< m
   std::vector<Vec3d> origins;        ///< where their beams began, m
   std::vector<float> intensities;    ///< as measured; empty: unknown
@@ -53,8 +55,8 @@ RecordedObject object_of(const BoxTrack& track);
 /// skipped.
 class ObjectCollector {
  public:
-  explicit ObjectCollector(std::span<const BoxTrack> tracks);
-  /// Adds scan number `index` of a drive; `scan` is of read_all_returns().
+  explicit ObjectCollector(const MovingBoxes& boxes);
+  /// Adds scan number `index` of a drive; `scan` has KittiScan::in_boxes of these boxes.
   void add(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
            const Executor& executor);
   /// One object per track, in their order; some have no points.
@@ -65,6 +67,7 @@ class ObjectCollector {
                    const Executor& executor);
 
   std::vector<RecordedObject> objects_;
+  bool are_of_scans_;
 };
 
 }  // namespace adasplats

@@ -36,7 +36,7 @@ TEST(ObjectOf, AtRestXIsTheLongerSide) {
 
 TEST(ObjectCollector, PointsAreInTheFrameOfTheirObjectAtTheirTime) {
   const BoxTrack track = track_to({10, 0, 0}, 0, {2, 1, 1});
-  ObjectCollector collector({&track, 1});
+  ObjectCollector collector(MovingBoxes({{track}, 0, 1, false}));
   KittiSequence drive;
   drive.scans = {"a"};
   drive.trajectory = {{0.5, {{}, {0, -20, 0}}}};

@@ -15,9 +15,8 @@
 #include <vector>
 
 #include "adasplats/cloud/load/av2_tables.h"
-#include "adasplats/cloud/load/box_files.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -115,12 +114,8 @@ struct Av2Units {
 class Av2Reader final : public ScanReader {
  public:
   Av2Reader(Trajectory track, std::map<fs::path, TimedPose> poses, const Av2Units& units,
-            IntensityScale scale, MovingBoxes boxes)
-      : track_(std::move(track)),
-        poses_(std::move(poses)),
-        units_(units),
-        scale_(scale),
-        boxes_(std::move(boxes)) {
+            IntensityScale scale)
+      : track_(std::move(track)), poses_(std::move(poses)), units_(units), scale_(scale) {
     for (SensorCones& cones : library_cones())
       if (cones.sensor == kUnitModel) cones_ = std::move(cones);
   }
@@ -139,9 +134,6 @@ class Av2Reader final : public ScanReader {
           vec_cast<float>(scan_from_vehicle * (at.vehicle_from_unit * at.origin)));
       scan.lasers.push_back(at.ring);
       scan.times_s.push_back(time_s);
-      if (!boxes_.empty())
-        scan.in_boxes.push_back(boxes_.object_at(boxes_.time_of_point(pose.time_s, time_s),
-                                                 pose.world_from_sensor * point));
     }
     scan.intensities = scale_.scaled(std::move(sweep.points.intensities), file);
     return scan;
@@ -195,7 +187,6 @@ class Av2Reader final : public ScanReader {
   std::map<fs::path, TimedPose> poses_;  ///< of the vehicle
   Av2Units units_;
   IntensityScale scale_;
-  MovingBoxes boxes_;
   SensorCones cones_;
 };
 
@@ -288,10 +279,10 @@ KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
   sequence.trajectory = mounted(std::move(sequence.trajectory), units.mount());
   const IntensityScale scale = scale_of_scans(Av2Points(units.chosen), sequence.scans);
   const auto reader =
-      std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file), units, scale,
-                                  boxes_of_drive(drive, sequence.scans, sequence.trajectory));
+      std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file), units, scale);
   const double median_rad = require_beams(drive, *reader, sequence.scans);
   sequence.reader = reader;
+  add_boxes(drive, {}, sequence, executor, progress);
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(),
                 "%s%s%s; points %.3f deg from the cones of their beams, each at its own time)",

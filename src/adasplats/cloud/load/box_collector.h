@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/core/maths/rigid_transform.h"
 

@@ -91,15 +91,4 @@ bool is_of_numbered_scans(const fs::path& boxes) {
   return format_of_file(boxes) == BoxFormat::kitti_tracklets;
 }
 
-MovingBoxes boxes_of_drive(const DriveSettings& drive, const std::vector<fs::path>& scans,
-                           const Trajectory& poses) {
-  if (drive.boxes.empty()) return {};
-  MovingBoxes boxes(drive.boxes, {scans, poses, drive.topic, drive.scene});
-  if (!boxes.overlaps(poses.front().time_s, poses.back().time_s))
-    throw Error(ErrorKind::data, drive.boxes.string() +
-                                     ": no box has a time within the scans; the clocks differ, or "
-                                     "the boxes belong to another drive");
-  return boxes;
-}
-
 }  // namespace adasplats

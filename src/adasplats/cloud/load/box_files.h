@@ -6,10 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load/drive_settings.h"
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 
 namespace adasplats {
+
+/// The drive that boxes are read for, as far as their files refer to it.
+struct BoxDrive {
+  std::vector<std::filesystem::path> scans;  ///< by time
+  Trajectory poses;                          ///< of the scans: world_from_sensor
+  std::string lidar;  ///< of kPandaSetSensors, whose cuboids are preferred; empty: pandar64
+  std::string scene;  ///< of nuScenes; empty: the only one
+};
 
 /// Reads boxes; the content decides on the format.
 /// - CSV: read_csv_boxes().
@@ -20,12 +28,6 @@ namespace adasplats {
 /// Only the yaw of a box is kept; slopes of the road do not tilt it. Errors: no_input, data with
 /// the file and the line, row or object.
 BoxContent read_box_file(const std::filesystem::path& path, const BoxDrive& drive);
-
-/// The boxes of a drive; none if its settings name none. Errors: as read_box_file(); data if no box
-/// has a time within the scans.
-MovingBoxes boxes_of_drive(const DriveSettings& drive,
-                           const std::vector<std::filesystem::path>& scans,
-                           const Trajectory& poses);
 
 /// Whether a box file numbers the scans of its drive (KITTI's tracklets): it is of one drive.
 bool is_of_numbered_scans(const std::filesystem::path& boxes);

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/box_collector.h"
-#include "adasplats/cloud/load/boxed_drive.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/temporary_folder_test.h"
@@ -105,7 +105,7 @@ class CuboidFolder {
   const TemporaryFolder& folder() const { return folder_; }
   const std::filesystem::path& path() const { return folder_.path(); }
   MovingBoxes read(const std::string& lidar = "") const {
-    return MovingBoxes(folder_.path(), {{}, {}, lidar, ""});
+    return MovingBoxes(read_box_file(folder_.path(), {{}, {}, lidar, ""}));
   }
 
  private:
@@ -136,7 +136,7 @@ TEST(BoxFiles, ObjectsOfPandaSetAreNumberedByTheirFirstAppearance) {
       {{{.uuid = "z", .at = {0, 0, 0}, .is_stationary = true}, {.uuid = "y", .at = {10, 0, 0}}},
        {{.uuid = "b", .at = {20, 0, 0}}, {.uuid = "y", .at = {12, 0, 0}}}});
   for (const char* part : {"", "annotations", "annotations/cuboids", "annotations/cuboids/"}) {
-    const MovingBoxes boxes(court.path() / part);
+    const MovingBoxes boxes(read_box_file(court.path() / part, {}));
     ASSERT_EQ(boxes.tracks().size(), 2U);
     EXPECT_EQ(boxes.tracks()[0].id, 2U);
     EXPECT_EQ(boxes.tracks()[1].id, 3U);
@@ -145,7 +145,7 @@ TEST(BoxFiles, ObjectsOfPandaSetAreNumberedByTheirFirstAppearance) {
     EXPECT_EQ(boxes.tracks()[0].boxes[1].middle.x, 12);
     EXPECT_TRUE(boxes.overlaps(10.05, 20));
     EXPECT_FALSE(boxes.overlaps(10.2, 20));
-    EXPECT_EQ(boxes.time_of_point(1, 2), 1);
+    EXPECT_TRUE(boxes.are_of_scans());
   }
 }
 
@@ -200,8 +200,9 @@ TEST(BoxFiles, WrongCuboidsAreNamed) {
   expect_error(ErrorKind::data, {"frame 2 is missing"}, [&] { many.read(); });
   const CuboidFolder none(std::vector<std::vector<TestCuboid>>(2));
   expect_error(ErrorKind::data, {"has no boxes"}, [&] { none.read(); });
-  expect_error(ErrorKind::data, {"one frame of PandaSet"},
-               [&] { MovingBoxes(many.path() / "annotations/cuboids/00.pkl.gz"); });
+  expect_error(ErrorKind::data, {"one frame of PandaSet"}, [&] {
+    MovingBoxes(read_box_file(many.path() / "annotations/cuboids/00.pkl.gz", {}));
+  });
   const std::vector<FrameColumn> columns = {{"uuid", std::vector<std::string>{"a"}}};
   many.folder().write("annotations/cuboids/02.pkl.gz", gzipped(pickled_data_frame(columns)));
   expect_error(ErrorKind::data, {"02.pkl.gz: has no column of texts 'label'"},
@@ -281,7 +282,7 @@ TEST(BoxFiles, BoxesOfArgoverseAreBroughtToTheCity) {
   }
   const Av2Log log(rows);
   for (const char* part : {"", "annotations.feather"}) {
-    const MovingBoxes boxes(log.folder.path() / part);
+    const MovingBoxes boxes(read_box_file(log.folder.path() / part, {}));
     ASSERT_EQ(boxes.tracks().size(), 1U);  // "late" has one box
     const BoxTrack& driving = boxes.tracks()[0];
     EXPECT_EQ(driving.id, 2U);
@@ -302,8 +303,9 @@ TEST(BoxFiles, WrongBoxesOfArgoverseAreNamed) {
     rows.add(kStamp_ns, "t1", ahead);
     rows.add(stamp, "t1", ahead, size);
     const Av2Log log(rows);
-    expect_error(ErrorKind::data, {"annotations.feather: row 1 (from 0), track t1", part},
-                 [&] { MovingBoxes(log.folder.path() / "annotations.feather"); });
+    expect_error(ErrorKind::data, {"annotations.feather: row 1 (from 0), track t1", part}, [&] {
+      MovingBoxes(read_box_file(log.folder.path() / "annotations.feather", {}));
+    });
   };
   reject(kStamp_ns, {4, 2, 1}, "object 1 has two boxes");
   reject(kStamp_ns + 1, {4, 2, 1}, "has no pose at its stamp 315966265259836001");
@@ -314,10 +316,10 @@ TEST(BoxFiles, WrongBoxesOfArgoverseAreNamed) {
   const Av2Log log(rows);
   std::filesystem::remove(log.folder.path() / "city_SE3_egovehicle.feather");
   expect_error(ErrorKind::no_input, {"city_SE3_egovehicle.feather: is missing"},
-               [&] { MovingBoxes(log.folder.path()); });
+               [&] { MovingBoxes(read_box_file(log.folder.path(), {})); });
   log.folder.write("annotations.feather", rows.file(false));
   expect_error(ErrorKind::data, {"no column of numbers 'length_m'"},
-               [&] { MovingBoxes(log.folder.path()); });
+               [&] { MovingBoxes(read_box_file(log.folder.path(), {})); });
 }
 
 // KITTI
@@ -380,7 +382,7 @@ TEST(BoxFiles, TrackletsStandOnTheirPositions) {
   }
   folder.write("tracklet_labels.xml", tracklet_file({tracklet(parked, 0), tracklet(ahead, 0)}));
   for (const char* part : {"", "tracklet_labels.xml"}) {
-    const MovingBoxes boxes(folder.path() / part, drive_of_tracklets());
+    const MovingBoxes boxes(read_box_file(folder.path() / part, drive_of_tracklets()));
     ASSERT_EQ(boxes.tracks().size(), 1U);
     const BoxTrack& track = boxes.tracks()[0];
     EXPECT_EQ(track.id, 2U);
@@ -400,7 +402,8 @@ TEST(BoxFiles, WrongTrackletsAreNamed) {
   const std::string pose = tracklet_pose({12, 0, -1.7}, 0);
   const auto reject = [&](const std::string& text, const std::vector<std::string>& parts) {
     const auto file = folder.write("t.xml", text);
-    expect_error(ErrorKind::data, parts, [&] { MovingBoxes(file, drive_of_tracklets()); });
+    expect_error(ErrorKind::data, parts,
+                 [&] { MovingBoxes(read_box_file(file, drive_of_tracklets())); });
   };
   std::string nan = pose;
   nan.replace(nan.find("<ty>") + 4, 3, "nan ");
@@ -419,13 +422,21 @@ TEST(BoxFiles, WrongTrackletsAreNamed) {
   reject("<annotation/>", {"has no <tracklets>"});
   reject(tracklet_file({}), {"t.xml: has no boxes"});
   const auto file = folder.write("t.xml", tracklet_file({tracklet({pose}, 0)}));
-  expect_error(ErrorKind::data, {"KITTI raw drive"}, [&] { MovingBoxes boxes(file); });
+  expect_error(ErrorKind::data, {"KITTI raw drive"},
+               [&] { MovingBoxes boxes(read_box_file(file, {})); });
   BoxDrive extracted = drive_of_tracklets();
   for (std::filesystem::path& scan : extracted.scans) scan.replace_extension(".txt");
-  expect_error(ErrorKind::data, {"synchronised", "0.txt"}, [&] { MovingBoxes(file, extracted); });
+  expect_error(ErrorKind::data, {"synchronised", "0.txt"},
+               [&] { MovingBoxes(read_box_file(file, extracted)); });
 }
 
 /// A KITTI raw drive at rest with two points a scan: one 12 m ahead, one to the left.
+KittiSequence with_boxes(KittiSequence drive, const DriveSettings& settings) {
+  ProgressSink quiet;
+  add_boxes(settings, {}, drive, Executor(1), quiet);
+  return drive;
+}
+
 void write_raw_drive(const TemporaryFolder& folder, const std::string& name) {
   std::string stamps;
   for (int k = 0; k < 4; ++k) {
@@ -448,7 +459,7 @@ TEST(BoxFiles, ScansOfKittiRawLeaveOutWhatIsInTracklets) {
   write_raw_drive(folder, "drive");
   DriveSettings settings;
   const KittiSequence plain = with_boxes(open_kitti_sequence(folder.path() / "drive"), settings);
-  EXPECT_EQ(plain.reader, nullptr);
+  EXPECT_EQ(plain.boxes, nullptr);
   settings.boxes = folder.path() / "drive";
   const KittiSequence sequence = with_boxes(open_kitti_sequence(folder.path() / "drive"), settings);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -551,7 +562,7 @@ class NuscenesBoxFolder {
 };
 
 MovingBoxes boxes_of_scene_1(const std::filesystem::path& path) {
-  return MovingBoxes(path, {{}, {}, "", "scene-1"});
+  return MovingBoxes(read_box_file(path, {{}, {}, "", "scene-1"}));
 }
 
 // Oracle: the devkit's Box.corners(): length along x, width along y.
@@ -576,7 +587,8 @@ TEST(BoxFiles, AnnotationsOfTheChosenNuscenesScene) {
     EXPECT_EQ(boxes.object_at(1.5e9 + 0.5, {30, 11.9, 0}), 1);
     EXPECT_EQ(boxes.object_at(1.5e9 + 0.5, {31.9, 10, 0}), 0);
   }
-  expect_error(ErrorKind::usage, {"several scenes"}, [&] { MovingBoxes boxes(root); });
+  expect_error(ErrorKind::usage, {"several scenes"},
+               [&] { MovingBoxes boxes(read_box_file(root, {})); });
 }
 
 TEST(BoxFiles, WrongAnnotationsOfNuscenesAreNamed) {
@@ -609,11 +621,11 @@ TEST(BoxFiles, OtherFilesAndFoldersAreErrors) {
   for (const char* content : {"[]", "{\"boxes\": 1}", "\xef\xbb\xbf[1]"}) {
     const auto json = folder.write("boxes.json", content);
     expect_error(ErrorKind::data, {"boxes.json: is JSON", "sample_annotation.json"},
-                 [&] { MovingBoxes boxes(json); });
+                 [&] { MovingBoxes boxes(read_box_file(json, {})); });
   }
   std::filesystem::remove(folder.path() / "boxes.json");
   expect_error(ErrorKind::no_input, {"contains no boxes", "tracklet_labels.xml"},
-               [&] { MovingBoxes boxes(folder.path()); });
+               [&] { MovingBoxes boxes(read_box_file(folder.path(), {})); });
 }
 
 }  // namespace

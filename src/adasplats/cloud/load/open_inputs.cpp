@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "adasplats/cloud/load/box_files.h"
-#include "adasplats/cloud/load/boxed_drive.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/data_tree.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/rig_of_drive.h"
 #include "adasplats/core/error.h"
@@ -123,14 +123,11 @@ void require_sound(const LoadOptions& options) {
 
 void require_drive_of_boxes(const LoadOptions& options, std::span<const OpenInput> inputs) {
   if (options.boxes.empty()) return;
-  const auto has_boxes = [](const OpenInput& input) {
-    return input.is_frame_drive || is_kitti_raw_drive(input.input.path);
+  const auto is_drive = [](const OpenInput& input) {
+    return input.is_frame_drive || input.input.is_sequence;
   };
-  const auto drives = std::ranges::count_if(inputs, has_boxes);
-  if (drives == 0)
-    throw usage(
-        "`boxes` needs a drive of KITTI raw or another data set, or a folder of scans with times "
-        "and a `trajectory`; no input is one");
+  const auto drives = std::ranges::count_if(inputs, is_drive);
+  if (drives == 0) throw usage("`boxes` needs a drive: scans with poses; no input is one");
   if (drives > 1 && is_of_numbered_scans(options.boxes))
     throw usage(options.boxes.string() +
                 ": KITTI's tracklets are of one drive, but several inputs are drives");
@@ -235,8 +232,10 @@ OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const Load
   require_applicable_options(options, inputs_);
   require_registered(inputs_);
   for (OpenInput& input : inputs_)
-    if (input.input.is_sequence && !input.sequence)
-      input.sequence = with_boxes(open_sequence(input.input.path, options, executor), options);
+    if (input.input.is_sequence && !input.sequence) {
+      input.sequence = open_sequence(input.input.path, options, executor);
+      add_boxes(options, {}, *input.sequence, executor, progress);
+    }
 }
 
 bool OpenInputs::are_drives() const {

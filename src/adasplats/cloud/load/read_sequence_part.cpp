@@ -54,13 +54,15 @@ void copy_to(std::vector<T>& values, std::size_t begin, const std::vector<T>& pa
   std::ranges::copy(part, values.begin() + static_cast<std::ptrdiff_t>(begin));
 }
 
-void store_scan(const PartRun& run, const KittiScan& scan, PointCloud& cloud) {
+void store_scan(const PartRun& run, const KittiScan& scan, CloudPart& part) {
+  PointCloud& cloud = part.cloud;
   if (scan.positions.size() != run.end - run.begin)
     throw Error(ErrorKind::io, run.file.string() + ": changed while it was read");
   copy_to(cloud.positions, run.begin, scan.positions);
   copy_to(cloud.intensities, run.begin, scan.intensities);
   copy_to(cloud.classes, run.begin, scan.classes);
   copy_to(cloud.instances, run.begin, scan.instances);
+  copy_to(part.in_boxes, run.begin, scan.in_boxes);
 }
 
 }  // namespace
@@ -200,11 +202,11 @@ void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& c
                 CloudPart& part, const Executor& executor, ProgressSink& progress) {
   part.runs = runs_of(sequence, chosen);
   size_arrays(!sequence.labels.empty(), part, executor);
-  PointCloud& cloud = part.cloud;
+  if (sequence.boxes) part.in_boxes.resize(part.size());
   for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
     const PartRun& run = part.runs[k];
-    store_scan(run, read_kitti_scan(sequence, chosen[k]), cloud);
-    if (!cloud.lasers.empty()) identify_lasers(run, part);
+    store_scan(run, read_all_returns(sequence, chosen[k]), part);
+    if (!part.cloud.lasers.empty()) identify_lasers(run, part);
   });
 }
 

@@ -14,9 +14,8 @@
 #include <tuple>
 #include <utility>
 
-#include "adasplats/cloud/load/box_files.h"
 #include "adasplats/cloud/load/cloud_part.h"
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
@@ -65,15 +64,13 @@ class RawReader final : public ScanReader {
 
 class SweepReader final : public ScanReader {
  public:
-  SweepReader(const SensorFrames& frames, SweepFinding finding, MovingBoxes boxes,
-              bool with_classes)
+  SweepReader(const SensorFrames& frames, SweepFinding finding, bool with_classes)
       : source_(frames.source),
         with_classes_(with_classes),
         track_(frames.poses.track),
         times_(frames.times),
         has_times_(frames.times.kind != PointTimes::Kind::none && frames.poses.has_times),
-        finding_(std::move(finding)),
-        boxes_(std::move(boxes)) {
+        finding_(std::move(finding)) {
     for (std::size_t k = 0; k < frames.files.size(); ++k)
       poses_[frames.files[k].string()] = finding_.scan_poses[k];
   }
@@ -94,7 +91,6 @@ class SweepReader final : public ScanReader {
     const TimedPose& pose = poses_.at(file.string());
     if (finding_.sensor) scan.lasers = std::move(lasers);
     if (moves || finding_.sensor) add_beams(file, given, times, pose, scan);
-    if (!boxes_.empty()) mark_boxes(times, pose, scan);
     if (has_times_ && times.size() == given.size())
       for (const double time : times) scan.times_s.push_back(times_.time_s(time, pose.time_s));
     return scan;
@@ -132,18 +128,6 @@ class SweepReader final : public ScanReader {
     return {laser, cones.origin_of(laser, in_sensor)};
   }
 
-  void mark_boxes(const std::vector<double>& times, const TimedPose& pose, KittiScan& scan) const {
-    const bool timed =
-        times_.kind != PointTimes::Kind::none && times.size() == scan.positions.size();
-    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-      const bool own = timed && std::isfinite(times[i]);
-      const double point_s = own ? times_.time_s(times[i], pose.time_s) : pose.time_s;
-      const double time_s = boxes_.time_of_point(pose.time_s, point_s);
-      const Vec3d world = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
-      scan.in_boxes.push_back(boxes_.object_at(time_s, world));
-    }
-  }
-
   void add_beam(Vec3d given, const RigidTransform& scan_from_then, std::size_t i,
                 KittiScan& scan) const {
     const RigidTransform mount =
@@ -169,7 +153,6 @@ class SweepReader final : public ScanReader {
   PointTimes times_;
   bool has_times_;  ///< in the clock of the poses
   SweepFinding finding_;
-  MovingBoxes boxes_;
 };
 
 /// One hypothesis for the state of the points.
@@ -313,8 +296,8 @@ std::shared_ptr<const ScanReader> raw_reader(std::shared_ptr<const ScanSource> s
 }
 
 std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, SweepFinding finding,
-                                               MovingBoxes boxes, bool with_classes) {
-  return std::make_shared<SweepReader>(frames, std::move(finding), std::move(boxes), with_classes);
+                                               bool with_classes) {
+  return std::make_shared<SweepReader>(frames, std::move(finding), with_classes);
 }
 
 SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
@@ -447,7 +430,6 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
       frames.poses.by + (drive.given_mount() ? ", with the stated mount"
                                              : ", assumed to be those of the points' frame");
   sequence.facts.unchecked = verify_poses(sequence, executor);
-  MovingBoxes boxes = boxes_of_drive(drive, frames.files, frames.poses.of_scans);
   const bool has_point_times = frames.times.kind != PointTimes::Kind::none;
   if (has_point_times && !frames.times.fits)
     throw Error(ErrorKind::data, drive.folder.string() +
@@ -482,7 +464,8 @@ KittiSequence open_sensor_frames(const DriveInput& drive, const SensorFrames& fr
   progress.end_step();
   sequence.facts.intensities = frames.intensities;
   sequence.facts.labels = frames.labels;
-  sequence.reader = sweep_reader(frames, std::move(finding), std::move(boxes), drive.with_classes);
+  sequence.reader = sweep_reader(frames, std::move(finding), drive.with_classes);
+  add_boxes(drive, {}, sequence, executor, progress);
   report_drive(sequence, progress);
   return sequence;
 }

@@ -12,7 +12,6 @@
 
 #include "adasplats/cloud/load/drive_settings.h"
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/origins/clocks.h"
@@ -56,10 +55,9 @@ SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
 
 /// Reads the scans as given.
 std::shared_ptr<const ScanReader> raw_reader(std::shared_ptr<const ScanSource> source);
-/// Reads the scans in the frames of their poses; each beam starts where the sensor was. Marks
-/// points that are in `boxes` at their own times (or that of their scan).
+/// Reads the scans in the frames of their poses; each beam starts where the sensor was.
 std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, SweepFinding finding,
-                                               MovingBoxes boxes, bool with_classes);
+                                               bool with_classes);
 
 /// First and last time of the points of each scan, s in the clock of the poses.
 std::vector<TimeSpan> spans_of_scans(const SensorFrames& frames, const Executor& executor,

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <mutex>
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/origins/sweep_evidence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/cloud/sequence/recognize_sensor.h"
@@ -55,15 +54,11 @@ struct WorldSensor {
 /// Reads the scans of a drive.
 class FrameReader final : public ScanReader {
  public:
-  FrameReader(const WorldFrames& frames, WorldSensor sensor, MovingBoxes boxes, bool with_classes)
+  FrameReader(const WorldFrames& frames, WorldSensor sensor, bool with_classes)
       : source_(frames.source),
         vehicle_(frames.vehicle),
         sensor_(std::move(sensor)),
-        boxes_(std::move(boxes)),
-        with_classes_(with_classes) {
-    for (std::size_t k = 0; k < frames.stamps_s.size(); ++k)
-      stamps_s_.emplace(frames.files[k], frames.stamps_s[k]);
-  }
+        with_classes_(with_classes) {}
 
   RigidTransform pose_at(double time_s) const {
     return interpolate(vehicle_, time_s) * sensor_.vehicle_from_sensor;
@@ -78,12 +73,7 @@ class FrameReader final : public ScanReader {
     scan.positions.reserve(frame.size());
     scan.origins.reserve(frame.size());
     scan.lasers.reserve(frame.size());
-    const auto stamp = stamps_s_.find(file);
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
-      const double scan_s = stamp == stamps_s_.end() ? frame.times[i] : stamp->second;
-      if (!boxes_.empty())
-        scan.in_boxes.push_back(
-            boxes_.object_at(boxes_.time_of_point(scan_s, frame.times[i]), frame.positions[i]));
       const RigidTransform pose = pose_at(frame.times[i]);
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
       const auto [laser, origin] = beam_of_point(pose.inverse() * frame.positions[i]);
@@ -107,8 +97,6 @@ class FrameReader final : public ScanReader {
   std::shared_ptr<const ScanSource> source_;
   Trajectory vehicle_;
   WorldSensor sensor_;
-  MovingBoxes boxes_;
-  std::map<std::filesystem::path, double> stamps_s_;
   bool with_classes_;
 };
 
@@ -189,17 +177,6 @@ void require_covered(const WorldFrames& frames, const Overview& overview) {
     throw Error(ErrorKind::data,
                 files[k].string() + text.data() + " (" + frames.poses_file.string() + ")");
   }
-}
-
-/// Throws data if no box overlaps the times of the scans.
-void require_boxes_of(const DriveInput& drive, const MovingBoxes& boxes, const Overview& overview) {
-  const auto covered = [&](const std::pair<double, double>& times_s) {
-    return boxes.overlaps(times_s.first, times_s.second);
-  };
-  if (std::ranges::any_of(overview.times_s, covered)) return;
-  throw Error(ErrorKind::data, drive.boxes.string() +
-                                   ": no box has a time within the scans; the clocks differ, or "
-                                   "the boxes belong to another drive");
 }
 
 std::string description_of(const Recognition& found) {
@@ -328,11 +305,6 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
                                                const Executor& executor, ProgressSink& progress) {
   const Overview overview = survey_frames(frames, executor, progress);
   require_covered(frames, overview);
-  MovingBoxes boxes;
-  if (!drive.boxes.empty()) {
-    boxes = MovingBoxes(drive.boxes, {{}, {}, drive.topic, drive.scene});
-    require_boxes_of(drive, boxes, overview);
-  }
   KittiSequence sequence;
   sequence.folder = drive.folder;
   std::optional<WorldSensor> sensor =
@@ -342,13 +314,14 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
                   ": its sensor is not recognised, so its mount is unknown; give `mount`");
     return std::nullopt;
   }
-  const auto reader = std::make_shared<FrameReader>(frames, std::move(*sensor), std::move(boxes),
-                                                    drive.with_classes);
+  const auto reader = std::make_shared<FrameReader>(frames, std::move(*sensor), drive.with_classes);
   sequence.facts.motion = "already compensated in the points (they are in world coordinates)";
   sequence.facts.poses = "at the middles of the points' times";
+  std::vector<double> stamps_s;
   for (std::size_t k = 0; k < frames.files.size(); ++k) {
     const auto [first, last] = overview.times_s[k];
     if (std::isnan(first)) continue;  // a file without points
+    if (k < frames.stamps_s.size()) stamps_s.push_back(frames.stamps_s[k]);
     sequence.scans.push_back(frames.files[k]);
     const double middle_s = 0.5 * (first + last);
     sequence.trajectory.push_back({middle_s, reader->pose_at(middle_s)});
@@ -367,6 +340,7 @@ std::optional<KittiSequence> open_world_frames(const DriveInput& drive, const Wo
     sequence.track.push_back({pose.time_s, reader->pose_at(pose.time_s)});
   require_no_jump(sequence);
   sequence.reader = reader;
+  add_boxes(drive, stamps_s, sequence, executor, progress);
   return sequence;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/point_files.h"
@@ -121,6 +122,31 @@ void remove_points_in_boxes(KittiScan& scan) {
   scan.in_boxes = {};
 }
 
+KittiScan read_file_of(const KittiSequence& sequence, std::size_t index) {
+  const std::filesystem::path& path = sequence.scans.at(index);
+  if (sequence.reader) return sequence.reader->read(path);
+  KittiScan scan;
+  // A scan in which nothing returned is an empty file.
+  std::error_code problem;
+  if (std::filesystem::file_size(path, problem) != 0 || problem) {
+    Table table = read_kitti_bin(path);
+    const auto& x = float_column(table, "x");
+    const auto& y = float_column(table, "y");
+    const auto& z = float_column(table, "z");
+    scan.positions.resize(table.rows);
+    for (std::size_t i = 0; i < table.rows; ++i) scan.positions[i] = {x[i], y[i], z[i]};
+    scan.intensities = float_column(table, "intensity");
+  }
+  return scan;
+}
+
+/// A scan without labels, with the boxes of its points.
+KittiScan read_returns(const KittiSequence& sequence, std::size_t index) {
+  KittiScan scan = read_file_of(sequence, index);
+  if (sequence.boxes) scan.in_boxes = sequence.boxes->objects_in(sequence.trajectory[index], scan);
+  return scan;
+}
+
 }  // namespace
 
 bool is_kitti_sequence(const std::filesystem::path& folder) {
@@ -178,26 +204,14 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 }
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
-  KittiScan scan = read_all_returns(sequence, index);
+  KittiScan scan = read_returns(sequence, index);
   remove_points_in_boxes(scan);
   return scan;
 }
 
 KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index) {
-  const std::filesystem::path& path = sequence.scans.at(index);
-  if (sequence.reader) return sequence.reader->read(path);
-  KittiScan scan;
-  // A scan in which nothing returned is an empty file.
-  std::error_code problem;
-  if (std::filesystem::file_size(path, problem) != 0 || problem) {
-    Table table = read_kitti_bin(path);
-    const auto& x = float_column(table, "x");
-    const auto& y = float_column(table, "y");
-    const auto& z = float_column(table, "z");
-    scan.positions.resize(table.rows);
-    for (std::size_t i = 0; i < table.rows; ++i) scan.positions[i] = {x[i], y[i], z[i]};
-    scan.intensities = float_column(table, "intensity");
-  }
+  KittiScan scan = read_returns(sequence, index);
+  if (!sequence.labels.empty()) take_labels(sequence.labels.at(index), scan);
   return scan;
 }
 
@@ -220,8 +234,8 @@ std::vector<std::uint32_t> read_kitti_labels(const std::filesystem::path& path) 
 }
 
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
-  KittiScan scan = read_kitti_points(sequence, index);
-  if (!sequence.labels.empty()) take_labels(sequence.labels.at(index), scan);
+  KittiScan scan = read_all_returns(sequence, index);
+  remove_points_in_boxes(scan);
   return scan;
 }
 

@@ -25,6 +25,7 @@ std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& fo
 std::optional<std::size_t> number_in_name(const std::filesystem::path& file);
 
 struct KittiScan;
+class MovingBoxes;
 
 /// What was inferred about a drive, in words; empty: nothing to report.
 struct DriveFacts {
@@ -61,7 +62,8 @@ struct KittiSequence {
   ScanBeams beams;   ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
   DriveFacts facts;
-  std::string rig_sensor;  ///< its name in the rig; empty: no rig
+  std::shared_ptr<const MovingBoxes> boxes;  ///< of annotated moving objects; null: none
+  std::string rig_sensor;                    ///< its name in the rig; empty: no rig
 };
 
 /// True for a folder with a `velodyne` folder in it, and for a drive of KITTI's raw data
@@ -99,19 +101,19 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 /// in the high ones. Errors: data (not four bytes a label), no_input, io.
 std::vector<std::uint32_t> read_kitti_labels(const std::filesystem::path& path);
 
-/// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).
-/// Errors: data (the label file has another number of entries).
+/// Reads scan number `index` without the points in boxes of moving objects. Points that are not
+/// finite are kept here (the caller counts them). Errors: data (the label file has another number
+/// of entries).
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);
 
 /// The same without labels.
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index);
 
-/// The same with the points of KittiScan::in_boxes, which the others leave out: their beams did
-/// return.
+/// All points with their labels and with KittiScan::in_boxes: beams into boxes returned, too.
 KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index);
 
-/// The same; nothing where the scan cannot be read. For what looks into scans that nobody chose:
-/// whoever reads one that was chosen says what is wrong with it.
+/// read_kitti_points(); nothing where the scan cannot be read. For what looks into scans that
+/// nobody chose: whoever reads one that was chosen says what is wrong with it.
 std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index);
 
 /// True for a drive as KITTI's raw data have it: folders `velodyne_points/data` and `oxts/data`.

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "adasplats/cloud/load/boxed_drive.h"
 #include "adasplats/cloud/load/data_tree.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/load/rig_of_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -37,6 +37,7 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   chosen.beams.from_hdl64 = all.beams.from_hdl64;
   chosen.beams.recognised = all.beams.recognised;
   chosen.reader = all.reader;
+  chosen.boxes = all.boxes;
   chosen.facts = all.facts;
   chosen.rig_sensor = all.rig_sensor;
   for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
@@ -200,10 +201,6 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
   if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packets_of.empty())
     throw Error(ErrorKind::usage, "`packet_sensor` is for a packet capture or a recording");
-  if (!is_drive && !scans.boxes.empty() && !is_kitti_raw_drive(resolve_cloud_input(scans.sequence)))
-    throw Error(ErrorKind::usage,
-                "`boxes` need a drive of KITTI raw or another data set, or scans with times and a "
-                "`trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
                              !(scans.mount_rotation_deg == Vec3d{}) ||
                              scans.points_in != PointsIn::found ||
@@ -222,7 +219,8 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
                                         " are motion-compensated");
     set_raw_motions(all.beams, all.trajectory, load_trajectory(scans.motion));
   }
-  return with_scans(with_boxes(std::move(all), scans), scans.scans);
+  add_boxes(scans, {}, all, session.executor, session.progress);
+  return with_scans(std::move(all), scans.scans);
 }
 
 HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "adasplats/cloud/load/moving_boxes.h"
 #include "adasplats/cloud/load/open_inputs.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -86,14 +86,12 @@ ChosenScans open_again(const ModelJob& job, Session& session) {
 }
 
 /// The points of the moving objects in the chosen scans.
-std::vector<RecordedObject> collect_objects(const ChosenScans& chosen, const MovingBoxes& boxes,
-                                            Session& session) {
-  ObjectCollector collector(boxes.tracks());
+std::vector<RecordedObject> collect_objects(const ChosenScans& chosen, Session& session) {
+  ObjectCollector collector(*chosen.drive.boxes);
   session.progress.begin_step("collect objects", chosen.scans.size());
   for (std::size_t k = 0; k < chosen.scans.size(); ++k) {
-    KittiScan scan = read_all_returns(chosen.drive, chosen.scans[k]);
-    scan.in_boxes = boxes.objects_in(chosen.drive, chosen.scans[k], scan, session.executor);
-    collector.add(chosen.drive, chosen.scans[k], scan, session.executor);
+    collector.add(chosen.drive, chosen.scans[k], read_all_returns(chosen.drive, chosen.scans[k]),
+                  session.executor);
     session.progress.advance(k + 1);
   }
   session.progress.end_step();
@@ -197,20 +195,19 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   TrafficResult result;
   ChosenScans chosen = open_again(job, session);
   ModelJob without = job;
-  MovingBoxes boxes;
   if (job.load.boxes.empty()) {
-    boxes = MovingBoxes(
-        find_moving(chosen.drive, chosen.scans, {}, session.executor, session.progress));
+    BoxContent found;
+    found.moving = find_moving(chosen.drive, chosen.scans, {}, session.executor, session.progress);
+    chosen.drive.boxes = std::make_shared<const MovingBoxes>(std::move(found));
     without.load.boxes = output.path() / "boxes.csv";
-    write_file(without.load.boxes, boxes_text(boxes));
-  } else {
-    boxes = MovingBoxes(job.load.boxes);
+    write_file(without.load.boxes, boxes_text(*chosen.drive.boxes));
+    if (chosen.drive.boxes->empty()) without.load.boxes.clear();
   }
   auto [scene, made] = make_model(without, session);
   result.scene = std::move(made);
   save_model(output.path() / "scene.ply", scene);
   if (!result.scene.calibration.empty()) apply(result.scene.calibration, chosen.drive);
-  std::vector<RecordedObject> objects = collect_objects(chosen, boxes, session);
+  std::vector<RecordedObject> objects = collect_objects(chosen, session);
   std::filesystem::create_directory(output.path() / "objects");
   const LabelScheme scheme = semantickitti_labels();
   session.progress.begin_step("model objects", objects.size());

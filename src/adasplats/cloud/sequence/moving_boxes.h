@@ -3,18 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
+
+struct KittiScan;
 
 /// One box of an object.
 struct TimedBox {
@@ -33,14 +32,6 @@ struct BoxTrack {
   TimedBox at(double time_s) const;
 };
 
-/// The drive that boxes are read for, as far as their files refer to it.
-struct BoxDrive {
-  std::vector<std::filesystem::path> scans;  ///< by time
-  Trajectory poses;                          ///< of the scans: world_from_sensor
-  std::string lidar;  ///< of kPandaSetSensors, whose cuboids are preferred; empty: pandar64
-  std::string scene;  ///< of nuScenes; empty: the only one
-};
-
 /// What a box file contains, in world coordinates.
 struct BoxContent {
   std::vector<BoxTrack> moving;    ///< by ascending id, their boxes by ascending time
@@ -55,8 +46,6 @@ class MovingBoxes {
  public:
   MovingBoxes() = default;
   explicit MovingBoxes(BoxContent content) : content_(std::move(content)) {}
-  /// Reads a box file or the annotations of a data set: read_box_file().
-  explicit MovingBoxes(const std::filesystem::path& path, const BoxDrive& drive = {});
 
   bool empty() const { return content_.moving.empty(); }
   /// Whether the times of all boxes, moving or not, overlap a time span.
@@ -66,17 +55,16 @@ class MovingBoxes {
   }
   /// By ascending id.
   std::span<const BoxTrack> tracks() const { return content_.moving; }
-  /// The time for object_at() of a point at `point_s` in the scan with the stamp `scan_s`.
-  double time_of_point(double scan_s, double point_s) const {
-    return content_.are_of_scans ? scan_s : point_s;
-  }
+  bool are_of_scans() const { return content_.are_of_scans; }
+  /// Boxes `later_s` later than the given ones are at the given times.
+  void correct_times(double later_s, bool are_of_scans);
   /// The number, from 1, of the object whose box contains a world point at a time, with a margin of
   /// 0.2 m; of several the one whose middle is nearest; 0: none. Boxes are held for one step before
   /// the first and after the last.
   std::uint16_t object_at(double time_s, Vec3d point) const;
-  /// object_at() of all points of scan number `index` of a drive (KittiScan::in_boxes).
-  std::vector<std::uint16_t> objects_in(const KittiSequence& drive, std::size_t index,
-                                        const KittiScan& scan, const Executor& executor) const;
+  /// object_at() of all points of a scan (KittiScan::in_boxes) at their times, or at that of the
+  /// scan's pose if they have none or `are_of_scans`.
+  std::vector<std::uint16_t> objects_in(const TimedPose& pose, const KittiScan& scan) const;
 
  private:
   BoxContent content_;

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
-#include "adasplats/cloud/load/box_files.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 
 namespace adasplats {
 namespace {
@@ -19,9 +20,6 @@ double turned_by(double from_rad, double to_rad) {
 }
 
 }  // namespace
-
-MovingBoxes::MovingBoxes(const std::filesystem::path& path, const BoxDrive& drive)
-    : content_(read_box_file(path, drive)) {}
 
 TimedBox BoxTrack::at(double time_s) const {
   const auto after = std::ranges::upper_bound(boxes, time_s, {}, &TimedBox::time_s);
@@ -58,16 +56,40 @@ std::uint16_t MovingBoxes::object_at(double time_s, Vec3d point) const {
   return object;
 }
 
-std::vector<std::uint16_t> MovingBoxes::objects_in(const KittiSequence& drive, std::size_t index,
-                                                   const KittiScan& scan,
-                                                   const Executor& executor) const {
-  const TimedPose& pose = drive.trajectory[index];
+void MovingBoxes::correct_times(double later_s, bool are_of_scans) {
+  content_.are_of_scans = are_of_scans;
+  content_.begin_s -= later_s;
+  content_.end_s -= later_s;
+  for (BoxTrack& track : content_.moving)
+    for (TimedBox& box : track.boxes) box.time_s -= later_s;
+}
+
+std::vector<std::uint16_t> MovingBoxes::objects_in(const TimedPose& pose,
+                                                   const KittiScan& scan) const {
+  const bool has_times = !scan.times_s.empty() && !content_.are_of_scans;
+  double begin_s = pose.time_s, end_s = pose.time_s;
+  for (std::size_t i = 0; has_times && i < scan.times_s.size(); ++i) {
+    begin_s = std::min(begin_s, scan.times_s[i]);
+    end_s = std::max(end_s, scan.times_s[i]);
+  }
+  // Most points are far from all boxes.
+  std::vector<std::pair<Vec3d, double>> spheres;
+  for (const BoxTrack& track : content_.moving) {
+    const TimedBox first = track.at(begin_s), last = track.at(end_s);
+    const double half_way_m = 0.5 * length(last.middle - first.middle);
+    constexpr double kCurve_m = 0.5;  // boxes may leave the straight line
+    spheres.emplace_back(0.5 * (first.middle + last.middle),
+                         half_way_m + length(first.half_size) + 2 * kMargin_m + kCurve_m);
+  }
   std::vector<std::uint16_t> objects(scan.positions.size());
-  executor.for_chunks(objects.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      objects[i] = object_at(scan.times_s.empty() ? pose.time_s : scan.times_s[i],
-                             pose.world_from_sensor * beam_of(drive, index, scan, i).end);
-  });
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Vec3d point = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
+    const bool is_near = std::ranges::any_of(spheres, [&](const auto& sphere) {
+      const Vec3d off = point - sphere.first;
+      return dot(off, off) < sphere.second * sphere.second;
+    });
+    if (is_near) objects[i] = object_at(has_times ? scan.times_s[i] : pose.time_s, point);
+  }
   return objects;
 }
 

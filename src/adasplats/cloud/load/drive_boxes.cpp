@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/drive_boxes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/load/box_files.h"
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr int kSteps = 20;  // on either side of the given times
+constexpr double kStep_s = 0.01;
+constexpr double kFast_mps = 3;
+using Counts = std::array<std::size_t, 2 * kSteps + 1>;
+
+double speed_at(const BoxTrack& track, double time_s) {
+  constexpr double kAround_s = 0.1;
+  const Vec3d way = track.at(time_s + kAround_s).middle - track.at(time_s - kAround_s).middle;
+  return length(way) / (2 * kAround_s);
+}
+
+/// Whether a point is in a box, above what may be ground.
+bool is_inside(const TimedBox& box, Vec3d point) {
+  constexpr double kGround_m = 0.25;
+  const Vec3d off = point - box.middle;
+  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
+  return std::fabs(c * off.x + s * off.y) <= box.half_size.x &&
+         std::fabs(-s * off.x + c * off.y) <= box.half_size.y && off.z <= box.half_size.z &&
+         off.z >= kGround_m - box.half_size.z;
+}
+
+/// Counts points in boxes of fast objects, by how much later the boxes are: with the times of the
+/// points, and with those of the scans.
+class ClockCounter {
+ public:
+  ClockCounter(const MovingBoxes& boxes, const KittiSequence& drive)
+      : boxes_(boxes), drive_(drive), is_counted_(boxes.tracks().size()) {}
+
+  void add(std::size_t index) {
+    const TimedPose& pose = drive_.trajectory[index];
+    std::vector<std::size_t> fast;
+    for (std::size_t k = 0; k < boxes_.tracks().size(); ++k) {
+      const std::vector<TimedBox>& boxes = boxes_.tracks()[k].boxes;
+      if (pose.time_s > boxes.front().time_s && pose.time_s < boxes.back().time_s &&
+          speed_at(boxes_.tracks()[k], pose.time_s) > kFast_mps)
+        fast.push_back(k);
+    }
+    if (fast.empty()) return;
+    const KittiScan scan = read_all_returns(drive_, index);
+    for (const std::size_t k : fast) add(pose, scan, k);
+  }
+
+  const Counts& of_points() const { return of_points_; }
+  const Counts& of_scans() const { return of_scans_; }
+  std::size_t objects() const {
+    return static_cast<std::size_t>(std::ranges::count(is_counted_, true));
+  }
+
+ private:
+  void add(const TimedPose& pose, const KittiScan& scan, std::size_t track_number) {
+    const BoxTrack& track = boxes_.tracks()[track_number];
+    const TimedBox now = track.at(pose.time_s);
+    const double reach_m =
+        length(now.half_size) + 2 * kSteps * kStep_s * speed_at(track, pose.time_s);
+    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+      const Vec3d point = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
+      if (!(length(point - now.middle) <= reach_m)) continue;
+      const double time_s = scan.times_s.empty() ? pose.time_s : scan.times_s[i];
+      for (int step = -kSteps; step <= kSteps; ++step) {
+        const auto place = static_cast<std::size_t>(step + kSteps);
+        const bool is_in = is_inside(track.at(time_s + step * kStep_s), point);
+        of_points_[place] += is_in ? 1 : 0;
+        of_scans_[place] += is_inside(track.at(pose.time_s + step * kStep_s), point) ? 1 : 0;
+        if (is_in) is_counted_[track_number] = true;
+      }
+    }
+  }
+
+  const MovingBoxes& boxes_;
+  const KittiSequence& drive_;
+  Counts of_points_{}, of_scans_{};
+  std::vector<bool> is_counted_;
+};
+
+/// The times of boxes at the stamps of scans become those of their poses.
+BoxContent at_poses(BoxContent content, std::span<const double> stamps_s, const Trajectory& poses) {
+  constexpr double kSame_s = 1e-4;
+  for (BoxTrack& track : content.moving) {
+    for (TimedBox& box : track.boxes) {
+      const auto stamp = std::ranges::min_element(
+          stamps_s, {}, [&](double stamp_s) { return std::fabs(stamp_s - box.time_s); });
+      const auto k = static_cast<std::size_t>(stamp - stamps_s.begin());
+      if (std::fabs(*stamp - box.time_s) < kSame_s) box.time_s = poses[k].time_s;
+    }
+  }
+  return content;
+}
+
+std::string clock_text(const std::filesystem::path& file, const BoxClock& clock) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(),
+                ": its boxes fit the points best %.2f s %s%s (%zu points in boxes of fast objects, "
+                "%zu as given); their times are corrected",
+                std::fabs(clock.later_s), clock.later_s < 0 ? "earlier" : "later",
+                clock.are_of_scans ? ", one box per scan" : "", clock.points, clock.as_given);
+  return file.string() + text.data();
+}
+
+}  // namespace
+
+std::optional<BoxClock> fit_box_clock(const MovingBoxes& boxes, const KittiSequence& drive,
+                                      const Executor& executor) {
+  constexpr std::size_t kScans = 16, kMinPoints = 500, kMinObjects = 3;
+  constexpr double kMore = 1.02;
+  ClockCounter counter(boxes, drive);
+  const std::size_t count = std::min(kScans, drive.scans.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    executor.check_interruption();
+    counter.add((2 * k + 1) * drive.scans.size() / (2 * count));
+  }
+  const Counts& given = boxes.are_of_scans() ? counter.of_scans() : counter.of_points();
+  BoxClock best{0, boxes.are_of_scans(), given[kSteps], given[kSteps]};
+  for (int distance = 0; distance <= kSteps; ++distance) {
+    for (const int step : {distance, -distance}) {
+      const auto place = static_cast<std::size_t>(step + kSteps);
+      for (const bool are_of_scans : {boxes.are_of_scans(), !boxes.are_of_scans()}) {
+        const std::size_t points = (are_of_scans ? counter.of_scans() : counter.of_points())[place];
+        if (points > best.points) best = {step * kStep_s, are_of_scans, points, best.as_given};
+      }
+    }
+  }
+  const bool is_clear =
+      best.points >= kMinPoints && counter.objects() >= kMinObjects &&
+      static_cast<double>(best.points) > kMore * static_cast<double>(best.as_given);
+  return is_clear ? std::optional(best) : std::nullopt;
+}
+
+void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
+               KittiSequence& drive, const Executor& executor, ProgressSink& progress) {
+  if (settings.boxes.empty() || drive.scans.empty()) return;
+  BoxContent content = read_box_file(
+      settings.boxes, {drive.scans, drive.trajectory, settings.topic, settings.scene});
+  if (content.are_of_scans && !stamps_s.empty())
+    content = at_poses(std::move(content), stamps_s, drive.trajectory);
+  constexpr double kSweep_s = 0.1;
+  MovingBoxes boxes(std::move(content));
+  if (!boxes.overlaps(drive.trajectory.front().time_s - kSweep_s,
+                      drive.trajectory.back().time_s + kSweep_s))
+    throw Error(ErrorKind::data, settings.boxes.string() +
+                                     ": no box has a time within the scans; the clocks differ, or "
+                                     "the boxes belong to another drive");
+  if (const std::optional<BoxClock> clock = fit_box_clock(boxes, drive, executor)) {
+    progress.warn(clock_text(settings.boxes, *clock));
+    boxes.correct_times(clock->later_s, clock->are_of_scans);
+  }
+  drive.boxes = std::make_shared<const MovingBoxes>(std::move(boxes));
+}
+
+}  // namespace adasplats
