@@ -28,6 +28,38 @@ bool contains(const TimedBox& box, const Cluster& cluster, double margin_m) {
          std::fabs(off.z) <= box.half_size.z + margin_m;
 }
 
+/// Whether a point is in a box, above what may be ground.
+bool contains(const TimedBox& box, Vec3d point) {
+  constexpr double kGround_m = 0.3;
+  const Vec3d off = point - box.middle;
+  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
+  return std::fabs(c * off.x + s * off.y) <= box.half_size.x &&
+         std::fabs(-s * off.x + c * off.y) <= box.half_size.y && off.z <= box.half_size.z &&
+         off.z >= kGround_m - box.half_size.z;
+}
+
+/// The share of loose points in the boxes of an object; 0 without points.
+double loose_share(const BoxTrack& track, const ClusterTrack& clusters,
+                   std::span<const LoosePoints> loose) {
+  double loose_points = 0, firm_points = 0;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    const LoosePoints& scan = loose[clusters[k].scan];
+    const TimedBox& box = track.boxes[k];
+    for (const std::uint32_t i : clusters[k].points)
+      loose_points += contains(box, scan.points[i]) ? 1 : 0;
+    for (const Vec3f& point : scan.firm)
+      firm_points += contains(box, scan.sensor + vec_cast<double>(point)) ? 1 : 0;
+  }
+  firm_points *= LoosePoints::kFirmEvery;
+  return loose_points > 0 ? loose_points / (loose_points + firm_points) : 0;
+}
+
+/// Whether a box has the height of a person or of a vehicle.
+bool has_usual_height(const BoxTrack& track) {
+  const double height_m = 2 * track.boxes.front().half_size.z;
+  return height_m <= (track.label == "truck" ? 4.5 : 2.6);
+}
+
 /// The motion at the first or last boxes of a track, m/s.
 Vec3d velocity_at_end(const BoxTrack& track, bool first) {
   constexpr std::size_t kBoxes = 4;
@@ -159,7 +191,9 @@ std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
     if (!fits[t]) continue;
     owners.absorb(*fits[t], t, options.margin_m);
     std::optional<BoxTrack> boxes = fit(t);
-    if (!boxes) continue;
+    if (!boxes || !has_usual_height(*boxes) ||
+        loose_share(*boxes, owners.track_of(t), loose) < options.min_loose)
+      continue;
     boxes->id = found.size() + 1;
     found.push_back(std::move(*boxes));
   }

@@ -17,6 +17,8 @@ struct FindBoxesOptions {
   ClusterOptions clusters;
   TrackOptions tracks;
   BoxFitOptions boxes;
+  /// Of the points in the boxes of an object that are loose: others show what is at rest.
+  double min_loose = 0.4;
   double margin_m = 0.4;  ///< clusters whose middle is in a box grown by this belong to its object
 };
 

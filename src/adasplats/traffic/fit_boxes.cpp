@@ -61,6 +61,12 @@ double middle_of(const Extent& extent, double sensor, double length) {
   return (extent.low + extent.high) / 2;
 }
 
+/// The lower side of a box: the ground, if it is where the lowest points make it likely.
+double bottom_of(double ground, double lowest) {
+  constexpr double kHidden_m = 1, kInside_m = 0.3;
+  return ground >= lowest - kHidden_m && ground <= lowest + kInside_m ? ground : lowest;
+}
+
 /// Fits the boxes of one track.
 class Fit {
  public:
@@ -105,8 +111,7 @@ class Fit {
     for (std::size_t k = 0; k < track_.size(); ++k) {
       const Extent& up = views_[k].extents[2];
       tops.push_back(track_[k].middle.z + up.high);
-      const double ground = height_below(middles_[k]);
-      bottoms.push_back(std::isnan(ground) ? tops.back() - size_m_.z : ground);
+      bottoms.push_back(bottom_of(height_below(middles_[k]), track_[k].middle.z + up.low));
     }
     std::vector<double> heights;
     for (std::size_t k = 0; k < tops.size(); ++k) heights.push_back(tops[k] - bottoms[k]);

@@ -9,6 +9,8 @@
 namespace adasplats {
 namespace {
 
+constexpr double kStep_m = 0.1;
+
 std::pair<std::int32_t, std::int32_t> cell_of(double x, double y) {
   return {static_cast<std::int32_t>(std::floor(x)), static_cast<std::int32_t>(std::floor(y))};
 }
@@ -23,13 +25,21 @@ void GroundHeights::add(const KittiSequence& drive, std::size_t index, const Kit
     if (!(dot(local, local) < kReach_m * kReach_m)) continue;
     const Vec3d point = world_from_sensor * local;
     Cell& cell = cells_[cell_of(point.x, point.y)];
-    const auto height = static_cast<float>(point.z);
-    const std::size_t kept = std::min(cell.points++, kLowest);
-    if (kept == kLowest && height >= cell.lowest[kLowest - 1]) continue;
-    std::size_t k = kept == kLowest ? kLowest - 1 : kept;
-    for (; k > 0 && cell.lowest[k - 1] > height; --k) cell.lowest[k] = cell.lowest[k - 1];
-    cell.lowest[k] = height;
+    ++cell.heights[static_cast<std::int32_t>(std::floor(point.z / kStep_m))];
+    ++cell.points;
   }
+}
+
+double GroundHeights::ground_of(const Cell& cell) {
+  // Mirrors and noise have points below the ground.
+  constexpr std::uint32_t kMinPoints = 5, kShare = 20;
+  const std::uint32_t below = std::max(kMinPoints, cell.points / kShare);
+  std::uint32_t count = 0;
+  for (const auto& [step, points] : cell.heights) {
+    count += points;
+    if (count >= below) return (step + 0.5) * kStep_m;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 double GroundHeights::at(double x, double y) const {
@@ -38,8 +48,9 @@ double GroundHeights::at(double x, double y) const {
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
         const auto found = cells_.find(cell_of(x + dx, y + dy));
-        if (found == cells_.end() || found->second.points < kLowest) continue;
-        lowest = std::min(lowest, static_cast<double>(found->second.lowest[kLowest - 1]));
+        if (found == cells_.end()) continue;
+        const double ground = ground_of(found->second);
+        if (!std::isnan(ground)) lowest = std::min(lowest, ground);
       }
     }
     if (std::isfinite(lowest)) return lowest;

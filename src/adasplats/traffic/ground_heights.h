@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -11,7 +10,7 @@
 
 namespace adasplats {
 
-/// The height of the ground by square metre, from the lowest points of many scans.
+/// The height of the ground by square metre: what few points of many scans are below.
 class GroundHeights {
  public:
   /// Adds scan number `index` of a drive.
@@ -20,12 +19,12 @@ class GroundHeights {
   double at(double x, double y) const;
 
  private:
-  /// The lowest points of a cell, ascending: single points may be below the ground.
-  static constexpr std::size_t kLowest = 5;
+  /// The points of a cell by decimetre of height.
   struct Cell {
-    std::array<float, kLowest> lowest;
-    std::size_t points = 0;
+    std::map<std::int32_t, std::uint32_t> heights;
+    std::uint32_t points = 0;
   };
+  static double ground_of(const Cell& cell);
   std::map<std::pair<std::int32_t, std::int32_t>, Cell> cells_;
 };
 

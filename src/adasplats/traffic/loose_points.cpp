@@ -38,7 +38,11 @@ LoosePoints loose_points(const KittiSequence& drive, std::size_t index, const Ki
     }
   });
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (votes[i].free < options.min_free || votes[i].free < votes[i].occupied) continue;
+    if (votes[i].free < options.min_free || votes[i].free < votes[i].occupied) {
+      if (votes[i].occupied > 0 && i % LoosePoints::kFirmEvery == 0)
+        loose.firm.push_back(vec_cast<float>(place_of(i) - loose.sensor));
+      continue;
+    }
     loose.points.push_back(place_of(i));
     loose.times_s.push_back(scan.times_s.empty() ? pose.time_s : scan.times_s[i]);
   }

@@ -19,6 +19,8 @@ struct LoosePoints {
   Vec3d sensor;                 ///< its position at that time, world coordinates, m
   std::vector<Vec3d> points;    ///< world coordinates, m
   std::vector<double> times_s;  ///< one per point
+  std::vector<Vec3f> firm;  ///< one in kFirmEvery of the points that others saw, too, from sensor
+  static constexpr std::size_t kFirmEvery = 16;
 };
 
 struct LooseOptions {
