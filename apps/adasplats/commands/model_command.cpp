@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -98,7 +99,8 @@ class ModelCommand final : public Command {
                    {".ply", ""}));
     app.add_flag(
         "--traffic", traffic_,
-        "Model the moving objects in --boxes, too; the output is a folder with a world file");
+        "Model moving objects with their trajectories, too: those of --boxes, or those found; the "
+        "output is a folder with a world file");
     app.add_flag("--overwrite", job_.overwrite, "Replace an existing city");
     add_settings(app, job_.tiles);
     visit_settings(job_.memory, [&app](const Setting& setting, double& value) {
@@ -148,6 +150,14 @@ class ModelCommand final : public Command {
       reject({"--max-shift"}, "without --add-to");
     else if (is_given("--tile") && job_.tiles.tile_m == 0)
       reject({"--add-to"}, "with --tile 0");
+    if (traffic_) {
+      reject(
+          {"--tile", "--halo", "--overwrite", "--plan", "--only-tile", "--keep-points", "--add-to"},
+          "with --traffic");
+      require_folder_apart(job_.output, job_.inputs);
+      run_traffic_of(session);
+      return;
+    }
     if (!job_.add_to.empty())
       take_tiles_of_city();
     else if (!is_given("--tile") && !only_tile_)
@@ -163,11 +173,6 @@ class ModelCommand final : public Command {
         run_plan(session);
       else
         run_city(session);
-      return;
-    }
-    if (traffic_) {
-      require_folder_apart(job_.output, job_.inputs);
-      run_traffic_of(session);
       return;
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
@@ -274,8 +279,12 @@ class ModelCommand final : public Command {
       table.add_row({object.name, grouped(object.scans), grouped(object.points),
                      object.left_out.empty() ? grouped(object.splats) : object.left_out,
                      centimetres(object.aligned.median_shift_m)});
-    print(table.text() + "\n" + (job_.output / "world.toml").string() + ": " +
-          grouped(result.scene.built.primitives) + " splats\n");
+    const auto left_out = std::ranges::count_if(
+        result.objects, [](const TrafficObject& object) { return !object.left_out.empty(); });
+    print((result.objects.empty() ? std::string() : table.text() + "\n") +
+          (job_.output / "world.toml").string() + ": " + grouped(result.scene.built.primitives) +
+          " splats and " + grouped(result.objects.size() - static_cast<std::size_t>(left_out)) +
+          " moving objects, " + std::to_string(left_out) + " left out\n");
   }
 
   void run_city(Session& session) {
