@@ -68,6 +68,10 @@ class SimulateCommand final : public Command {
                 .min = 0,
                 .exclusive_min = true},
                job_.tile_memory_gb);
+    app.add_flag(
+        "--velocities", job_.velocities,
+        "Add the velocity of the surface at every point (vx, vy, vz; m/s, relative to the "
+        "ground, along the axes of the scan's pose); formats ply, npz, pcd, las, laz, mcap");
     app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     constexpr int kMaxScans = 1'000'000'000;
     app.add_option("--plan", scans_a_task_,

@@ -87,22 +87,13 @@ struct CuboidColumns {
   }
 };
 
-/// World position of point `i`; a raw point was measured from the sensor pose at its time.
-Vec3d world_place(const ScanView& scan, std::uint32_t i) {
-  const Vec3d point = vec_cast<double>(scan.positions[i]);
-  const bool is_raw = scan.frame == PointFrame::raw && scan.knots.size() > 1;
-  if (!is_raw || scan.times_s.empty() || !(scan.duration_s > 0))
-    return scan.world_from_sensor * point;
-  return world_point(scan.knots, double{scan.times_s[i]} / scan.duration_s, point);
-}
-
 }  // namespace
 
 std::string pandaset_points(const ScanView& scan, std::span<const std::uint32_t> order) {
   std::vector<double> x, y, z, intensities, times;
   for (auto* values : {&x, &y, &z, &intensities, &times}) values->reserve(order.size());
   for (const std::uint32_t i : order) {
-    const Vec3d p = world_place(scan, i);
+    const Vec3d p = world_point_of(scan, i);
     x.push_back(p.x);
     y.push_back(p.y);
     z.push_back(p.z);

@@ -108,8 +108,11 @@ std::string npz_bytes(const std::filesystem::path& path, const ScanView& scan) {
   const std::vector<ColumnView> columns = scan_columns(scan, times);
   constexpr std::size_t kPosition = 3;  // x, y and z are "points"
   for (std::size_t k = kPosition; k < columns.size(); ++k)
-    arrays.push_back(
-        {array_name(columns[k].name), {columns[k].type, {scan.size()}, columns[k].data}});
+    if (columns[k].stride_bytes == type_bytes(columns[k].type))
+      arrays.push_back(
+          {array_name(columns[k].name), {columns[k].type, {scan.size()}, columns[k].data}});
+  if (!scan.velocities.empty())
+    arrays.push_back({"velocities", {ColumnType::f32, {scan.size(), 3}, scan.velocities.data()}});
   const std::array<double, 16> pose = matrix_of(scan.world_from_sensor);
   arrays.push_back({"world_from_sensor", {ColumnType::f64, {4, 4}, pose.data()}});
   arrays.push_back({"time", {ColumnType::f64, {1}, &scan.time_s}});

@@ -60,6 +60,12 @@ struct ScanBytes {
 };
 ScanBytes scan_bytes(ScanFormat format);
 
+/// Whether the format stores the velocities of points.
+constexpr bool has_velocities(ScanFormat format) {
+  return (format >= ScanFormat::npz && format <= ScanFormat::laz) || format == ScanFormat::ply ||
+         format == ScanFormat::mcap;
+}
+
 /// Attributes that the format stores or that its point order needs.
 ScanFields fields_of(ScanFormat format);
 

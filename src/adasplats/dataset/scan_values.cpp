@@ -88,6 +88,12 @@ std::vector<ColumnView> scan_columns(const ScanView& given, std::span<const floa
     using Value = typename std::decay_t<decltype(values)>::value_type;
     columns.push_back({attribute.column, column_type<Value>(), values.data(), sizeof(Value)});
   });
+  if (!scan.velocities.empty()) {
+    const Vec3f& velocity = scan.velocities.front();
+    columns.push_back({"vx", ColumnType::f32, &velocity.x, sizeof(Vec3f)});
+    columns.push_back({"vy", ColumnType::f32, &velocity.y, sizeof(Vec3f)});
+    columns.push_back({"vz", ColumnType::f32, &velocity.z, sizeof(Vec3f)});
+  }
   return columns;
 }
 

@@ -31,8 +31,8 @@ std::vector<std::uint8_t> returns_of_firings(const ScanView& scan);
 std::vector<float> times_from_pose(const ScanView& scan);
 
 /// The attributes of a scan as columns of a file: x y z [intensity] [label] [instance] [ring]
-/// [column] [time] [range] [return_index]. They are views of `scan` and of `times`, the column
-/// `time`. Attributes without a value for every point are omitted.
+/// [column] [time] [range] [return_index] [vx vy vz]. They are views of `scan` and of `times`, the
+/// column `time`. Attributes without a value for every point are omitted.
 std::vector<ColumnView> scan_columns(const ScanView& scan, std::span<const float> times);
 
 /// Name of scan `index` in data sets, such as "000042".

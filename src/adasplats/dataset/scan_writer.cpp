@@ -49,13 +49,32 @@ class SequenceWriter final : public ScanWriter {
   SemanticKittiWriter writer_;
 };
 
+/// A scan with its velocities, if they are wanted.
+class WithVelocities {
+ public:
+  WithVelocities(const ScanView& scan, std::size_t index, const VelocitiesOfScan& velocities)
+      : scan_(scan) {
+    if (velocities) velocities_ = velocities(index, scan);
+    scan_.velocities = velocities_;
+  }
+  WithVelocities(const WithVelocities&) = delete;
+  WithVelocities& operator=(const WithVelocities&) = delete;
+  const ScanView& scan() const { return scan_; }
+
+ private:
+  ScanView scan_;
+  std::vector<Vec3f> velocities_;
+};
+
 /// Separate files for every scan.
 class FileWriter final : public WriterWithPoses {
  public:
   FileWriter(std::filesystem::path folder, ScanFormat format, const ScanWriterOptions& options)
       : WriterWithPoses(std::move(folder)), format_(format), options_(options) {}
 
-  EncodedScan encode(std::size_t index, const ScanView& scan) const override {
+  EncodedScan encode(std::size_t index, const ScanView& given) const override {
+    const WithVelocities with(given, index, options_.velocities);
+    const ScanView& scan = with.scan();
     EncodedScan encoded;
     encoded.pose = {scan.time_s, scan.world_from_sensor};
     encoded.points = scan.size();
@@ -82,13 +101,16 @@ class FileWriter final : public WriterWithPoses {
 /// Writes all scans as messages of one file.
 class MessageWriter final : public WriterWithPoses {
  public:
-  MessageWriter(std::filesystem::path folder, double later_s, const LabelScheme* labels)
+  MessageWriter(std::filesystem::path folder, double later_s, const ScanWriterOptions& options)
       : WriterWithPoses(std::move(folder)),
         later_s_(later_s),
         writer_(this->folder() / "scans.mcap", later_s,
-                labels == nullptr ? std::string_view() : labels->name()) {}
+                options.labels == nullptr ? std::string_view() : options.labels->name()),
+        velocities_(options.velocities) {}
 
-  EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
+  EncodedScan encode(std::size_t index, const ScanView& given) const override {
+    const WithVelocities with(given, index, velocities_);
+    const ScanView& scan = with.scan();
     EncodedScan encoded;
     encoded.pose = {scan.time_s + later_s_, scan.world_from_sensor};
     encoded.points = scan.size();
@@ -108,6 +130,7 @@ class MessageWriter final : public WriterWithPoses {
  private:
   double later_s_;
   McapWriter writer_;
+  VelocitiesOfScan velocities_;
 };
 
 }  // namespace
@@ -136,7 +159,7 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
   if (format == ScanFormat::pcap) return make_packet_writer(folder, options);
   if (format == ScanFormat::mcap)
-    return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive), options.labels);
+    return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive), options);
   return std::make_unique<FileWriter>(folder, format, options);
 }
 

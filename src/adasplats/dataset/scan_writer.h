@@ -46,6 +46,9 @@ double ros_delay_s(const DriveSpan& drive);
 /// The objects of a world in scan number `index` at `time_s`. Must be thread-safe.
 using BoxesOfScan = std::function<std::vector<ObjectBox>(std::size_t index, double time_s)>;
 
+/// World::velocities() of scan number `index`. Must be thread-safe.
+using VelocitiesOfScan = std::function<std::vector<Vec3f>(std::size_t index, const ScanView& scan)>;
+
 /// Information for packets in addition to the scans.
 struct PacketOptions {
   const LidarModel* sensor = nullptr;  ///< that measured the scans; must outlive the writer
@@ -69,6 +72,7 @@ struct ScanWriterOptions {
   PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
   DriveSpan drive;                       ///< for file names of data sets, and ros_delay_s()
   BoxesOfScan boxes;                     ///< for data sets with objects; none without a world
+  VelocitiesOfScan velocities;           ///< has_velocities(); none: not wanted
   PacketOptions packets;                 ///< pcap
 };
 

@@ -203,6 +203,7 @@ Json simulate_content(const SimulateJob& job, std::span<const MountedSensor> sen
   else if (!job.scan.ray_drop_file.empty())
     content["ray_drop"] = job.scan.ray_drop_file.string();
   content["vehicle_body"] = settings.vehicle_body;
+  if (job.velocities) content["velocities"] = true;
   return content;
 }
 

@@ -108,8 +108,13 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
   writing.order = job.point_order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
-  if (const World* const world = simulator.scene().world())
+  const World* const world = simulator.scene().world();
+  if (world != nullptr)
     writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
+  if (job.velocities)
+    writing.velocities = [world](std::size_t i, const ScanView& scan) {
+      return world != nullptr ? world->velocities(i, scan) : std::vector<Vec3f>(scan.size());
+    };
   writing.packets = packet_options(simulator.settings(), job.drive);
   const double scale = scale_of_intensities(simulator.scene());
   if (job.format == ScanFormat::pcap) writing.packets.full_intensity = scale;
@@ -242,6 +247,11 @@ void set_drive(Plan& plan, const DrivenPoses& driven, Session& session) {
 /// Checks the job before long work.
 Plan plan_of(const SimulateJob& job, Session& session) {
   require_input(job.model);
+  if (job.velocities && !has_velocities(job.format))
+    throw Error(ErrorKind::usage,
+                "`velocities` are stored in ply, npz, pcd, las, laz and mcap, not "
+                "in " +
+                    std::string(word_of(job.format, kScanFormats)));
   Plan plan{job, {}, {}, {}};
   DriveOptions& drive = plan.job.drive;
   if (job.rig.empty()) {

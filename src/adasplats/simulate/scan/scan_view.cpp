@@ -57,6 +57,19 @@ void ScanView::copy_to(Scan& scan) const {
   });
 }
 
+Vec3d world_point_of(const ScanView& scan, std::size_t i) {
+  const Vec3d point = vec_cast<double>(scan.positions[i]);
+  const bool is_raw = scan.frame == PointFrame::raw && scan.knots.size() > 1;
+  if (!is_raw || scan.times_s.empty() || !(scan.duration_s > 0))
+    return scan.world_from_sensor * point;
+  return world_point(scan.knots, double{scan.times_s[i]} / scan.duration_s, point);
+}
+
+double time_of_point(const ScanView& scan, std::size_t i) {
+  if (!scan.moved() || scan.times_s.empty()) return scan.time_s;
+  return scan.begin_s() + double{scan.times_s[i]};
+}
+
 HeldScan held_scan(Scan&& scan) {
   const auto held = std::make_shared<const Scan>(std::move(scan));
   return {*held, held};

@@ -33,6 +33,9 @@ struct ScanView {
   std::span<const std::uint32_t> columns;
   std::span<const float> times_s;
   std::span<const std::uint8_t> return_indices;
+  /// Of the surfaces that were hit, relative to the world, along the axes of `world_from_sensor`,
+  /// m/s (World::velocities()); empty unless they are wanted.
+  std::span<const Vec3f> velocities;
 
   ScanView() = default;
   ScanView(const Scan& scan);  // NOLINT: implicit, like the conversion of a vector to a span
@@ -48,6 +51,11 @@ struct ScanView {
   /// Copies to `scan`, reusing its memory.
   void copy_to(Scan& scan) const;
 };
+
+/// World coordinates of point `i`: a raw point was measured from the sensor's pose at its time.
+Vec3d world_point_of(const ScanView& scan, std::size_t i);
+/// When point `i` was measured, in the clock of `time_s`.
+double time_of_point(const ScanView& scan, std::size_t i);
 
 /// A view that is valid while it holds `memory` (and, for a batch, while its motion exists).
 struct HeldScan {

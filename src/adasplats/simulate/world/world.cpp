@@ -251,4 +251,59 @@ std::vector<ObjectBox> World::boxes(std::uint64_t scan_index, double time_s) con
   return boxes;
 }
 
+namespace {
+
+/// The velocity of a point that is fixed to an object, m/s; 0 before its first and after its last
+/// pose.
+Vec3d velocity_at(const PlacedObject& placed, double time_s, Vec3d point) {
+  constexpr double kStep_s = 1e-3;
+  const Trajectory& poses = placed.object.trajectory;
+  const double begin_s = std::max(time_s - kStep_s, poses.front().time_s);
+  const double end_s = std::min(time_s + kStep_s, poses.back().time_s);
+  if (!(end_s > begin_s)) return {};
+  const Vec3d in_object = placed.world_from_object(time_s).inverse() * point;
+  return (1 / (end_s - begin_s)) * (placed.world_from_object(end_s) * in_object -
+                                    placed.world_from_object(begin_s) * in_object);
+}
+
+/// Whether a point is in the box of an object, or near it: ranges have noise.
+bool is_at(const PlacedObject& placed, double time_s, Vec3d point) {
+  constexpr double kNear_m = 0.3;
+  const Vec3d in_object = placed.world_from_object(time_s).inverse() * point;
+  const double scale = placed.object.scale;
+  const WorldBox& box = placed.geometry->box;
+  for (int axis = 0; axis < 3; ++axis)
+    if (in_object[axis] < scale * box.low[axis] - kNear_m ||
+        in_object[axis] > scale * box.high[axis] + kNear_m)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Vec3f> World::velocities(std::uint64_t scan_index, const ScanView& scan) const {
+  std::vector<Vec3f> velocities(scan.positions.size());
+  if (scan.instances.size() != velocities.size()) return velocities;
+  const double half_s = 0.5 * scan.duration_s;
+  std::multimap<std::uint16_t, const PlacedObject*> moving;
+  for (const std::size_t i :
+       impl_->objects_in(scan_index, scan.time_s - half_s, scan.time_s + half_s))
+    if (const PlacedObject& placed = impl_->objects[i];
+        placed.object.trajectory.size() > 1 && placed.object.instance != 0)
+      moving.emplace(placed.object.instance, &placed);
+  if (moving.empty()) return velocities;
+  const Mat3d sensor_from_world = scan.world_from_sensor.rotation.transposed();
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    const auto [begin, end] = moving.equal_range(scan.instances[i]);
+    if (begin == end) continue;
+    const Vec3d point = world_point_of(scan, i);
+    const double time_s = time_of_point(scan, i);
+    const auto at = std::find_if(
+        begin, end, [&](const auto& entry) { return is_at(*entry.second, time_s, point); });
+    if (at == end) continue;
+    velocities[i] = vec_cast<float>(sensor_from_world * velocity_at(*at->second, time_s, point));
+  }
+  return velocities;
+}
+
 }  // namespace adasplats

@@ -16,6 +16,7 @@
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/simulate/scan/scan_view.h"
 #include "adasplats/simulate/world/object_ray.h"
 #include "adasplats/splats/model/any_model.h"
 
@@ -131,6 +132,11 @@ class World {
   PrimitiveAttributes attributes(const PrimitiveAttributes& place);
   /// Attributes of the objects only, starting at the first primitive of the objects.
   PrimitiveAttributes object_attributes();
+
+  /// The velocity of the surface at every point of a scan (ScanView::velocities): that of the
+  /// object with the point's instance whose box, grown by 0.3 m, contains the point; 0 for others.
+  /// The scan needs instances and times.
+  std::vector<Vec3f> velocities(std::uint64_t scan_index, const ScanView& scan) const;
 
   /// Boxes around the objects present at `time_s` in scan `scan_index`, in the order of addition.
   /// An object without its own class has the most frequent class of its primitives.
