@@ -9,6 +9,7 @@ import tomllib
 import unittest
 
 from support import ProgramTest
+from test_packets import ply_rows
 
 SCANS = 16
 CAR_MPS = 12.0
@@ -40,8 +41,8 @@ def poses(height, x_of, y, scans=SCANS, step_s=0.1, begin_s=0.0):
 
 
 class Traffic(ProgramTest):
-    def record(self):
-        """A street between walls, a parked car and one that overtakes; labels say which moves."""
+    def write_street(self):
+        """A street between walls, a parked car and one that overtakes."""
         write = lambda name, text: (self.folder / name).write_text(text)
         write("street.obj", boxes_obj(((-40, -9, 0), (60, 9, 8)), ((6, -6, 0), (10, -4, 1.5))))
         write("car.obj", boxes_obj(((-2.2, -0.9, 0), (2.2, 0.9, 1.5))))
@@ -50,10 +51,14 @@ class Traffic(ProgramTest):
         write("held_out.csv", poses(1.8, lambda t: 5 * t, 0, scans=6, begin_s=0.35, step_s=0.1))
         write("drive.toml", 'model = "street.obj"\n[[object]]\ngeometry = "car.obj"\n'
                             f'class = {MOVING_CAR}\ntrajectory = "car.csv"\n')
+
+    def record(self):
+        """Scans of the street without labels, and held-out ones with labels."""
+        self.write_street()
         for poses_file, output in (("ego.csv", "drive"), ("held_out.csv", "held-out")):
             self.run_good("simulate", self.folder / "drive.toml", "--sensor", "velodyne-hdl-64e-s3",
                           "--trajectory", self.folder / poses_file, "-o", self.folder / output)
-        # What is looked for must not be told.
+        # Labels would reveal the moving car.
         drive = self.folder / "drive" / "sequences" / "00"
         for label in (drive / "labels").iterdir():
             label.unlink()
@@ -107,6 +112,37 @@ class Traffic(ProgramTest):
             count += (abs(x + 5 * time_s - car_x(time_s)) < 2.2 and abs(y - 3.5) < 0.9
                       and 0.4 < z + 1.8 < 1.6)
         return count
+
+    def test_points_have_the_velocity_of_their_object(self):
+        self.write_street()
+        self.run_good("simulate", self.folder / "drive.toml", "--sensor", "velodyne-hdl-64e-s3",
+                      "--trajectory", self.folder / "held_out.csv", "--rolling-shutter", "--format",
+                      "ply", "--velocities", "--no-noise", "-o", self.folder / "flow")
+        for number in range(6):
+            rows = ply_rows(self.folder / "flow" / f"{number:06d}.ply")
+            car = [row for row in rows if row["label"] == MOVING_CAR]
+            self.assertGreater(len(car), 300)
+            for row in rows:
+                expected = CAR_MPS if row["label"] == MOVING_CAR else 0
+                self.assertAlmostEqual(row["vx"], expected, delta=0.01)
+                self.assertAlmostEqual(row["vy"], 0, delta=0.01)
+                self.assertAlmostEqual(row["vz"], 0, delta=0.01)
+            # Where the velocity leads within a scan's time, the car has a surface.
+            begin_s = 0.35 + 0.1 * number
+            off_m = []
+            for row in car:
+                at_s = begin_s + row["time"]  # relative to the scan's pose
+                x = row["x"] + 5 * at_s + 0.1 * row["vx"] - car_x(at_s + 0.1)
+                z = row["z"] + 1.8 - 0.2
+                off_m.append(min(abs(abs(x) - 2.2), abs(abs(row["y"] - 3.5) - 0.9), abs(z - 1.5)))
+            self.assertLess(sorted(off_m)[len(off_m) // 2], 0.03)
+
+    def test_velocities_need_a_format_with_columns(self):
+        self.write_street()
+        self.run_bad(64, "simulate", self.folder / "drive.toml", "--trajectory",
+                     self.folder / "held_out.csv", "--velocities", "-o", self.folder / "flow",
+                     says=["velocities", "ply"])
+        self.assertFalse((self.folder / "flow").exists())
 
     def test_errors_leave_nothing(self):
         place = self.folder / "place"

@@ -194,7 +194,8 @@ class EvaluateResimulateCommand final : public ResultCommand {
              "Poses of the sensor (or of the vehicle) for a folder of scans");
     add_settings(app, static_cast<HeldOutScans&>(job_));
     add_path(app, "--boxes", job_.boxes,
-             "Boxes of objects by time; points in boxes of moving objects are left out");
+             "Boxes of objects by time; points in boxes of moving objects are left out, or with "
+             "--keep-moving counted separately");
     add_scheme(app, job_.labels, "Label scheme: a name or a TOML file")->capture_default_str();
     app.add_option("--min-range", job_.options.min_range_m, "Minimum range of a beam, m")
         ->capture_default_str();

@@ -95,13 +95,14 @@ class ModelCommand final : public Command {
                           "), SemanticKITTI sequence folders and recordings (" +
                           recording_format_names() + ", PCAP)"));
     require(writes(add_path(app, "-o,--output", job_.output,
-                            "Model to write, PLY; with --tile: folder of a city"),
+                            "Model to write, PLY; with --tile: folder of a city; with "
+                            "--traffic: folder of a world"),
                    {".ply", ""}));
     app.add_flag(
         "--traffic", traffic_,
-        "Model moving objects with their trajectories, too: those of --boxes, or those found; the "
-        "output is a folder with a world file");
-    app.add_flag("--overwrite", job_.overwrite, "Replace an existing city");
+        "Also model moving objects and their trajectories, from --boxes or detected automatically; "
+        "the output is a folder with a world file");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an existing city or world");
     add_settings(app, job_.tiles);
     visit_settings(job_.memory, [&app](const Setting& setting, double& value) {
       add_memory(app, setting, value)->group(setting.group);
@@ -151,9 +152,8 @@ class ModelCommand final : public Command {
     else if (is_given("--tile") && job_.tiles.tile_m == 0)
       reject({"--add-to"}, "with --tile 0");
     if (traffic_) {
-      reject(
-          {"--tile", "--halo", "--overwrite", "--plan", "--only-tile", "--keep-points", "--add-to"},
-          "with --traffic");
+      reject({"--tile", "--halo", "--plan", "--only-tile", "--keep-points", "--add-to", "--memory"},
+             "with --traffic");
       require_folder_apart(job_.output, job_.inputs);
       run_traffic_of(session);
       return;
@@ -272,7 +272,7 @@ class ModelCommand final : public Command {
   }
 
   void run_traffic_of(Session& session) {
-    const TrafficResult result = run_traffic(job_, job_.output, session);
+    const TrafficResult result = run_traffic(job_, job_.output, job_.overwrite, session);
     session.report.update(to_json(result));
     TextTable table({"object", "scans", "points", "splats", "shift of boxes"});
     for (const TrafficObject& object : result.objects)

@@ -133,13 +133,12 @@ struct CastSettings {
 
 /// Casts beams into the scene and its objects at the times of the points.
 void cast_beams(const BeamScene& scene, std::span<const Ray> rays, const KittiScan& scan,
-                double scan_time_s, std::span<const std::uint32_t> selected, std::span<Hit> hits,
+                const TimedPose& pose, std::span<const std::uint32_t> selected, std::span<Hit> hits,
                 const Executor& executor) {
   scene.tracer.nearest(rays, hits, executor);
   if (scene.world == nullptr) return;
-  std::vector<double> times_s(rays.size(), scan_time_s);
-  for (std::size_t k = 0; !scan.times_s.empty() && k < rays.size(); ++k)
-    times_s[k] = scan.times_s[selected[k]];
+  std::vector<double> times_s;
+  for (const std::uint32_t i : selected) times_s.push_back(time_of_point(scan, pose, i));
   scene.world->add_hits(rays, times_s, hits, executor);
 }
 
@@ -185,8 +184,7 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
       rays[k] = cast[k].ray;
     }
   });
-  cast_beams(setting.scene, rays, scan, sequence.trajectory[index].time_s, selected, hits,
-             executor);
+  cast_beams(setting.scene, rays, scan, sequence.trajectory[index], selected, hits, executor);
   const auto surroundings = surroundings_of(result.measured.positions, executor);
   for (std::size_t k = 0; k < selected.size(); ++k) {
     const double range_m = cast[k].range_m;
@@ -212,14 +210,15 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
 }
 
 /// The single beams of a scan.
-ScanErrors errors_of(CastScan scan) {
+/// `primitives`: number of those of the scene; objects have none.
+ScanErrors errors_of(CastScan scan, std::size_t primitives) {
   ScanErrors errors;
   errors.measured = std::move(scan.measured.positions);
   errors.errors_m.reserve(scan.beams.size());
   errors.primitives.reserve(scan.beams.size());
   for (const Beam& beam : scan.beams) {
     errors.errors_m.push_back(beam.error_m);
-    errors.primitives.push_back(beam.primitive);
+    errors.primitives.push_back(beam.primitive < primitives ? beam.primitive : Hit::kNone);
   }
   return errors;
 }
@@ -349,7 +348,8 @@ ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequenc
       progress.warn(sequence.scans[index].string() +
                     ": no beam hit the model; the scan is left out of the cloud distances");
     }
-    if (keep == KeepBeams::yes) result.errors.push_back(errors_of(std::move(scan)));
+    if (keep == KeepBeams::yes)
+      result.errors.push_back(errors_of(std::move(scan), scene.attributes.view.primitive_count()));
     progress.advance(index + 1);
   }
   progress.end_step();
@@ -360,7 +360,7 @@ ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequenc
   }
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });
-  if (!options.drop_moving) {
+  if (!options.drop_moving && (sequence.boxes || !sequence.labels.empty())) {
     for (const bool moving : {false, true})
       result.by_motion.emplace_back(
           moving ? "moving" : "still",

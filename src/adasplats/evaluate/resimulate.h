@@ -68,7 +68,8 @@ struct ResimulateResult {
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_surroundings;  ///< flat, rough, edge
-  /// "still", "moving": in boxes of moving objects and of moving classes; empty if `drop_moving`.
+  /// "still", "moving": in boxes of moving objects and of moving classes; empty if `drop_moving`
+  /// and without boxes or labels.
   std::vector<std::pair<std::string, BeamAccuracy>> by_motion;
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;  ///< names of the label scheme
   /// "-25 deg", ...: elevation of the beam in the sensor's frame, rounded down. Different biases

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_matrix.h"
@@ -29,7 +28,7 @@ struct Correction {
   }
 };
 
-/// What the points of a scan say about its correction: a normal equation.
+/// The normal equation of the correction of one scan.
 struct NormalEquation {
   std::array<double, kUnknowns * kUnknowns> left{};
   Unknowns right{};
@@ -131,14 +130,17 @@ void improve(const RecordedObject& object, const AlignOptions& options,
     }
     factor<kUnknowns>(equation.left);
     const Unknowns step = solved<kUnknowns>(equation.left, equation.right);
-    now.shift_m = now.shift_m + Vec3d{step[0], step[1], step[2]};
-    now.turn_rad += step[3];
+    // All scans move at once: with whole steps two scans would swap places.
+    const double share = 1 - 1 / static_cast<double>(object.scans.size());
+    now.shift_m = now.shift_m + share * Vec3d{step[0], step[1], step[2]};
+    now.turn_rad += share * step[3];
   }
 }
 
 /// Applies the corrections to the points and to the poses.
 void move_scans(const std::vector<Correction>& corrections, RecordedObject& object) {
-  constexpr double kApart_s = 1e-3;
+  // A box of a scan has another time than the points of its object, by less than a sweep.
+  constexpr double kApart_s = 1e-3, kSweep_s = 0.1;
   Trajectory moved;
   for (std::size_t k = 0; k < object.scans.size(); ++k) {
     const RigidTransform corrected = corrections[k].transform();
@@ -156,9 +158,9 @@ void move_scans(const std::vector<Correction>& corrections, RecordedObject& obje
   };
   const TimedPose first = object.world_from_object.front();
   const TimedPose last = object.world_from_object.back();
-  if (first.time_s < moved.front().time_s - kApart_s)
+  if (first.time_s < moved.front().time_s - kSweep_s)
     moved.insert(moved.begin(), end(first, corrections.front()));
-  if (last.time_s > moved.back().time_s + kApart_s) moved.push_back(end(last, corrections.back()));
+  if (last.time_s > moved.back().time_s + kSweep_s) moved.push_back(end(last, corrections.back()));
   object.world_from_object = std::move(moved);
 }
 

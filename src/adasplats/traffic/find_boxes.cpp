@@ -108,13 +108,18 @@ class Owners {
 
   const std::vector<std::vector<Cluster>>& clusters() const { return clusters_; }
 
-  /// The clusters with a point in common with those of the track.
+  /// The clusters that begin with the same point as those of the track.
   void set(const ClusterTrack& track, std::size_t owner) {
     for (const Cluster& cluster : track)
       for (std::size_t k = 0; k < clusters_[cluster.scan].size(); ++k)
         if (clusters_[cluster.scan][k].points.front() == cluster.points.front())
           owners_[cluster.scan][k] = owner;
   }
+
+  /// All of them, to undo changes.
+  using State = std::vector<std::vector<std::size_t>>;
+  const State& state() const { return owners_; }
+  void restore(State state) { owners_ = std::move(state); }
 
   /// Gives all clusters of one track to another.
   void join(std::size_t from, std::size_t to) {
@@ -179,21 +184,31 @@ std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
   for (std::size_t t = 0; t < tracks.size(); ++t) fits.push_back(fit(t));
   std::vector<BoxTrack> found;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
+    executor.check_interruption();
     if (fits[t]) fits[t] = fit(t);  // others may have got clusters of it
     for (std::size_t other = t + 1; fits[t] && other < tracks.size(); ++other) {
       if (!fits[other] || !is_same_object(*fits[t], *fits[other], tracks[other], options.margin_m))
         continue;
+      const Owners::State before = owners.state();
       owners.join(other, t);
+      std::optional<BoxTrack> joined = fit(t);
+      if (!joined) {
+        owners.restore(before);
+        continue;
+      }
+      fits[t] = std::move(joined);
       fits[other].reset();
-      fits[t] = fit(t);
       other = t;  // the longer track may go on with others
     }
     if (!fits[t]) continue;
+    const Owners::State before = owners.state();
     owners.absorb(*fits[t], t, options.margin_m);
     std::optional<BoxTrack> boxes = fit(t);
     if (!boxes || !has_usual_height(*boxes) ||
-        loose_share(*boxes, owners.track_of(t), loose) < options.min_loose)
+        loose_share(*boxes, owners.track_of(t), loose) < options.min_loose) {
+      owners.restore(before);
       continue;
+    }
     boxes->id = found.size() + 1;
     found.push_back(std::move(*boxes));
   }

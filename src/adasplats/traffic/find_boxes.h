@@ -17,7 +17,7 @@ struct FindBoxesOptions {
   ClusterOptions clusters;
   TrackOptions tracks;
   BoxFitOptions boxes;
-  /// Of the points in the boxes of an object that are loose: others show what is at rest.
+  /// Minimum fraction of loose points in an object's boxes; lower ones indicate what is at rest.
   double min_loose = 0.4;
   double margin_m = 0.4;  ///< clusters whose middle is in a box grown by this belong to its object
 };

@@ -12,8 +12,8 @@
 namespace adasplats {
 namespace {
 
-/// Distances in scans to those that say what is free: near ones for fast objects, far ones for slow
-/// ones.
+/// Distances in scans to the scans that are tested for free space: near ones for fast objects, far
+/// ones for slow ones.
 constexpr std::array<std::size_t, 10> kOffsets = {1, 2, 3, 4, 6, 8, 11, 15, 20, 26};
 
 /// Consecutive scans that are in memory.

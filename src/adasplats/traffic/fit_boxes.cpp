@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <vector>
 
 #include "adasplats/traffic/smooth_path.h"
@@ -17,7 +15,8 @@ namespace {
 /// The value below which a share of the values is; without values 0.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto k = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto k =
+      static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(k));
   return values[k];
 }

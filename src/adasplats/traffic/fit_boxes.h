@@ -20,9 +20,10 @@ struct BoxFitOptions {
 
 /// Boxes around the clusters of a track, one per cluster; nothing if it does not move. x points
 /// where it drives. Only the faces that the sensor sees are measured: the middle is half a length
-/// behind the nearest one. The size is that of the largest clusters, at least that of a usual
-/// object of its kind. The kind, by size and speed, is the label: "car", "truck", "cyclist" or
-/// "pedestrian". `height_below`: of the ground below a point, NaN where it is unknown.
+/// behind the nearest one. The size is that of the largest clusters, or that of a usual
+/// object of its kind where no side was seen whole. The kind, by size and speed, is the label:
+/// "car", "truck", "cyclist" or "pedestrian". `height_below`: of the ground below a point, NaN if
+/// unknown.
 std::optional<BoxTrack> fit_boxes(const ClusterTrack& track, std::span<const LoosePoints> loose,
                                   FunctionRef<double(Vec3d)> height_below,
                                   const BoxFitOptions& options);

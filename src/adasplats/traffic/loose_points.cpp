@@ -44,7 +44,7 @@ LoosePoints loose_points(const KittiSequence& drive, std::size_t index, const Ki
       continue;
     }
     loose.points.push_back(place_of(i));
-    loose.times_s.push_back(scan.times_s.empty() ? pose.time_s : scan.times_s[i]);
+    loose.times_s.push_back(time_of_point(scan, pose, i));
   }
   return loose;
 }

@@ -102,7 +102,7 @@ void ObjectCollector::add(const KittiSequence& drive, std::size_t index, const K
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     if (scan.in_boxes[i] == 0) continue;
     RecordedObject& object = objects_.at(scan.in_boxes[i] - 1U);
-    const double time_s = scan.times_s.empty() ? pose.time_s : scan.times_s[i];
+    const double time_s = time_of_point(scan, pose, i);
     const RigidTransform object_from_sensor =
         interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : time_s).inverse() *
         pose.world_from_sensor;
@@ -139,8 +139,7 @@ void ObjectCollector::add_passing(const KittiSequence& drive, std::size_t index,
       if (scan.in_boxes[i] == number + 1) continue;
       const MeasuredBeam beam = beam_of(drive, index, scan, i);
       if (!may_pass(beam, sensor_from_object.translation, length(half_size))) continue;
-      const bool at_scan = scan.times_s.empty() || are_of_scans_;
-      const double time_s = at_scan ? pose.time_s : scan.times_s[i];
+      const double time_s = are_of_scans_ ? pose.time_s : time_of_point(scan, pose, i);
       const RigidTransform object_from_sensor =
           interpolate(object.world_from_object, time_s).inverse() * pose.world_from_sensor;
       const Vec3d origin = object_from_sensor * beam.origin, end = object_from_sensor * beam.end;

@@ -19,10 +19,10 @@ enum class Seen : std::uint8_t {
 
 struct SeenSpaceOptions {
   double margin_m = 0.5;  ///< a beam that ended so far behind a place passed it
-  double reach_deg = 2;   ///< of beams from the direction of the place; further ones say nothing
+  double reach_deg = 2;   ///< of beams from the direction of the place; further ones are ignored
 };
 
-/// The beams of one scan by direction: they tell where space was free at that time.
+/// The beams of one scan by direction, which show where space was free at that time.
 class SeenSpace {
  public:
   SeenSpace(const KittiSequence& drive, std::size_t index, const KittiScan& scan,

@@ -74,6 +74,8 @@ BoxContent read_csv_boxes(const std::filesystem::path& path) {
   std::string line;
   if (!std::getline(file, line))
     throw Error(ErrorKind::no_input, path.string() + ": cannot be read, or is empty");
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
   const std::vector<std::string> names = cells_of(line);
   const BoxPlaces places = places_of_columns(path, names);
   const auto label_at = static_cast<std::size_t>(std::ranges::find(names, "label") - names.begin());

@@ -21,6 +21,12 @@ constexpr double kStep_s = 0.01;
 constexpr double kFast_mps = 3;
 using Counts = std::array<std::size_t, 2 * kSteps + 1>;
 
+/// The place of a step from -kSteps to kSteps in Counts.
+std::size_t place_of(int step) {
+  const int place = step + kSteps;
+  return static_cast<std::size_t>(place);
+}
+
 double speed_at(const BoxTrack& track, double time_s) {
   constexpr double kAround_s = 0.1;
   const Vec3d way = track.at(time_s + kAround_s).middle - track.at(time_s - kAround_s).middle;
@@ -54,8 +60,9 @@ class ClockCounter {
         fast.push_back(k);
     }
     if (fast.empty()) return;
-    const KittiScan scan = read_all_returns(drive_, index);
-    for (const std::size_t k : fast) add(pose, scan, k);
+    const std::optional<KittiScan> scan = try_kitti_points(drive_, index);
+    for (const std::size_t k : fast)
+      if (scan) add(pose, *scan, k);
   }
 
   const Counts& of_points() const { return of_points_; }
@@ -73,9 +80,9 @@ class ClockCounter {
     for (std::size_t i = 0; i < scan.positions.size(); ++i) {
       const Vec3d point = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
       if (!(length(point - now.middle) <= reach_m)) continue;
-      const double time_s = scan.times_s.empty() ? pose.time_s : scan.times_s[i];
+      const double time_s = time_of_point(scan, pose, i);
       for (int step = -kSteps; step <= kSteps; ++step) {
-        const auto place = static_cast<std::size_t>(step + kSteps);
+        const std::size_t place = place_of(step);
         const bool is_in = is_inside(track.at(time_s + step * kStep_s), point);
         of_points_[place] += is_in ? 1 : 0;
         of_scans_[place] += is_inside(track.at(pose.time_s + step * kStep_s), point) ? 1 : 0;
@@ -106,11 +113,12 @@ BoxContent at_poses(BoxContent content, std::span<const double> stamps_s, const 
 
 std::string clock_text(const std::filesystem::path& file, const BoxClock& clock) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(),
-                ": its boxes fit the points best %.2f s %s%s (%zu points in boxes of fast objects, "
-                "%zu as given); their times are corrected",
-                std::fabs(clock.later_s), clock.later_s < 0 ? "earlier" : "later",
-                clock.are_of_scans ? ", one box per scan" : "", clock.points, clock.as_given);
+  std::snprintf(
+      text.data(), text.size(),
+      ": its clock is %.2f s %s%s; box times were corrected (%zu instead of %zu points are "
+      "in boxes of fast objects)",
+      std::fabs(clock.later_s), clock.later_s < 0 ? "behind" : "ahead",
+      clock.are_of_scans ? ", with one box per scan" : "", clock.points, clock.as_given);
   return file.string() + text.data();
 }
 
@@ -130,7 +138,7 @@ std::optional<BoxClock> fit_box_clock(const MovingBoxes& boxes, const KittiSeque
   BoxClock best{0, boxes.are_of_scans(), given[kSteps], given[kSteps]};
   for (int distance = 0; distance <= kSteps; ++distance) {
     for (const int step : {distance, -distance}) {
-      const auto place = static_cast<std::size_t>(step + kSteps);
+      const std::size_t place = place_of(step);
       for (const bool are_of_scans : {boxes.are_of_scans(), !boxes.are_of_scans()}) {
         const std::size_t points = (are_of_scans ? counter.of_scans() : counter.of_points())[place];
         if (points > best.points) best = {step * kStep_s, are_of_scans, points, best.as_given};
@@ -145,7 +153,12 @@ std::optional<BoxClock> fit_box_clock(const MovingBoxes& boxes, const KittiSeque
 
 void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
                KittiSequence& drive, const Executor& executor, ProgressSink& progress) {
-  if (settings.boxes.empty() || drive.scans.empty()) return;
+  if (settings.found_boxes) drive.boxes = settings.found_boxes;
+  if (settings.found_boxes || settings.boxes.empty() || drive.scans.empty()) return;
+  if (!drive.has_times)
+    throw Error(ErrorKind::data, settings.boxes.string() +
+                                     ": its boxes have times, but the scans of " +
+                                     drive.folder.string() + " have none");
   BoxContent content = read_box_file(
       settings.boxes, {drive.scans, drive.trajectory, settings.topic, settings.scene});
   if (content.are_of_scans && !stamps_s.empty())

@@ -15,7 +15,7 @@ namespace adasplats {
 
 /// How the times of boxes relate to those of points.
 struct BoxClock {
-  double later_s = 0;         ///< boxes of this much later times fit the points
+  double later_s = 0;         ///< time offset: subtract it from the box times
   bool are_of_scans = false;  ///< BoxContent::are_of_scans
   std::size_t points = 0;     ///< in boxes of fast objects
   std::size_t as_given = 0;   ///< the same with the times as given
@@ -23,7 +23,7 @@ struct BoxClock {
 
 /// Finds the clock in which most points are in boxes of objects faster than 3 m/s, within 0.2 s.
 /// Nothing unless it holds 2 % more of them than the given times, and at least 500, in boxes of at
-/// least three objects.
+/// least three objects, or if the best offset is at the limit.
 std::optional<BoxClock> fit_box_clock(const MovingBoxes& boxes, const KittiSequence& drive,
                                       const Executor& executor);
 

@@ -113,7 +113,7 @@ TEST(AddBoxes, CorrectedTimesFindAllPointsAndAreStated) {
   RecordedProgress progress;
   add_boxes(settings, {}, drive, Executor(1), progress);
   ASSERT_EQ(progress.warnings.size(), 1U);
-  EXPECT_NE(progress.warnings[0].find("0.07 s later"), std::string::npos) << progress.warnings[0];
+  EXPECT_NE(progress.warnings[0].find("0.07 s ahead"), std::string::npos) << progress.warnings[0];
   for (std::size_t k = 0; k < kScans; ++k) {
     const KittiScan scan = read_all_returns(drive, k);
     for (std::size_t i = 0; i < scan.in_boxes.size(); ++i) EXPECT_EQ(scan.in_boxes[i], i / 100 + 1);

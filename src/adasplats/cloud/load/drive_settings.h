@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include "adasplats/core/words.h"
 
 namespace adasplats {
+
+class MovingBoxes;
 
 /// The frame of the points in a drive's files.
 enum class PointsIn : std::uint8_t {
@@ -44,6 +47,8 @@ struct DriveSettings {
   std::filesystem::path trajectory;
   /// Boxes of moving objects (read_box_file()); points in them are removed from scans.
   std::filesystem::path boxes;
+  /// The same in memory, instead: those of find_moving().
+  std::shared_ptr<const MovingBoxes> found_boxes;
   /// Lever arm: position of the sensor in the frame of the trajectory's poses, m. Not set: the
   /// poses are the sensor's own, or the mount is recognised.
   std::optional<Vec3d> mount;

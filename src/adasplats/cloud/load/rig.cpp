@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/cloud/load/drive_boxes.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
@@ -290,6 +291,7 @@ KittiSequence open_rig_sensor(const RigSensor& sensor, const Executor& executor,
       LoadOptions options;
       static_cast<DriveSettings&>(options) = sensor;
       drive = open_sequence(sensor.folder, options, executor);
+      add_boxes(options, {}, *drive, executor, progress);
     }
     if (!drive)
       throw Error(ErrorKind::data, sensor.folder.string() +

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -201,6 +202,31 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
   const Vec3d end =
       offsets.corrected(origin, point, {0, 0, 1}, offsets.laser_of(point - origin, laser));
   return {origin, end, laser};
+}
+
+KittiSequence with_scans(const KittiSequence& all, std::span<const std::size_t> scans) {
+  KittiSequence chosen;
+  chosen.folder = all.folder;
+  chosen.has_times = all.has_times;
+  chosen.beams.from_hdl64 = all.beams.from_hdl64;
+  chosen.beams.recognised = all.beams.recognised;
+  chosen.reader = all.reader;
+  chosen.boxes = all.boxes;
+  chosen.facts = all.facts;
+  chosen.rig_sensor = all.rig_sensor;
+  for (const std::size_t i : scans) {
+    chosen.scans.push_back(all.scans[i]);
+    if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
+    chosen.trajectory.push_back(all.trajectory[i]);
+    if (!all.beams.sweeps_m.empty()) chosen.beams.sweeps_m.push_back(all.beams.sweeps_m[i]);
+    if (!all.beams.raw_motions.empty())
+      chosen.beams.raw_motions.push_back(all.beams.raw_motions[i]);
+  }
+  return chosen;
+}
+
+double time_of_point(const KittiScan& scan, const TimedPose& pose, std::size_t i) {
+  return scan.times_s.empty() || !std::isfinite(scan.times_s[i]) ? pose.time_s : scan.times_s[i];
 }
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,13 @@ struct KittiScan {
   /// The annotated moving object that each point is on (MovingBoxes::object_at()); empty: none.
   std::vector<std::uint16_t> in_boxes;
 };
+
+/// The drive with some of its scans, by ascending number. Without KittiSequence::track and laser
+/// offsets.
+KittiSequence with_scans(const KittiSequence& all, std::span<const std::size_t> scans);
+
+/// When point `i` of a scan was measured: its own time if that is known, else that of the pose.
+double time_of_point(const KittiScan& scan, const TimedPose& pose, std::size_t i);
 
 /// The beam that measured point `i` of scan number `index`, in the scan's frame, corrected by the
 /// offsets of the sequence's beams.

@@ -15,6 +15,11 @@ namespace {
 
 constexpr double kMargin_m = 0.2;
 
+/// The time between the first two boxes.
+double step_of(const BoxTrack& track) {
+  return track.boxes.size() > 1 ? track.boxes[1].time_s - track.boxes[0].time_s : 0.1;
+}
+
 double turned_by(double from_rad, double to_rad) {
   return std::remainder(to_rad - from_rad, 2 * std::numbers::pi);
 }
@@ -36,8 +41,8 @@ std::uint16_t MovingBoxes::object_at(double time_s, Vec3d point) const {
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < content_.moving.size(); ++k) {
     const std::vector<TimedBox>& boxes = content_.moving[k].boxes;
-    const double apart_s = boxes.size() > 1 ? boxes[1].time_s - boxes[0].time_s : 0.1;
-    if (time_s < boxes.front().time_s - apart_s || time_s > boxes.back().time_s + apart_s) continue;
+    const double step_s = step_of(content_.moving[k]);
+    if (time_s < boxes.front().time_s - step_s || time_s > boxes.back().time_s + step_s) continue;
     const TimedBox box = content_.moving[k].at(time_s);
     const Vec3d from_middle = point - box.middle;
     const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
@@ -69,12 +74,15 @@ std::vector<std::uint16_t> MovingBoxes::objects_in(const TimedPose& pose,
   const bool has_times = !scan.times_s.empty() && !content_.are_of_scans;
   double begin_s = pose.time_s, end_s = pose.time_s;
   for (std::size_t i = 0; has_times && i < scan.times_s.size(); ++i) {
-    begin_s = std::min(begin_s, scan.times_s[i]);
-    end_s = std::max(end_s, scan.times_s[i]);
+    begin_s = std::min(begin_s, time_of_point(scan, pose, i));
+    end_s = std::max(end_s, time_of_point(scan, pose, i));
   }
   // Most points are far from all boxes.
   std::vector<std::pair<Vec3d, double>> spheres;
   for (const BoxTrack& track : content_.moving) {
+    const double step_s = step_of(track);
+    if (end_s < track.boxes.front().time_s - step_s || begin_s > track.boxes.back().time_s + step_s)
+      continue;
     const TimedBox first = track.at(begin_s), last = track.at(end_s);
     const double half_way_m = 0.5 * length(last.middle - first.middle);
     constexpr double kCurve_m = 0.5;  // boxes may leave the straight line
@@ -88,7 +96,8 @@ std::vector<std::uint16_t> MovingBoxes::objects_in(const TimedPose& pose,
       const Vec3d off = point - sphere.first;
       return dot(off, off) < sphere.second * sphere.second;
     });
-    if (is_near) objects[i] = object_at(has_times ? scan.times_s[i] : pose.time_s, point);
+    if (is_near)
+      objects[i] = object_at(has_times ? time_of_point(scan, pose, i) : pose.time_s, point);
   }
   return objects;
 }

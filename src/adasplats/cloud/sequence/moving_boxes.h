@@ -41,7 +41,7 @@ struct BoxContent {
   bool are_of_scans = false;
 };
 
-/// Annotated boxes of moving objects over time.
+/// Annotated or found boxes of moving objects over time.
 class MovingBoxes {
  public:
   MovingBoxes() = default;

@@ -31,24 +31,8 @@
 namespace adasplats {
 namespace {
 
-KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
-  KittiSequence chosen;
-  chosen.folder = all.folder;
-  chosen.beams.from_hdl64 = all.beams.from_hdl64;
-  chosen.beams.recognised = all.beams.recognised;
-  chosen.reader = all.reader;
-  chosen.boxes = all.boxes;
-  chosen.facts = all.facts;
-  chosen.rig_sensor = all.rig_sensor;
-  for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
-    chosen.scans.push_back(all.scans[i]);
-    if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
-    chosen.trajectory.push_back(all.trajectory[i]);
-    if (!all.beams.sweeps_m.empty()) chosen.beams.sweeps_m.push_back(all.beams.sweeps_m[i]);
-    if (!all.beams.raw_motions.empty())
-      chosen.beams.raw_motions.push_back(all.beams.raw_motions[i]);
-  }
-  return chosen;
+KittiSequence with_range(const KittiSequence& all, const ScanRange& range) {
+  return with_scans(all, chosen_scans(range, all.scans.size(), all.folder));
 }
 
 /// A folder of scans with a trajectory. The scheme of their classes is unknown, so classes are not
@@ -192,7 +176,7 @@ KittiSequence open_sensor(const HeldOutScans& scans, Session& session) {
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
-  if (is_rig(scans.sequence)) return with_scans(open_sensor(scans, session), scans.scans);
+  if (is_rig(scans.sequence)) return with_range(open_sensor(scans, session), scans.scans);
   const bool is_drive = !scans.trajectory.empty() || is_self_contained_drive(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage,
@@ -209,7 +193,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
     throw Error(ErrorKind::usage,
                 "`mount`, `mount_rotation`, `time_offset`, `points_in`, `sweep_points` and "
                 "`scan_times` are for a folder of scans with a `trajectory`");
-  if (is_drive) return with_scans(open_frames(scans, session), scans.scans);
+  if (is_drive) return with_range(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
   all.facts.unchecked = verify_poses(all, session.executor);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all, session.executor);
@@ -220,7 +204,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
     set_raw_motions(all.beams, all.trajectory, load_trajectory(scans.motion));
   }
   add_boxes(scans, {}, all, session.executor, session.progress);
-  return with_scans(std::move(all), scans.scans);
+  return with_range(all, scans.scans);
 }
 
 HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/model/make_traffic.h"
 
-#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_folder.h"
@@ -31,7 +33,8 @@ struct ObjectKind {
 };
 
 /// The first match counts.
-constexpr std::array<ObjectKind, 14> kKinds = {{{"motorcycl", "moving-motorcyclist", false},
+constexpr std::array<ObjectKind, 15> kKinds = {{{"regular_vehicle", "moving-car", true},
+                                                {"motorcycl", "moving-motorcyclist", false},
                                                 {"scooter", "moving-motorcyclist", false},
                                                 {"bicycl", "moving-bicyclist", false},
                                                 {"cyclist", "moving-bicyclist", false},
@@ -66,32 +69,29 @@ std::string file_name_of(const RecordedObject& object) {
   return name;
 }
 
-/// The drive as the model read it, with its corrections, and the numbers of the chosen scans.
-struct ChosenScans {
-  KittiSequence drive;
-  std::vector<std::size_t> scans;
-};
-
-ChosenScans open_again(const ModelJob& job, Session& session) {
+/// The chosen scans of the drive, as the model reads them. Errors: usage (not one drive with
+/// times).
+KittiSequence open_scans(const ModelJob& job, Session& session) {
   const OpenInputs opened(job.inputs, job.load, session.executor, session.progress);
-  if (!opened.inputs().front().sequence)
-    throw Error(ErrorKind::usage, job.inputs.front().string() +
-                                      ": traffic needs scans with times and their trajectory");
-  ChosenScans chosen{*opened.inputs().front().sequence, {}};
+  if (opened.inputs().size() != 1 || !opened.inputs().front().sequence)
+    throw Error(ErrorKind::usage,
+                "`traffic` needs exactly one drive: scans of one sensor with poses");
+  const KittiSequence& drive = *opened.inputs().front().sequence;
+  if (!drive.has_times)
+    throw Error(ErrorKind::usage, "`traffic` needs the times of the scans, but " +
+                                      drive.folder.string() + " has none (times.txt)");
+  std::vector<std::size_t> chosen;
   for (std::size_t k = job.load.first_scan;
-       k < chosen.drive.scans.size() && chosen.scans.size() < job.load.scan_count;
-       k += job.load.scan_stride)
-    chosen.scans.push_back(k);
-  return chosen;
+       k < drive.scans.size() && chosen.size() < job.load.scan_count; k += job.load.scan_stride)
+    chosen.push_back(k);
+  return with_scans(drive, chosen);
 }
 
-/// The points of the moving objects in the chosen scans.
-std::vector<RecordedObject> collect_objects(const ChosenScans& chosen, Session& session) {
-  ObjectCollector collector(*chosen.drive.boxes);
-  session.progress.begin_step("collect objects", chosen.scans.size());
-  for (std::size_t k = 0; k < chosen.scans.size(); ++k) {
-    collector.add(chosen.drive, chosen.scans[k], read_all_returns(chosen.drive, chosen.scans[k]),
-                  session.executor);
+std::vector<RecordedObject> collect_objects(const KittiSequence& drive, Session& session) {
+  ObjectCollector collector(*drive.boxes);
+  session.progress.begin_step("collect objects", drive.scans.size());
+  for (std::size_t k = 0; k < drive.scans.size(); ++k) {
+    collector.add(drive, k, read_all_returns(drive, k), session.executor);
     session.progress.advance(k + 1);
   }
   session.progress.end_step();
@@ -132,17 +132,17 @@ void write_object(RecordedObject& object, const ModelJob& job, const IntensityRe
   constexpr float kMirrorApart_m = 0.15F;
   made.scans = object.scans.size();
   made.points = object.points();
+  made.begin_s = object.world_from_object.front().time_s;
+  made.end_s = object.world_from_object.back().time_s;
   if (made.points < kMinPoints) {
     made.left_out = "fewer than " + std::to_string(kMinPoints) + " points";
     return;
   }
-  made.aligned = align_scans(object, {}, session.executor);
-  made.begin_s = object.world_from_object.front().time_s;
-  made.end_s = object.world_from_object.back().time_s;
-  if (object.world_from_object.size() < 2) {
+  if (made.scans < 2 || object.world_from_object.size() < 2) {
     made.left_out = "seen once";
     return;
   }
+  made.aligned = align_scans(object, {}, session.executor);
   PointCloud cloud = cloud_of(object);
   to_reflectances(response, cloud);
   if (kind_of(object.label).is_vehicle)
@@ -175,48 +175,62 @@ std::string boxes_text(const MovingBoxes& boxes) {
   return text;
 }
 
+/// The class of a kind in the scene's label scheme, which is SemanticKITTI's if it has none.
+std::optional<std::uint16_t> class_of(const ObjectKind& kind, const std::string& scheme_name) {
+  const LabelScheme scheme =
+      scheme_name.empty() ? semantickitti_labels() : load_label_scheme(scheme_name);
+  for (const std::string_view name : {kind.class_name, kind.word})
+    if (const SemanticClass* found = scheme.find(name); !name.empty() && found != nullptr)
+      return found->id;
+  return std::nullopt;
+}
+
 std::string world_text(const std::vector<TrafficObject>& objects) {
   std::string text = "model = \"scene.ply\"\n";
   for (const TrafficObject& object : objects) {
     if (!object.left_out.empty()) continue;
     text += "\n[[object]]\nname = \"" + object.name + "\"\ngeometry = \"objects/" + object.name +
-            ".ply\"\nclass = " + std::to_string(object.class_id) + "\ntrajectory = \"objects/" +
-            object.name + ".csv\"\npresent = \"during\"\n";
+            ".ply\"\n";
+    if (object.class_id) text += "class = " + std::to_string(*object.class_id) + "\n";
+    text += "trajectory = \"objects/" + object.name + ".csv\"\npresent = \"during\"\n";
   }
   return text;
 }
 
 }  // namespace
 
-TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder,
+TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder, bool overwrite,
                           Session& session) {
-  if (job.inputs.size() != 1) throw Error(ErrorKind::usage, "`traffic` is of one drive");
-  OutputFolder output(folder, false, "model", {{"traffic", true}});
+  if (method_of(job.build.recipe) == SplatMethod::semantic)
+    throw Error(ErrorKind::usage, "`traffic` does not work with the method semantic");
+  const Stopwatch total;
+  OutputFolder output(folder, overwrite, "model --traffic", {{"traffic", true}});
   TrafficResult result;
-  ChosenScans chosen = open_again(job, session);
+  KittiSequence drive = open_scans(job, session);
   ModelJob without = job;
-  if (job.load.boxes.empty()) {
+  if (!drive.boxes) {
+    std::vector<std::size_t> scans(drive.scans.size());
+    std::iota(scans.begin(), scans.end(), std::size_t{0});
     BoxContent found;
-    found.moving = find_moving(chosen.drive, chosen.scans, {}, session.executor, session.progress);
-    chosen.drive.boxes = std::make_shared<const MovingBoxes>(std::move(found));
-    without.load.boxes = output.path() / "boxes.csv";
-    write_file(without.load.boxes, boxes_text(*chosen.drive.boxes));
-    if (chosen.drive.boxes->empty()) without.load.boxes.clear();
+    found.moving = find_moving(drive, scans, {}, session.executor, session.progress);
+    drive.boxes = std::make_shared<const MovingBoxes>(std::move(found));
+    without.load.found_boxes = drive.boxes;
+    if (!drive.boxes->empty()) write_file(output.path() / "boxes.csv", boxes_text(*drive.boxes));
   }
   auto [scene, made] = make_model(without, session);
   result.scene = std::move(made);
   save_model(output.path() / "scene.ply", scene);
-  if (!result.scene.calibration.empty()) apply(result.scene.calibration, chosen.drive);
-  std::vector<RecordedObject> objects = collect_objects(chosen, session);
+  if (!result.scene.calibration.empty() && !apply(result.scene.calibration, drive))
+    throw std::logic_error("run_traffic: the calibration is of other scans");
+  std::vector<RecordedObject> objects = collect_objects(drive, session);
   std::filesystem::create_directory(output.path() / "objects");
-  const LabelScheme scheme = semantickitti_labels();
   session.progress.begin_step("model objects", objects.size());
   for (RecordedObject& object : objects) {
     TrafficObject& entry = result.objects.emplace_back();
     entry.id = object.id;
     entry.label = object.label;
     entry.name = file_name_of(object);
-    entry.class_id = scheme.find(kind_of(object.label).class_name)->id;
+    entry.class_id = class_of(kind_of(object.label), scene.label_scheme);
     entry.size_m = object.size_m;
     write_object(object, job, scene.response, output.path() / "objects", session, entry);
     session.progress.advance(result.objects.size());
@@ -224,6 +238,7 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   session.progress.end_step();
   write_file(output.path() / "world.toml", world_text(result.objects));
   output.commit();
+  result.scene.seconds = total.seconds();
   return result;
 }
 
@@ -234,7 +249,8 @@ nlohmann::ordered_json to_json(const TrafficResult& result) {
     json["objects"].push_back({{"id", object.id},
                                {"label", object.label},
                                {"name", object.name},
-                               {"class", object.class_id},
+                               {"class", object.class_id ? nlohmann::ordered_json(*object.class_id)
+                                                         : nlohmann::ordered_json()},
                                {"size_m", {object.size_m.x, object.size_m.y, object.size_m.z}},
                                {"times_s", {object.begin_s, object.end_s}},
                                {"scans", object.scans},

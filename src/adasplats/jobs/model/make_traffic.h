@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,13 @@
 
 namespace adasplats {
 
-/// One object of the boxes.
+/// A moving object.
 struct TrafficObject {
   std::uint64_t id = 0;
   std::string label;
-  std::string name;            ///< of its files, such as "044-car"
-  std::uint16_t class_id = 0;  ///< of SemanticKITTI
-  Vec3d size_m;                ///< length, width, height
+  std::string name;                       ///< of its files, such as "044-car"
+  std::optional<std::uint16_t> class_id;  ///< of the scene's label scheme, if it has one for it
+  Vec3d size_m;                           ///< length, width, height
   double begin_s = 0, end_s = 0;
   std::size_t scans = 0, points = 0, mirrored_points = 0, splats = 0;
   AlignReport aligned;
@@ -32,11 +33,12 @@ struct TrafficResult {
   std::vector<TrafficObject> objects;
 };
 
-/// Models a drive with boxes of its moving objects: the scene without them, and each object in its
-/// own frame with its trajectory. Writes into `folder`: scene.ply, world.toml, and by object
-/// objects/NAME.ply and objects/NAME.csv. Errors: usage (no boxes, not one drive), those of
-/// make_model.
-TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder,
+/// Models a drive and its moving objects: the scene without them, and each object in its own frame
+/// with its trajectory. Objects are those of `job.load.boxes`, or found by find_moving(). Writes
+/// into `folder`: scene.ply, world.toml, by object objects/NAME.ply and objects/NAME.csv, and the
+/// boxes of found objects, boxes.csv. Errors: usage (not one drive with times; the method
+/// semantic), those of make_model.
+TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder, bool overwrite,
                           Session& session);
 
 /// The keys of a report.
