@@ -95,8 +95,7 @@ class ModelCommand final : public Command {
                           "), SemanticKITTI sequence folders and recordings (" +
                           recording_format_names() + ", PCAP)"));
     require(writes(add_path(app, "-o,--output", job_.output,
-                            "Model to write, PLY; with --tile: folder of a city; with "
-                            "--traffic: folder of a world"),
+                            "Model to write, PLY; with --tile or --traffic: a folder"),
                    {".ply", ""}));
     app.add_flag(
         "--traffic", traffic_,
