@@ -103,6 +103,7 @@ class Manifest(ProgramTest):
             "--format": ([], ["--format", "npy"]),
             "--point-order": (["--format", "semantickitti"],
                               ["--format", "semantickitti", "--point-order", "firing"]),
+            "--velocities": (["--format", "ply"], ["--format", "ply", "--velocities"]),
             "--seed": ([], ["--seed", "9"]),
         }
 
