@@ -171,6 +171,11 @@ void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
                                      ": no box has a time within the scans; the clocks differ, or "
                                      "the boxes belong to another drive");
   if (const std::optional<BoxClock> clock = fit_box_clock(boxes, drive, executor)) {
+    // The best offset may be beyond the search.
+    if (std::fabs(clock->later_s) > (kSteps - 0.5) * kStep_s)
+      throw Error(ErrorKind::data, settings.boxes.string() +
+                                       ": its clock differs from that of the points by 0.2 s or "
+                                       "more; give boxes in the clock of the scans");
     progress.warn(clock_text(settings.boxes, *clock));
     boxes.correct_times(clock->later_s, clock->are_of_scans);
   }

@@ -23,14 +23,14 @@ struct BoxClock {
 
 /// Finds the clock in which most points are in boxes of objects faster than 3 m/s, within 0.2 s.
 /// Nothing unless it holds 2 % more of them than the given times, and at least 500, in boxes of at
-/// least three objects, or if the best offset is at the limit.
+/// least three objects.
 std::optional<BoxClock> fit_box_clock(const MovingBoxes& boxes, const KittiSequence& drive,
                                       const Executor& executor);
 
 /// Reads the boxes that the settings of a drive name, if any, and corrects their times
 /// (fit_box_clock()), which a warning states. `stamps_s`: of the scans, where their annotations
 /// have other times than their poses. Errors: those of read_box_file(); data if no box has a time
-/// within the scans.
+/// within the scans, or if the clocks differ by 0.2 s or more.
 void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
                KittiSequence& drive, const Executor& executor, ProgressSink& progress);
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/temporary_folder_test.h"
@@ -118,6 +119,27 @@ TEST(AddBoxes, CorrectedTimesFindAllPointsAndAreStated) {
     const KittiScan scan = read_all_returns(drive, k);
     for (std::size_t i = 0; i < scan.in_boxes.size(); ++i) EXPECT_EQ(scan.in_boxes[i], i / 100 + 1);
     EXPECT_TRUE(read_kitti_points(drive, k).positions.empty());
+  }
+}
+
+TEST(AddBoxes, ClocksFarApartAreAnError) {
+  const TemporaryFolder folder;
+  std::string text = "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
+  for (std::size_t car = 0; car < kCars; ++car)
+    for (int k = -3; k < 17; ++k)
+      text += std::to_string(0.1 * k) + "," + std::to_string(car) + ",0," +
+              std::to_string(car_at(car, 0.1 * k - 0.35).x) + "," +
+              std::to_string(car_at(car, 0).y) + ",1,4,2,1.5,0\n";
+  KittiSequence drive = drive_with_cars();
+  DriveSettings settings;
+  settings.boxes = folder.write("boxes.csv", text);
+  RecordedProgress progress;
+  try {
+    add_boxes(settings, {}, drive, Executor(1), progress);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::data);
+    EXPECT_NE(std::string(error.what()).find("clock differs"), std::string::npos) << error.what();
   }
 }
 

@@ -17,6 +17,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/traffic/find_moving.h"
 #include "adasplats/traffic/object_cloud.h"
@@ -72,6 +73,7 @@ std::string file_name_of(const RecordedObject& object) {
 /// The chosen scans of the drive, as the model reads them. Errors: usage (not one drive with
 /// times).
 KittiSequence open_scans(const ModelJob& job, Session& session) {
+  for (const std::filesystem::path& input : job.inputs) require_input(input);
   const OpenInputs opened(job.inputs, job.load, session.executor, session.progress);
   if (opened.inputs().size() != 1 || !opened.inputs().front().sequence)
     throw Error(ErrorKind::usage,
