@@ -206,7 +206,7 @@ class Manual(ProgramTest):
                 self.assertIn(line.strip(), text)
         text = self.read(["model"])
         self.assertRegex(text, r"--neighbors INT\n +Number of neighbours of a point, K.  Default: 40\.")
-        self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile: folder of a city.  Required\.")
+        self.assertRegex(text, r"-o, --output PATH\n +Model to write, PLY; with --tile or --traffic: a folder.  Required\.")
 
     def test_mandoc_accepts_them(self):
         if not shutil.which("mandoc"):
