@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/av2_drive.h"
+#include "adasplats/cloud/load/box_files.h"
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
 #include "adasplats/cloud/load/open_drive.h"

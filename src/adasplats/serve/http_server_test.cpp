@@ -187,8 +187,8 @@ TEST_F(HttpServerTest, SlowHeadersEndTheConnection) {
   kept.reply();
   RawClient slow = client();
   const auto begin = Clock::now();
-  while (slow.send("G") && Clock::now() - begin < 2s) std::this_thread::sleep_for(10ms);
-  EXPECT_LT(Clock::now() - begin, 1s);
+  while (slow.send("G") && Clock::now() - begin < 20s) std::this_thread::sleep_for(10ms);
+  EXPECT_LT(Clock::now() - begin, 10s);
   EXPECT_TRUE(silent.ended());
   EXPECT_TRUE(kept.ended());
 }
@@ -206,7 +206,7 @@ TEST_F(HttpServerTest, AStalledDownloadIsClosed) {
 }
 
 TEST_F(HttpServerTest, ASlowDownloadIsCompleted) {
-  options.stall_limit = 250ms;
+  options.stall_limit = 1s;
   const auto big = std::make_shared<const std::string>(std::size_t{24} << 20, 'x');
   get = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
   start();
@@ -214,7 +214,7 @@ TEST_F(HttpServerTest, ASlowDownloadIsCompleted) {
   slow.get("/secret/");
   std::size_t count = 0;
   for (int i = 0; i < 12; ++i) {
-    std::this_thread::sleep_for(35ms);
+    std::this_thread::sleep_for(100ms);
     count += slow.take(std::size_t{2} << 20).size();
   }
   EXPECT_EQ(count, big->size());

@@ -256,7 +256,7 @@ inline std::size_t resident_kb() {
 
 /// Whether a condition becomes true within two seconds.
 inline bool soon(const std::function<bool()>& condition) {
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
