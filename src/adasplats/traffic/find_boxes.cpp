@@ -19,36 +19,18 @@ std::size_t points_of(const ClusterTrack& track) {
   return count;
 }
 
-/// Whether a cluster is in a box with a margin.
-bool contains(const TimedBox& box, const Cluster& cluster, double margin_m) {
-  const Vec3d off = cluster.middle - box.middle;
-  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
-  return std::fabs(c * off.x + s * off.y) <= box.half_size.x + margin_m &&
-         std::fabs(-s * off.x + c * off.y) <= box.half_size.y + margin_m &&
-         std::fabs(off.z) <= box.half_size.z + margin_m;
-}
-
-/// Whether a point is in a box, above what may be ground.
-bool contains(const TimedBox& box, Vec3d point) {
-  constexpr double kGround_m = 0.3;
-  const Vec3d off = point - box.middle;
-  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
-  return std::fabs(c * off.x + s * off.y) <= box.half_size.x &&
-         std::fabs(-s * off.x + c * off.y) <= box.half_size.y && off.z <= box.half_size.z &&
-         off.z >= kGround_m - box.half_size.z;
-}
-
 /// The share of loose points in the boxes of an object; 0 without points.
 double loose_share(const BoxTrack& track, const ClusterTrack& clusters,
                    std::span<const LoosePoints> loose) {
+  constexpr double kGround_m = 0.3;
   double loose_points = 0, firm_points = 0;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     const LoosePoints& scan = loose[clusters[k].scan];
     const TimedBox& box = track.boxes[k];
     for (const std::uint32_t i : clusters[k].points)
-      loose_points += contains(box, scan.points[i]) ? 1 : 0;
+      loose_points += box.contains(scan.points[i], 0, kGround_m) ? 1 : 0;
     for (const Vec3f& point : scan.firm)
-      firm_points += contains(box, scan.sensor + vec_cast<double>(point)) ? 1 : 0;
+      firm_points += box.contains(scan.sensor + vec_cast<double>(point), 0, kGround_m) ? 1 : 0;
   }
   firm_points *= LoosePoints::kFirmEvery;
   return loose_points > 0 ? loose_points / (loose_points + firm_points) : 0;
@@ -91,7 +73,7 @@ bool is_same_object(const BoxTrack& a, const BoxTrack& b, const ClusterTrack& cl
     if (gap_s > kGap_s) continue;
     const bool at_first = cluster.time_s < 0.5 * (a.boxes.front().time_s + a.boxes.back().time_s);
     if (length(velocity_at_end(a, at_first) - velocity_at_end(b, first)) < kSlower_mps &&
-        contains(extrapolated(a, cluster.time_s), cluster, margin_m + kDrift_mps * gap_s))
+        extrapolated(a, cluster.time_s).contains(cluster.middle, margin_m + kDrift_mps * gap_s))
       return true;
   }
   return false;
@@ -134,7 +116,7 @@ class Owners {
         if (owners_[scan][k] <= owner || cluster.time_s < boxes.boxes.front().time_s - kReach_s ||
             cluster.time_s > boxes.boxes.back().time_s + kReach_s)
           continue;
-        if (contains(boxes.at(cluster.time_s), cluster, margin_m)) owners_[scan][k] = owner;
+        if (boxes.at(cluster.time_s).contains(cluster.middle, margin_m)) owners_[scan][k] = owner;
       }
     }
   }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/core/error.h"
@@ -52,18 +54,63 @@ void BoxCollector::add(std::uint64_t id, const std::string& label, const TimedBo
   add_time(box.time_s);
 }
 
+std::size_t BoxCollector::remove_twins() {
+  struct Entry {
+    std::uint64_t id;
+    const TimedBox* box;
+  };
+  std::map<double, std::vector<Entry>> by_time;
+  for (const auto& [id, object] : objects_)
+    for (const auto& [time_s, box] : object.boxes) by_time[time_s].push_back({id, &box});
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::size_t> counts;  // smaller id first
+  for (auto& [time_s, entries] : by_time) {
+    std::ranges::sort(entries, {}, [](const Entry& entry) { return entry.box->middle.x; });
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const TimedBox& a = *entries[i].box;
+      for (std::size_t j = i + 1; j < entries.size(); ++j) {
+        const TimedBox& b = *entries[j].box;
+        if (b.middle.x - a.middle.x > length(a.half_size)) break;
+        if (a.contains(b.middle, 0) && b.contains(a.middle, 0))
+          ++counts[std::minmax(entries[i].id, entries[j].id)];
+      }
+    }
+  }
+  std::set<std::uint64_t> twins;
+  for (const auto& [pair, count] : counts) {
+    const auto &a = objects_.at(pair.first).boxes, &b = objects_.at(pair.second).boxes;
+    constexpr double kApart_m = 2;
+    std::size_t common = 0;
+    double apart_m = 0;
+    for (const auto& [time_s, box] : a) {
+      const auto other = b.find(time_s);
+      if (other == b.end()) continue;
+      ++common;
+      apart_m = std::max(apart_m, length(box.middle - other->second.middle));
+    }
+    if (2 * count >= common && apart_m < kApart_m && !twins.contains(pair.first) &&
+        !twins.contains(pair.second))
+      twins.insert(b.size() > a.size() ? pair.first : pair.second);
+  }
+  for (const std::uint64_t id : twins) objects_.erase(id);
+  return twins.size();
+}
+
 BoxContent BoxCollector::take(bool are_of_scans) {
   if (end_s_ < begin_s_) throw Error(ErrorKind::data, file_.string() + ": has no boxes");
   BoxContent content{{}, begin_s_, end_s_, are_of_scans};
+  content.twins = remove_twins();
   for (auto& [id, object] : objects_) {
     BoxTrack track{id, std::move(object.label), {}};
     for (const auto& [time_s, box] : object.boxes) track.boxes.push_back(box);
     if (object.moves ? *object.moves : moves_by_boxes(track))
       content.moving.push_back(std::move(track));
+    else
+      content.at_rest.push_back(
+          {id, std::move(track.label), {track.boxes[track.boxes.size() / 2]}, true});
   }
-  if (content.moving.size() > std::numeric_limits<std::uint16_t>::max())
-    throw Error(ErrorKind::data, file_.string() + ": has " + std::to_string(content.moving.size()) +
-                                     " moving objects, more than 65,535");
+  if (objects_.size() > std::numeric_limits<std::uint16_t>::max())
+    throw Error(ErrorKind::data, file_.string() + ": has " + std::to_string(objects_.size()) +
+                                     " objects, more than 65,535");
   return content;
 }
 

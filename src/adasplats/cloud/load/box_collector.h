@@ -39,10 +39,11 @@ class BoxCollector {
   /// sides that are not positive, a second box of the object at a time).
   void add(std::uint64_t id, const std::string& label, const TimedBox& box,
            std::optional<bool> moves, FunctionRef<std::string()> place);
-  /// Counts the time of a box that is not added.
-  void add_time(double time_s);
-
-  /// The moving objects. Errors: data (no boxes, more than 65,535 moving objects).
+  /// The objects. One object may have boxes from each LiDAR: where two are less than 2 m
+  /// apart at all of their common times, and their middles in each other's boxes at half of these
+  /// or more, the one with fewer boxes, or else with the larger id, is left out. Of an object at
+  /// rest the box in the middle of its times is kept. Errors: data (no boxes, more than 65,535
+  /// objects).
   BoxContent take(bool are_of_scans);
 
  private:
@@ -51,6 +52,10 @@ class BoxCollector {
     std::optional<bool> moves;
     std::map<double, TimedBox> boxes;  ///< by time
   };
+
+  void add_time(double time_s);
+  /// Removes objects in the boxes of others; returns their number.
+  std::size_t remove_twins();
 
   std::filesystem::path file_;
   std::unordered_map<std::string, std::uint64_t> numbers_;

@@ -33,8 +33,8 @@ BoxContent read_box_file(const std::filesystem::path& path, const BoxDrive& driv
 bool is_of_numbered_scans(const std::filesystem::path& boxes);
 
 /// A CSV with the columns time, id, stationary (0: it moves), x, y, z (of the centre, world
-/// coordinates, m), size_x, size_y, size_z (m), yaw (rad), and optionally label. Other columns and
-/// stationary boxes are skipped.
+/// coordinates, m), size_x, size_y, size_z (m), yaw (rad), and optionally label. Other columns are
+/// skipped. An object moves if one of its boxes does.
 BoxContent read_csv_boxes(const std::filesystem::path& file);
 
 /// annotations/cuboids/NN.pkl.gz of PandaSet (docs of pandaset-devkit 59be180,

@@ -85,12 +85,8 @@ BoxContent read_csv_boxes(const std::filesystem::path& path) {
     const std::vector<std::string> cells = cells_of(line);
     const std::string here = path.string() + ":" + std::to_string(row) + ": ";
     const BoxNumbers v = numbers_of_box(cells, places, here);
-    if (v[2] != 0) {
-      boxes.add_time(v[0]);
-      continue;
-    }
     boxes.add(static_cast<std::uint64_t>(v[1]), label_at < cells.size() ? cells[label_at] : "",
-              {v[0], {v[3], v[4], v[5]}, {v[6] / 2, v[7] / 2, v[8] / 2}, v[9]}, true,
+              {v[0], {v[3], v[4], v[5]}, {v[6] / 2, v[7] / 2, v[8] / 2}, v[9]}, v[2] == 0,
               [&] { return std::string(here); });
   }
   return boxes.take(false);

@@ -32,6 +32,40 @@ TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
   EXPECT_EQ(boxes.object_at(1.0, {0, 0, 2.1}), 0);
 }
 
+TEST(MovingBoxes, OneAtRestIsThereAtAllTimesWithoutTheGround) {
+  const TemporaryFolder folder;
+  BoxContent content = read_box_file(
+      folder.write("boxes.csv", std::string(kBoxNames) + "0,1.0,8,Car,1,0,20,1,4,2,1.5,0\n"
+                                                         "1,1.1,8,Car,1,0,20,1,4,2,1.5,0\n"),
+      {});
+  EXPECT_TRUE(content.moving.empty());
+  ASSERT_EQ(content.at_rest.size(), 1U);
+  EXPECT_EQ(content.at_rest[0].boxes.size(), 1U);
+  content.moving = content.at_rest;
+  const MovingBoxes boxes(content);
+  EXPECT_EQ(boxes.object_at(99, {2.05, 20, 1}), 1);
+  EXPECT_EQ(boxes.object_at(99, {2.15, 20, 1}), 0);
+  EXPECT_EQ(boxes.object_at(99, {0, 20, 0.45}), 1);
+  EXPECT_EQ(boxes.object_at(99, {0, 20, 0.35}), 0);  // the lower side is at 0.25 m
+}
+
+// PandaSet has a box of each LiDAR. Another car passes through the place later.
+TEST(MovingBoxes, OneOfTwoBoxesOfTheSameObjectIsLeftOut) {
+  const TemporaryFolder folder;
+  std::string rows(kBoxNames);
+  for (int k = 0; k < 10; ++k) {
+    const std::string time = std::to_string(k), x = std::to_string(10 * k);
+    rows += "0," + time + ",1,Car,0," + x + ",0,0,4,2,1.5,0\n";
+    if (k < 8) rows += "0," + time + ",2,Car,0," + x + ",0.5,0,4,2,1.5,0\n";
+    rows += "0," + time + ",3,Car,0,20,0.1,0,4,2,1.5,0\n";
+  }
+  const BoxContent content = read_box_file(folder.write("boxes.csv", rows), {});
+  EXPECT_EQ(content.twins, 1U);
+  ASSERT_EQ(content.moving.size(), 2U);
+  EXPECT_EQ(content.moving[0].id, 1U);
+  EXPECT_EQ(content.moving[1].id, 3U);
+}
+
 TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
   const TemporaryFolder folder;
   const MovingBoxes boxes = boxes_of(

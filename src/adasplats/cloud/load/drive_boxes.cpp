@@ -36,11 +36,7 @@ double speed_at(const BoxTrack& track, double time_s) {
 /// Whether a point is in a box, above what may be ground.
 bool is_inside(const TimedBox& box, Vec3d point) {
   constexpr double kGround_m = 0.25;
-  const Vec3d off = point - box.middle;
-  const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
-  return std::fabs(c * off.x + s * off.y) <= box.half_size.x &&
-         std::fabs(-s * off.x + c * off.y) <= box.half_size.y && off.z <= box.half_size.z &&
-         off.z >= kGround_m - box.half_size.z;
+  return box.contains(point, 0, kGround_m);
 }
 
 /// Counts points in boxes of fast objects, by how much later the boxes are: with the times of the
@@ -163,6 +159,9 @@ void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
       settings.boxes, {drive.scans, drive.trajectory, settings.topic, settings.scene});
   if (content.are_of_scans && !stamps_s.empty())
     content = at_poses(std::move(content), stamps_s, drive.trajectory);
+  if (content.twins > 0)
+    progress.warn(settings.boxes.string() + ": " + std::to_string(content.twins) +
+                  " objects are in the boxes of others at the same times; they were left out");
   constexpr double kSweep_s = 0.1;
   MovingBoxes boxes(std::move(content));
   if (!boxes.overlaps(drive.trajectory.front().time_s - kSweep_s,

@@ -13,11 +13,20 @@
 namespace adasplats {
 namespace {
 
-constexpr double kMargin_m = 0.2;
+constexpr double kMargin_m = 0.2, kMarginAtRest_m = 0.1, kGround_m = 0.15;
 
-/// The time between the first two boxes.
-double step_of(const BoxTrack& track) {
-  return track.boxes.size() > 1 ? track.boxes[1].time_s - track.boxes[0].time_s : 0.1;
+/// Whether an object has a box at some time between two.
+bool is_there(const BoxTrack& track, double begin_s, double end_s) {
+  const std::vector<TimedBox>& boxes = track.boxes;
+  const double step_s = boxes.size() > 1 ? boxes[1].time_s - boxes[0].time_s : 0.1;
+  return track.is_at_rest ||
+         (end_s >= boxes.front().time_s - step_s && begin_s <= boxes.back().time_s + step_s);
+}
+
+bool is_near(const TimedBox& box, Vec3d point) {
+  const Vec3d off = point - box.middle;
+  const double reach_m = box.half_size.x + box.half_size.y + box.half_size.z + kMargin_m;
+  return std::fabs(off.x) <= reach_m && std::fabs(off.y) <= reach_m;
 }
 
 double turned_by(double from_rad, double to_rad) {
@@ -25,6 +34,19 @@ double turned_by(double from_rad, double to_rad) {
 }
 
 }  // namespace
+
+Vec3d TimedBox::to_box(Vec3d point) const {
+  const Vec3d off = point - middle;
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  return {c * off.x + s * off.y, -s * off.x + c * off.y, off.z};
+}
+
+bool TimedBox::contains(Vec3d point, double margin_m, double ground_m) const {
+  const Vec3d in_box = to_box(point);
+  return std::fabs(in_box.x) <= half_size.x + margin_m &&
+         std::fabs(in_box.y) <= half_size.y + margin_m && in_box.z <= half_size.z + margin_m &&
+         in_box.z >= ground_m - half_size.z - margin_m;
+}
 
 TimedBox BoxTrack::at(double time_s) const {
   const auto after = std::ranges::upper_bound(boxes, time_s, {}, &TimedBox::time_s);
@@ -40,19 +62,15 @@ std::uint16_t MovingBoxes::object_at(double time_s, Vec3d point) const {
   std::uint16_t object = 0;
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < content_.moving.size(); ++k) {
-    const std::vector<TimedBox>& boxes = content_.moving[k].boxes;
-    const double step_s = step_of(content_.moving[k]);
-    if (time_s < boxes.front().time_s - step_s || time_s > boxes.back().time_s + step_s) continue;
-    const TimedBox box = content_.moving[k].at(time_s);
-    const Vec3d from_middle = point - box.middle;
-    const double c = std::cos(box.yaw_rad), s = std::sin(box.yaw_rad);
-    const Vec3d in_box = {c * from_middle.x + s * from_middle.y,
-                          -s * from_middle.x + c * from_middle.y, from_middle.z};
-    if (std::fabs(in_box.x) > box.half_size.x + kMargin_m ||
-        std::fabs(in_box.y) > box.half_size.y + kMargin_m ||
-        std::fabs(in_box.z) > box.half_size.z + kMargin_m)
-      continue;
-    const double away_m = length(from_middle);
+    const BoxTrack& track = content_.moving[k];
+    if (!is_there(track, time_s, time_s)) continue;
+    if (track.is_at_rest && !is_near(track.boxes.front(), point)) continue;
+    const TimedBox box = track.at(time_s);
+    const bool contains = track.is_at_rest
+                              ? box.contains(point, kMarginAtRest_m, kMarginAtRest_m + kGround_m)
+                              : box.contains(point, kMargin_m);
+    if (!contains) continue;
+    const double away_m = length(point - box.middle);
     if (away_m < least_m) {
       least_m = away_m;
       object = static_cast<std::uint16_t>(k + 1);
@@ -80,9 +98,7 @@ std::vector<std::uint16_t> MovingBoxes::objects_in(const TimedPose& pose,
   // Most points are far from all boxes.
   std::vector<std::pair<Vec3d, double>> spheres;
   for (const BoxTrack& track : content_.moving) {
-    const double step_s = step_of(track);
-    if (end_s < track.boxes.front().time_s - step_s || begin_s > track.boxes.back().time_s + step_s)
-      continue;
+    if (!is_there(track, begin_s, end_s)) continue;
     const TimedBox first = track.at(begin_s), last = track.at(end_s);
     const double half_way_m = 0.5 * length(last.middle - first.middle);
     constexpr double kCurve_m = 0.5;  // boxes may leave the straight line
