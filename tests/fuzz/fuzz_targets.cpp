@@ -74,6 +74,7 @@ constexpr FuzzTarget kTargets[] = {
     {"poses-csv", "a.csv", "cloud/poses/trajectory_file.cpp cloud/poses/pose_columns.cpp",
      &read_pose_file},
     {"poses-tum", "a.tum", "cloud/poses/trajectory_file.cpp", &read_pose_file},
+    {"poses-xosc", "a.xosc", "cloud/poses/openscenario.cpp", &read_pose_file},
     {"scan-times", "a.txt", "cloud/load/scan_stamps.cpp", &read_times},
     {"boxes", "a.csv", "cloud/load/csv_boxes.cpp cloud/load/box_files.cpp", &read_boxes},
     {"boxes-kitti", "tracklet_labels.xml", "cloud/load/kitti_tracklets.cpp", &read_boxes},

@@ -332,6 +332,12 @@ void add_poses(Seeds& seeds) {
              "q_RS_y []; q_RS_z []\n1000;0;0;0;1;0;0;0\n",
              "secs nsecs x y z qx qy qz qw\n1 5 0 0 0 0 0 0 1\n"});
   seeds.add("poses-tum", {"1 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0.6 0.8\n"});
+  seeds.add(
+      "poses-xosc",
+      {"<OpenSCENARIO><Trajectory name=\"a\"><Shape><Polyline><Vertex time=\"0\"><Position>"
+       "<WorldPosition x=\"1\" y=\"2\"/></Position></Vertex><Vertex time=\"1\"><Position>"
+       "<WorldPosition x=\"1\" y=\"2\" z=\"3\" h=\"0.5\" p=\"0\" r=\"0\"/></Position></Vertex>"
+       "</Polyline></Shape></Trajectory></OpenSCENARIO>"});
   seeds.add("scan-times", {"0\n0.1\n0.2\n"});
   std::string scan;
   for (const float value : {1.0F, 2.0F, 3.0F, 0.5F, -1.0F, 2.0F, 3.0F, 0.25F})

@@ -29,6 +29,7 @@ using Trajectory = std::vector<TimedPose>;
 ///   between commas, semicolons or blanks), such as CSV with time,x,y,z,qw,qx,qy,qz, or TUM with
 ///   '# timestamp tx ty tz qx qy qz qw'; of TUM by its name (`*.tum`) that order without a line of
 ///   names. Elsewhere without names it is an error: the order of a quaternion cannot be guessed.
+/// - OpenSCENARIO: `street.xosc`, or `street.xosc:NAME` for one of several (read_scenario()).
 /// Lines that begin with '#' or '%' are comments.
 /// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, columns
 /// that are not named, or not clearly, not finite, rotation not orthonormal to 1e-3, quaternion

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "adasplats/cloud/poses/exact_time.h"
+#include "adasplats/cloud/poses/openscenario.h"
 #include "adasplats/cloud/poses/pose_columns.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
@@ -319,6 +320,8 @@ void append_fixed(std::string& text, double value) {
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
+  if (const std::optional<ScenarioPath> scenario = scenario_path(path))
+    return read_scenario(*scenario);
   std::vector<NumberedLine> lines = filled_lines(path);
   const Heading heading = heading_of(path, lines);
   lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(heading.lines));
@@ -330,11 +333,13 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
 }
 
 bool has_times(const std::filesystem::path& trajectory) {
+  if (scenario_path(trajectory)) return true;
   return heading_of(trajectory, filled_lines(trajectory)).columns.has_value() ||
          is_there(trajectory.parent_path() / kTimesName);
 }
 
 std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path) {
+  if (const std::optional<ScenarioPath> scenario = scenario_path(path)) return {scenario->file};
   std::vector<std::filesystem::path> files = {path};
   if (heading_of(path, filled_lines(path)).columns) return files;
   for (const char* name : {kCalibrationName, kTimesName})

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/cloud/load/recording_poses.h"
+#include "adasplats/cloud/poses/openscenario.h"
 #include "adasplats/cloud/poses/pose_jump.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
@@ -137,7 +138,8 @@ void check_drive(const DriveOptions& drive) {
 
 DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress) {
   DrivenPoses driven;
-  require_input(drive.trajectory);
+  const std::optional<ScenarioPath> scenario = scenario_path(drive.trajectory);
+  require_input(scenario ? scenario->file : drive.trajectory);
   if (is_recording(drive.trajectory)) {
     RecordedTrajectory recorded =
         trajectory_of_recording(drive.trajectory, drive.topic, drive.poses_topic, progress);

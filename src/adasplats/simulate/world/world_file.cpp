@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "adasplats/cloud/poses/openscenario.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -84,6 +85,19 @@ class WorldTable {
     return p;
   }
 
+  /// Two ascending times, where the key is a list.
+  std::optional<std::array<double, 2>> times(std::string_view key) const {
+    const toml::node* const node = find(key);
+    const toml::array* const values = node == nullptr ? nullptr : node->as_array();
+    if (values == nullptr) return std::nullopt;
+    if (values->size() != 2) throw error(key, "is not a list of two times, [begin, end] in s");
+    constexpr double kLatest_s = 1e10;
+    const std::array<double, 2> times = {number_of((*values)[0], key, -kLatest_s, kLatest_s),
+                                         number_of((*values)[1], key, -kLatest_s, kLatest_s)};
+    if (times[0] >= times[1]) throw error(key, "ends before it begins");
+    return times;
+  }
+
   std::optional<std::uint64_t> whole_number(std::string_view key, std::int64_t high) const {
     const toml::node* const node = find(key);
     if (node == nullptr) return std::nullopt;
@@ -99,7 +113,8 @@ class WorldTable {
     if (name.empty()) return {};
     std::filesystem::path file = (path_.parent_path() / name).lexically_normal();
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    const std::optional<ScenarioPath> scenario = scenario_path(file);
+    if (!std::filesystem::exists(scenario ? scenario->file : file, ignored))
       throw error(key, "is " + file.string() + ", which does not exist", ErrorKind::no_input);
     return file;
   }
@@ -161,12 +176,16 @@ std::optional<std::variant<std::uint16_t, std::string>> read_class(const WorldTa
 
 bool read_only_during(const WorldTable& table) {
   static const KeyNames choices = {"always", "during"};
+  const toml::node* const node = table.find("present");
+  if (node != nullptr && node->is_array()) return true;
   const std::string word = table.text("present");
   if (word.empty() || word == "always") return false;
   if (word == "during") return true;
   const std::string nearest = suggestion(word, choices);
-  throw table.error("present", "is '" + word + "'" +
-                                   (nearest.empty() ? ", expected 'always' or 'during'" : nearest));
+  throw table.error(
+      "present",
+      "is '" + word + "'" +
+          (nearest.empty() ? ", expected 'always', 'during' or two times, [begin, end]" : nearest));
 }
 
 WorldFileObject read_object(const WorldTable& table, std::size_t number) {
@@ -185,8 +204,14 @@ WorldFileObject read_object(const WorldTable& table, std::size_t number) {
   object.placement = read_placement(table);
   object.trajectory = table.file("trajectory");
   object.only_during = read_only_during(table);
+  object.only_between_s = table.times("present");
   if (object.only_during && object.trajectory.empty())
-    throw table.error("present", "is 'during', which needs a trajectory");
+    throw table.error("present", "needs a trajectory, unless it is 'always'");
+  for (const char* const key : {"delay_s", "speed_factor"})
+    if (table.find(key) != nullptr && object.trajectory.empty())
+      throw table.error(key, "needs a trajectory");
+  object.delay_s = table.number("delay_s", 0, -kFarthest_m, kFarthest_m);
+  object.speed_factor = table.number("speed_factor", 1, 0.01, 100);
   object.only_scan = table.whole_number("scan", std::numeric_limits<std::int64_t>::max());
   object.scale = table.number("scale", 1, 1 / kMaxScale, kMaxScale);
   return object;
@@ -196,9 +221,9 @@ WorldFileObject read_object(const WorldTable& table, std::size_t number) {
 
 WorldFile read_world_file(const std::filesystem::path& path) {
   static const KeyNames file_keys = {"model", "object"};
-  static const KeyNames object_keys = {"geometry", "class",     "instance",   "position",
-                                       "yaw_deg",  "pitch_deg", "roll_deg",   "scale",
-                                       "name",     "present",   "trajectory", "scan"};
+  static const KeyNames object_keys = {
+      "geometry", "class", "instance", "position",   "yaw_deg", "pitch_deg", "roll_deg",
+      "scale",    "name",  "present",  "trajectory", "scan",    "delay_s",   "speed_factor"};
   const toml::table content = parse(path);
   const WorldTable table(path, content, file_keys);
   WorldFile file;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -25,7 +26,10 @@ struct WorldFileObject {
   /// Pose of the geometry in the world, or in the frame that `trajectory` moves.
   RigidTransform placement;
   std::filesystem::path trajectory;  ///< empty: at rest
+  double delay_s = 0;
+  double speed_factor = 1;
   bool only_during = false;
+  std::optional<std::array<double, 2>> only_between_s;
   std::optional<std::uint64_t> only_scan;
   double scale = 1;
 };
@@ -41,7 +45,10 @@ struct WorldFileObject {
 ///     scale = 1.0
 ///     trajectory = "car.csv"      # world_from_object (read_trajectory); position and angles are
 ///                                 # then those of the geometry in the frame that it moves
-///     present = "always"          # or "during": between the first and the last pose only
+///     delay_s = 2                 # later by this
+///     speed_factor = 1.5          # along the trajectory, from its first pose on
+///     present = "always"          # "during": between the first and the last pose only; or two
+///                                 # times, [12.5, 13.0], before delay and speed factor
 ///     scan = 12                   # there in this scan alone
 ///     name = "taxi"
 /// Paths are relative to the file.

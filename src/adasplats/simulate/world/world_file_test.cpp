@@ -151,7 +151,7 @@ TEST_F(WorldFileTest, UnknownKeysAndWords) {
   expect_refused(object + "positon = [0, 0, 0]", {":3:", "did you mean 'position'?"});
   expect_refused(object + "class = \"caar\"", {":1:", "semantickitti", "did you mean 'car'?"});
   expect_refused(object + "present = \"durin\"", {":3:", "did you mean 'during'?"});
-  expect_refused(object + "present = \"x\"", {":3:", "'always' or 'during'"});
+  expect_refused(object + "present = \"x\"", {":3:", "expected 'always', 'during' or two times"});
   expect_refused("[[object", {"world.toml:1:"});
 }
 
@@ -204,6 +204,42 @@ TEST_F(WorldFileTest, BrokenFilesNeverCrash) {
   std::string dots = "a";
   for (int i = 0; i < 1000; ++i) dots += ".a";
   expect_refused(dots + " = 1", {":1:", "dots"});
+}
+
+// way.csv goes from x = 10 at 0 s to 30 at 2 s.
+TEST_F(WorldFileTest, TrajectoriesCanBeDelayedAndChangedInSpeed) {
+  const std::string object = "[[object]]\ngeometry = \"parts/car.obj\"\ntrajectory = \"way.csv\"\n";
+  const World world = filled(object + "delay_s = 3\nspeed_factor = 2\n" + object +
+                             "present = [0.5, 1]\nspeed_factor = 2\n");
+  const Trajectory& late = world.object(0).trajectory;
+  EXPECT_EQ(late.front().time_s, 3);
+  EXPECT_EQ(late.back().time_s, 4);
+  EXPECT_EQ(late.back().world_from_sensor.translation.x, 30);
+  const WorldObject& part = world.object(1);
+  EXPECT_TRUE(part.only_during);
+  EXPECT_EQ(part.trajectory.front().time_s, 0.25);
+  EXPECT_EQ(part.trajectory.front().world_from_sensor.translation.x, 15);
+  EXPECT_EQ(part.trajectory.back().time_s, 0.5);
+  EXPECT_EQ(part.trajectory.back().world_from_sensor.translation.x, 20);
+  expect_refused("[[object]]\ngeometry = \"parts/car.obj\"\ndelay_s = 3\n",
+                 {":3:", "delay_s needs a trajectory"});
+  expect_refused(object + "speed_factor = 0\n", {":4:", "speed_factor is not a number from 0.01"});
+  expect_refused(object + "present = [3, 4]\n", {"present is outside the times of"});
+  expect_refused(object + "present = [1, 1]\n", {":4:", "present ends before it begins"});
+  expect_refused(object + "present = [1]\n", {":4:", "present is not a list of two times"});
+}
+
+TEST_F(WorldFileTest, TrajectoriesOfOpenScenario) {
+  folder_.write(
+      "a.xosc",
+      "<OpenSCENARIO><Trajectory name=\"t\"><Shape><Polyline><Vertex time=\"1\"><Position>"
+      "<WorldPosition x=\"7\" y=\"0\"/></Position></Vertex></Polyline></Shape>"
+      "</Trajectory></OpenSCENARIO>");
+  const World world =
+      filled("[[object]]\ngeometry = \"parts/car.obj\"\ntrajectory = \"a.xosc:t\"\n");
+  EXPECT_EQ(world.object(0).trajectory.front().world_from_sensor.translation.x, 7);
+  expect_refused("[[object]]\ngeometry = \"parts/car.obj\"\ntrajectory = \"b.xosc:t\"\n",
+                 {"b.xosc:t, which does not exist"}, ErrorKind::no_input);
 }
 
 }  // namespace

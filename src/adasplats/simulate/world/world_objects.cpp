@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,14 +34,35 @@ std::uint16_t class_number(const WorldFile& file, const WorldFileObject& object,
                          (nearest ? ", did you mean '" + *nearest + "'?" : std::string()));
 }
 
+/// The poses between two times, with interpolated ones at these.
+Trajectory part_of(const Trajectory& whole, double begin_s, double end_s) {
+  begin_s = std::max(begin_s, whole.front().time_s);
+  end_s = std::min(end_s, whole.back().time_s);
+  if (begin_s >= end_s) return {};
+  Trajectory part = {{begin_s, interpolate(whole, begin_s)}};
+  for (const TimedPose& pose : whole)
+    if (pose.time_s > begin_s && pose.time_s < end_s) part.push_back(pose);
+  part.push_back({end_s, interpolate(whole, end_s)});
+  return part;
+}
+
 Trajectory trajectory_of(const WorldFile& file, const WorldFileObject& object) {
   if (object.trajectory.empty()) return {{0.0, object.placement}};
   Trajectory trajectory = read_trajectory(object.trajectory);
   if (object.only_during && trajectory.size() < 2)
     throw object_error(file, object,
                        "present is 'during', but " + object.trajectory.string() + " has one pose");
-  for (TimedPose& pose : trajectory)
+  const double begin_s = trajectory.front().time_s;
+  if (object.only_between_s) {
+    trajectory = part_of(trajectory, (*object.only_between_s)[0], (*object.only_between_s)[1]);
+    if (trajectory.size() < 2)
+      throw object_error(file, object,
+                         "present is outside the times of " + object.trajectory.string());
+  }
+  for (TimedPose& pose : trajectory) {
     pose.world_from_sensor = pose.world_from_sensor * object.placement;
+    pose.time_s = begin_s + object.delay_s + (pose.time_s - begin_s) / object.speed_factor;
+  }
   return trajectory;
 }
 
