@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adasplats/cloud/beams/empty_beams.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/beam_surroundings.h"
@@ -29,11 +30,13 @@ constexpr float kMinUp = static_cast<float>(EmptyBeamOptions{}.min_up);
 struct Beam {
   float error_m = kNoHitError;
   std::uint32_t primitive = Hit::kNone;
+  /// The moving object it is on, as far as known: its number in the boxes, or kLabelled, class and
+  /// instance; 0: none.
+  std::uint64_t object = 0;
   std::uint8_t range_bin = 0;
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
   std::int8_t elevation_deg = 0;   ///< rounded down
   bool upward = false;             ///< in the world
-  bool moving = false;             ///< on a moving object, as far as known
   Surroundings surroundings = Surroundings::rough;
   std::uint16_t class_id = 0;  ///< 0 without labels
 };
@@ -142,10 +145,13 @@ void cast_beams(const BeamScene& scene, std::span<const Ray> rays, const KittiSc
   scene.world->add_hits(rays, times_s, hits, executor);
 }
 
-/// Whether a point is on a moving object.
-bool is_moving(const KittiScan& scan, std::size_t i, const LabelScheme& labels) {
-  if (!scan.in_boxes.empty() && scan.in_boxes[i] != 0) return true;
-  return !scan.classes.empty() && labels.find(scan.classes[i])->mobility == Mobility::moving;
+constexpr std::uint64_t kLabelled = std::uint64_t{1} << 32U;
+
+/// Beam::object of a point.
+std::uint64_t object_of(const KittiScan& scan, std::size_t i, const LabelScheme& labels) {
+  if (!scan.in_boxes.empty() && scan.in_boxes[i] != 0) return scan.in_boxes[i];
+  if (scan.classes.empty() || labels.find(scan.classes[i])->mobility != Mobility::moving) return 0;
+  return kLabelled + (std::uint64_t{scan.classes[i]} << 16U) + scan.instances[i];
 }
 
 /// Incidence and intensity of a beam that hit the scene, not an object.
@@ -195,7 +201,7 @@ CastScan cast_scan(const CastSettings& setting, const KittiSequence& sequence, s
     beam.surroundings = surroundings[k];
     beam.upward = rays[k].direction.z > kMinUp;
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
-    beam.moving = is_moving(scan, selected[k], setting.labels);
+    beam.object = object_of(scan, selected[k], setting.labels);
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
@@ -325,6 +331,26 @@ void check(const ResimulateOptions& options) {
   }
 }
 
+/// "73 Car" or "moving-car 5".
+std::string object_name(std::uint64_t object, const KittiSequence& sequence,
+                        const LabelScheme& labels) {
+  if (object < kLabelled) {
+    const BoxTrack& track = sequence.boxes->tracks()[object - 1];
+    return std::to_string(track.id) + (track.label.empty() ? "" : " ") + track.label;
+  }
+  const auto class_id = static_cast<std::uint16_t>((object - kLabelled) >> 16U);
+  return labels.find(class_id)->name + " " + std::to_string(object & 0xffffU);
+}
+
+void add_objects(ResimulateResult& result, const std::vector<Beam>& beams,
+                 const KittiSequence& sequence, const LabelScheme& labels) {
+  std::map<std::uint64_t, std::vector<float>> errors_m;
+  for (const Beam& beam : beams)
+    if (beam.object != 0) errors_m[beam.object].push_back(beam.error_m);
+  for (const auto& [object, errors] : errors_m)
+    result.by_object.emplace_back(object_name(object, sequence, labels), accuracy_of(errors));
+}
+
 }  // namespace
 
 ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequence,
@@ -364,7 +390,8 @@ ResimulateResult resimulate(const BeamScene& scene, const KittiSequence& sequenc
     for (const bool moving : {false, true})
       result.by_motion.emplace_back(
           moving ? "moving" : "still",
-          accuracy_where(beams, [&](const Beam& beam) { return beam.moving == moving; }));
+          accuracy_where(beams, [&](const Beam& beam) { return (beam.object != 0) == moving; }));
+    add_objects(result, beams, sequence, labels);
   }
   result.clouds = clouds.mean();
   if (!measured_intensities.empty())

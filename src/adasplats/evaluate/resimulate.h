@@ -71,6 +71,9 @@ struct ResimulateResult {
   /// "still", "moving": in boxes of moving objects and of moving classes; empty if `drop_moving`
   /// and without boxes or labels.
   std::vector<std::pair<std::string, BeamAccuracy>> by_motion;
+  /// Of the moving ones, object by object: "73 Car" of the boxes, or "moving-car 5", class and
+  /// instance of the labels.
+  std::vector<std::pair<std::string, BeamAccuracy>> by_object;
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;  ///< names of the label scheme
   /// "-25 deg", ...: elevation of the beam in the sensor's frame, rounded down. Different biases
   /// show differences between lasers, which no model can predict.

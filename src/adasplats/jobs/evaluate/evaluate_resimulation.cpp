@@ -348,6 +348,7 @@ nlohmann::ordered_json to_json(const ResimulateResult& result) {
   add("by_incidence", result.by_incidence);
   add("by_surroundings", result.by_surroundings);
   add("by_motion", result.by_motion);
+  add("by_object", result.by_object);
   add("by_class", result.by_class);
   add("by_elevation", result.by_elevation);
   return json;
