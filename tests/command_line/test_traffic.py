@@ -70,7 +70,7 @@ class Traffic(ProgramTest):
         place = self.folder / "place"
         result = self.run_good("model", drive, "--traffic", "-o", place, "--report",
                                self.folder / "report.json")
-        self.assertIn("1 moving objects, 0 left out", result.stdout)
+        self.assertIn("1 moving objects and 0 parked vehicles; 0 left out", result.stdout)
         car, = json.loads((self.folder / "report.json").read_text())["objects"]
         self.assertEqual((car["label"], car["name"], car["class"]), ("car", "001-car", MOVING_CAR))
         self.assertAlmostEqual(car["size_m"][0], 4.4, delta=0.4)

@@ -277,13 +277,21 @@ class ModelCommand final : public Command {
     for (const TrafficObject& object : result.objects)
       table.add_row({object.name, grouped(object.scans), grouped(object.points),
                      object.left_out.empty() ? grouped(object.splats) : object.left_out,
-                     centimetres(object.aligned.median_shift_m)});
-    const auto left_out = std::ranges::count_if(
-        result.objects, [](const TrafficObject& object) { return !object.left_out.empty(); });
+                     object.is_at_rest ? "at rest" : centimetres(object.aligned.median_shift_m)});
+    std::size_t moving = 0, at_rest = 0, beams = 0, open_beams = 0;
+    for (const TrafficObject& object : result.objects) {
+      if (object.left_out.empty()) ++(object.is_at_rest ? at_rest : moving);
+      beams += object.beams;
+      open_beams += object.open_beams;
+    }
     print((result.objects.empty() ? std::string() : table.text() + "\n") +
           (job_.output / "world.toml").string() + ": " + grouped(result.scene.built.primitives) +
-          " splats and " + grouped(result.objects.size() - static_cast<std::size_t>(left_out)) +
-          " moving objects, " + std::to_string(left_out) + " left out\n");
+          " splats, " + grouped(moving) + " moving objects and " + grouped(at_rest) +
+          " parked vehicles; " + grouped(result.objects.size() - moving - at_rest) + " left out\n" +
+          (at_rest == 0 ? std::string()
+                        : "Without the parked vehicles, " + grouped(open_beams) + " of the " +
+                              grouped(beams) + " beams on them hit nothing: no scan saw " +
+                              "what is behind\n"));
   }
 
   void run_city(Session& session) {

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
+#include "adasplats/traffic/object_kind.h"
 #include "adasplats/traffic/smooth_path.h"
 
 namespace adasplats {
@@ -58,6 +61,34 @@ double middle_of(const Extent& extent, double sensor, double length) {
   if (sensor < extent.low) return extent.low + length / 2;
   if (sensor > extent.high) return extent.high - length / 2;
   return (extent.low + extent.high) / 2;
+}
+
+/// The same if several sensors see it: nothing is hidden between two that see both ends.
+Extent whole_side(const Extent& extent, const Extent& sensors, double length) {
+  if (extent.length() >= length) return extent;
+  const bool is_low_seen = sensors.low<extent.low, is_high_seen = sensors.high> extent.high;
+  if (is_low_seen == is_high_seen) return extent;
+  return is_low_seen ? Extent{extent.low, extent.low + length}
+                     : Extent{extent.high - length, extent.high};
+}
+
+/// The coordinates of points along axes that are turned about z.
+std::array<std::vector<double>, 3> turned(std::span<const Vec3d> points, Vec3d origin,
+                                          double yaw_rad) {
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  std::array<std::vector<double>, 3> coordinates;
+  for (const Vec3d& point : points) {
+    const Vec3d off = point - origin;
+    coordinates[0].push_back(c * off.x + s * off.y);
+    coordinates[1].push_back(-s * off.x + c * off.y);
+    coordinates[2].push_back(off.z);
+  }
+  return coordinates;
+}
+
+Extent whole_extent(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax_element(values);
+  return {*low, *high};
 }
 
 /// The lower side of a box: the ground, if it is where the lowest points make it likely.
@@ -214,6 +245,37 @@ std::optional<BoxTrack> fit_boxes(const ClusterTrack& track, std::span<const Loo
   if (!fit.find_path()) return std::nullopt;
   fit.find_boxes();
   return fit.boxes(height_below);
+}
+
+TimedBox fit_box_at_rest(std::span<const Vec3d> points, std::span<const Vec3d> sensors,
+                         std::string_view label) {
+  constexpr double kStep_rad = std::numbers::pi / 180;
+  constexpr double kUsualLength_m = 4.2, kUsualWidth_m = 1.75;
+  const Vec3d origin = points.front();
+  double yaw_rad = 0, least_m2 = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 90; ++step) {
+    const auto coordinates = turned(points, origin, step * kStep_rad);
+    const Extent x = extent_of(coordinates[0]), y = extent_of(coordinates[1]);
+    if (x.length() * y.length() >= least_m2) continue;
+    least_m2 = x.length() * y.length();
+    yaw_rad = step * kStep_rad + (x.length() >= y.length() ? 0 : std::numbers::pi / 2);
+  }
+  const auto coordinates = turned(points, origin, yaw_rad);
+  std::array<Extent, 3> sides = {extent_of(coordinates[0]), extent_of(coordinates[1]),
+                                 whole_extent(coordinates[2])};
+  if (object_kind_of(label).is_vehicle) {
+    const auto seen_from = turned(sensors, origin, yaw_rad);
+    sides[0] = whole_side(sides[0], whole_extent(seen_from[0]), kUsualLength_m);
+    sides[1] = whole_side(sides[1], whole_extent(seen_from[1]), kUsualWidth_m);
+  }
+  const auto middle = [](const Extent& side) { return 0.5 * (side.low + side.high); };
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  const double along = middle(sides[0]), left = middle(sides[1]);
+  TimedBox box;
+  box.middle = origin + Vec3d{c * along - s * left, s * along + c * left, middle(sides[2])};
+  box.half_size = {0.5 * sides[0].length(), 0.5 * sides[1].length(), 0.5 * sides[2].length()};
+  box.yaw_rad = yaw_rad;
+  return box;
 }
 
 }  // namespace adasplats

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/function_ref.h"
@@ -27,5 +28,11 @@ struct BoxFitOptions {
 std::optional<BoxTrack> fit_boxes(const ClusterTrack& track, std::span<const LoosePoints> loose,
                                   FunctionRef<double(Vec3d)> height_below,
                                   const BoxFitOptions& options);
+
+/// The box around an object at rest from its points in many scans: the turn with the smallest area,
+/// x along the longer side. A side of a vehicle that was not seen whole gets the usual length, away
+/// from the sensors. World coordinates, m; at least one point. `label`: as of object_kind_of().
+TimedBox fit_box_at_rest(std::span<const Vec3d> points, std::span<const Vec3d> sensors,
+                         std::string_view label);
 
 }  // namespace adasplats

@@ -65,6 +65,22 @@ bool is_from_flat_scanner(const PointCloud& cloud) {
   });
 }
 
+/// Removes the points in boxes of objects at rest; returns their number.
+std::size_t remove_parked(PointCloud& cloud, const MovingBoxes& parked, const Executor& executor) {
+  constexpr std::size_t kGrain = 4096;
+  std::vector<std::uint8_t> is_parked(cloud.size());
+  executor.for_chunks(is_parked.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      is_parked[i] = parked.object_at(0, cloud.world(i)) == 0 ? 0 : 1;
+  });
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < is_parked.size(); ++i)
+    if (is_parked[i] == 0) kept.push_back(static_cast<std::uint32_t>(i));
+  const std::size_t removed = cloud.size() - kept.size();
+  cloud = gather(cloud, kept);
+  return removed;
+}
+
 /// Makes one model from the points of `load_points`. Building consumes the points; if it fails on a
 /// GPU, they are loaded again.
 class ModelMaker {
@@ -132,11 +148,13 @@ class ModelMaker {
     result.steps.push_back({"segment", watch.seconds()});
   }
 
-  void correct(PointCloud& cloud, const ModelResult& result) const {
+  void correct(PointCloud& cloud, ModelResult& result) const {
     if (!result.calibration.empty() && !apply(result.calibration, cloud, session_.executor))
       throw std::logic_error("make_model: a calibration of other scans");
     cloud.lasers = {};  // they are for the calibration only
     keep_sensors_of_model(cloud);
+    if (options_.parked)
+      result.loaded.in_boxes += remove_parked(cloud, *options_.parked, session_.executor);
   }
 
   void estimate_calibration(PointCloud& cloud, ModelResult& result) {

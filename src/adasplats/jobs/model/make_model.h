@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/segment/point_classes.h"
 #include "adasplats/jobs/session/session.h"
@@ -84,6 +86,8 @@ std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice);
 struct ModelOptions {
   std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
   SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
+  /// Points in these boxes of objects at rest are removed after the calibration, which they help.
+  std::shared_ptr<const MovingBoxes> parked;
   BuildOptions build;
   /// The user requested `build.remove`: if it cannot remove anything, that is an error instead of a
   /// warning.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/jobs/model/make_traffic.h"
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string_view>
@@ -19,43 +21,14 @@
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/model/splat_model.h"
+#include "adasplats/trace/tracer.h"
 #include "adasplats/traffic/find_moving.h"
+#include "adasplats/traffic/label_boxes.h"
 #include "adasplats/traffic/object_cloud.h"
+#include "adasplats/traffic/object_kind.h"
 
 namespace adasplats {
 namespace {
-
-/// A kind of objects: words that its labels contain, its class of SemanticKITTI, and whether it is
-/// a vehicle, which is symmetric.
-struct ObjectKind {
-  std::string_view word;
-  std::string_view class_name;
-  bool is_vehicle;
-};
-
-/// The first match counts.
-constexpr std::array<ObjectKind, 15> kKinds = {{{"regular_vehicle", "moving-car", true},
-                                                {"motorcycl", "moving-motorcyclist", false},
-                                                {"scooter", "moving-motorcyclist", false},
-                                                {"bicycl", "moving-bicyclist", false},
-                                                {"cyclist", "moving-bicyclist", false},
-                                                {"pedestrian", "moving-person", false},
-                                                {"person", "moving-person", false},
-                                                {"truck", "moving-truck", true},
-                                                {"trailer", "moving-truck", true},
-                                                {"tram", "moving-on-rails", true},
-                                                {"train", "moving-on-rails", true},
-                                                {"bus", "moving-bus", true},
-                                                {"van", "moving-car", true},
-                                                {"car", "moving-car", true},
-                                                {"vehicle", "moving-other-vehicle", true}}};
-
-ObjectKind kind_of(const std::string& label) {
-  const std::string lower = lower_case(label);
-  for (const ObjectKind& kind : kKinds)
-    if (lower.find(kind.word) != std::string::npos) return kind;
-  return {"", "moving-other-vehicle", false};
-}
 
 /// "044-car": letters, digits and hyphens only.
 std::string file_name_of(const RecordedObject& object) {
@@ -113,7 +86,8 @@ void to_reflectances(const IntensityResponse& response, PointCloud& cloud) {
 }
 
 /// The splats of an object from all of its points.
-SplatModel body_of(PointCloud cloud, const ModelJob& job, Session& session) {
+/// Rays through those of people and cyclists, whose limbs move, do not count against them.
+SplatModel body_of(PointCloud cloud, bool is_rigid, const ModelJob& job, Session& session) {
   ModelOptions options;
   options.build.recipe = job.build.recipe;
   options.build.remove = DynamicRemoval::none;
@@ -121,7 +95,7 @@ SplatModel body_of(PointCloud cloud, const ModelJob& job, Session& session) {
   options.build.trust_origins = true;
   options.calibration.on = false;
   if (auto* const ours = std::get_if<ConsistentOptions>(&options.build.recipe))
-    ours->refine = false;  // objects in a world are opaque
+    ours->refine = is_rigid;
   ProgressSink silence;
   Session quiet{session.executor, silence, session.seed, session.device};
   return make_model([&cloud] { return cloud; }, options, quiet).first;
@@ -131,27 +105,28 @@ SplatModel body_of(PointCloud cloud, const ModelJob& job, Session& session) {
 void write_object(RecordedObject& object, const ModelJob& job, const IntensityResponse& response,
                   const std::filesystem::path& folder, Session& session, TrafficObject& made) {
   constexpr std::size_t kMinPoints = 100;
-  constexpr float kMirrorApart_m = 0.15F;
+  constexpr float kMirrorApart_m = 0.4F;
   made.scans = object.scans.size();
   made.points = object.points();
+  made.world_from_object = object.world_from_object.front().world_from_sensor;
   made.begin_s = object.world_from_object.front().time_s;
   made.end_s = object.world_from_object.back().time_s;
   if (made.points < kMinPoints) {
     made.left_out = "fewer than " + std::to_string(kMinPoints) + " points";
     return;
   }
-  if (made.scans < 2 || object.world_from_object.size() < 2) {
+  if (made.scans < 2 || (!made.is_at_rest && object.world_from_object.size() < 2)) {
     made.left_out = "seen once";
     return;
   }
-  made.aligned = align_scans(object, {}, session.executor);
+  if (!made.is_at_rest) made.aligned = align_scans(object, {}, session.executor);
   PointCloud cloud = cloud_of(object);
   to_reflectances(response, cloud);
-  if (kind_of(object.label).is_vehicle)
-    made.mirrored_points = add_mirrored(cloud, kMirrorApart_m, session.executor);
+  const bool is_vehicle = object_kind_of(object.label).is_vehicle;
+  if (is_vehicle) made.mirrored_points = add_mirrored(cloud, kMirrorApart_m, session.executor);
   SplatModel body;
   try {
-    body = body_of(std::move(cloud), job, session);
+    body = body_of(std::move(cloud), is_vehicle, job, session);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::data) throw;
     made.left_out = error.what();
@@ -159,7 +134,8 @@ void write_object(RecordedObject& object, const ModelJob& job, const IntensityRe
   }
   made.splats = body.size();
   save_model(folder / (made.name + ".ply"), body);
-  write_trajectory_csv(folder / (made.name + ".csv"), object.world_from_object);
+  if (!made.is_at_rest)
+    write_trajectory_csv(folder / (made.name + ".csv"), object.world_from_object);
 }
 
 /// As MovingBoxes reads them.
@@ -167,7 +143,8 @@ std::string boxes_text(const MovingBoxes& boxes) {
   std::string text = "time,id,label,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
   for (const BoxTrack& track : boxes.tracks()) {
     for (const TimedBox& box : track.boxes) {
-      text += exact_text(box.time_s) + "," + std::to_string(track.id) + "," + track.label + ",0";
+      text += exact_text(box.time_s) + "," + std::to_string(track.id) + "," + track.label +
+              (track.is_at_rest ? ",1" : ",0");
       for (const double value : {box.middle.x, box.middle.y, box.middle.z, 2 * box.half_size.x,
                                  2 * box.half_size.y, 2 * box.half_size.z, box.yaw_rad})
         text += "," + exact_text(value);
@@ -178,13 +155,22 @@ std::string boxes_text(const MovingBoxes& boxes) {
 }
 
 /// The class of a kind in the scene's label scheme, which is SemanticKITTI's if it has none.
-std::optional<std::uint16_t> class_of(const ObjectKind& kind, const std::string& scheme_name) {
+std::optional<std::uint16_t> class_of(const ObjectKind& kind, bool is_at_rest,
+                                      const std::string& scheme_name) {
   const LabelScheme scheme =
       scheme_name.empty() ? semantickitti_labels() : load_label_scheme(scheme_name);
-  for (const std::string_view name : {kind.class_name, kind.word})
+  for (const std::string_view name : {is_at_rest ? kind.at_rest : kind.moving, kind.word})
     if (const SemanticClass* found = scheme.find(name); !name.empty() && found != nullptr)
       return found->id;
   return std::nullopt;
+}
+
+std::string place_text(const RigidTransform& world_from_object) {
+  const Vec3d at = world_from_object.translation;
+  const Vec3d* const rows = world_from_object.rotation.rows;
+  const double yaw_deg = std::atan2(rows[1].x, rows[0].x) * 180 / std::numbers::pi;
+  return "position = [" + exact_text(at.x) + ", " + exact_text(at.y) + ", " + exact_text(at.z) +
+         "]\nyaw_deg = " + exact_text(yaw_deg) + "\n";
 }
 
 std::string world_text(const std::vector<TrafficObject>& objects) {
@@ -194,9 +180,54 @@ std::string world_text(const std::vector<TrafficObject>& objects) {
     text += "\n[[object]]\nname = \"" + object.name + "\"\ngeometry = \"objects/" + object.name +
             ".ply\"\n";
     if (object.class_id) text += "class = " + std::to_string(*object.class_id) + "\n";
-    text += "trajectory = \"objects/" + object.name + ".csv\"\npresent = \"during\"\n";
+    if (object.is_at_rest)
+      text += place_text(object.world_from_object);
+    else
+      text += "trajectory = \"objects/" + object.name + ".csv\"\npresent = \"during\"\n";
   }
   return text;
+}
+
+/// The objects to be taken out of the scans, the vehicles at rest behind the moving ones.
+BoxContent objects_of(const KittiSequence& drive, const ModelJob& job, Session& session) {
+  BoxContent content;
+  if (drive.boxes) {
+    content = drive.boxes->content();
+  } else if (!job.segment.on) {
+    if (const std::optional<LabelScheme> scheme =
+            label_scheme_for(job.labels, job.inputs, job.load.label_field))
+      content = boxes_of_labels(drive, *scheme, session.executor, session.progress);
+  }
+  if (!drive.boxes && content.moving.empty() && content.at_rest.empty()) {
+    std::vector<std::size_t> scans(drive.scans.size());
+    std::iota(scans.begin(), scans.end(), std::size_t{0});
+    content.moving = find_moving(drive, scans, {}, session.executor, session.progress);
+  }
+  for (BoxTrack& track : content.at_rest)
+    if (object_kind_of(track.label).is_vehicle) content.moving.push_back(std::move(track));
+  content.at_rest.clear();
+  return content;
+}
+
+/// Counts the beams that ended on an object, and those that the scene without it lets pass.
+void count_open_beams(const RecordedObject& object, const Tracer& tracer, Vec3d scene_origin,
+                      const Executor& executor, TrafficObject& made) {
+  std::vector<Ray> rays;
+  for (const ObjectScan& scan : object.scans) {
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      const Vec3d from = scan.world_from_object * scan.origins[i];
+      const Vec3d to = scan.world_from_object * scan.points[i];
+      Ray ray;
+      ray.origin = vec_cast<float>(from - scene_origin);
+      ray.direction = vec_cast<float>(normalized(to - from));
+      rays.push_back(ray);
+    }
+  }
+  std::vector<Hit> hits(rays.size());
+  tracer.nearest(rays, hits, executor);
+  made.beams = rays.size();
+  made.open_beams = static_cast<std::size_t>(
+      std::ranges::count_if(hits, [](const Hit& hit) { return !hit.valid(); }));
 }
 
 }  // namespace
@@ -210,15 +241,17 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   TrafficResult result;
   KittiSequence drive = open_scans(job, session);
   ModelJob without = job;
-  if (!drive.boxes) {
-    std::vector<std::size_t> scans(drive.scans.size());
-    std::iota(scans.begin(), scans.end(), std::size_t{0});
-    BoxContent found;
-    found.moving = find_moving(drive, scans, {}, session.executor, session.progress);
-    drive.boxes = std::make_shared<const MovingBoxes>(std::move(found));
-    without.load.found_boxes = drive.boxes;
-    if (!drive.boxes->empty()) write_file(output.path() / "boxes.csv", boxes_text(*drive.boxes));
-  }
+  const bool are_given = drive.boxes != nullptr;
+  drive.boxes = std::make_shared<const MovingBoxes>(objects_of(drive, job, session));
+  BoxContent moving, parked;
+  moving.are_of_scans = drive.boxes->are_of_scans();
+  for (const BoxTrack& track : drive.boxes->tracks())
+    (track.is_at_rest ? parked : moving).moving.push_back(track);
+  without.load.found_boxes = std::make_shared<const MovingBoxes>(std::move(moving));
+  if (!parked.moving.empty())
+    without.parked = std::make_shared<const MovingBoxes>(std::move(parked));
+  if (!are_given && !drive.boxes->empty())
+    write_file(output.path() / "boxes.csv", boxes_text(*drive.boxes));
   auto [scene, made] = make_model(without, session);
   result.scene = std::move(made);
   save_model(output.path() / "scene.ply", scene);
@@ -227,14 +260,20 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   std::vector<RecordedObject> objects = collect_objects(drive, session);
   std::filesystem::create_directory(output.path() / "objects");
   session.progress.begin_step("model objects", objects.size());
+  std::unique_ptr<Tracer> tracer;
   for (RecordedObject& object : objects) {
     TrafficObject& entry = result.objects.emplace_back();
     entry.id = object.id;
     entry.label = object.label;
     entry.name = file_name_of(object);
-    entry.class_id = class_of(kind_of(object.label), scene.label_scheme);
+    entry.is_at_rest = drive.boxes->tracks()[result.objects.size() - 1].is_at_rest;
+    entry.class_id = class_of(object_kind_of(object.label), entry.is_at_rest, scene.label_scheme);
     entry.size_m = object.size_m;
     write_object(object, job, scene.response, output.path() / "objects", session, entry);
+    if (entry.is_at_rest && !object.scans.empty()) {
+      if (!tracer) tracer = make_cpu_tracer(view_of(scene), session.executor);
+      count_open_beams(object, *tracer, scene.origin, session.executor, entry);
+    }
     session.progress.advance(result.objects.size());
   }
   session.progress.end_step();
@@ -254,6 +293,7 @@ nlohmann::ordered_json to_json(const TrafficResult& result) {
                                {"class", object.class_id ? nlohmann::ordered_json(*object.class_id)
                                                          : nlohmann::ordered_json()},
                                {"size_m", {object.size_m.x, object.size_m.y, object.size_m.z}},
+                               {"at_rest", object.is_at_rest},
                                {"times_s", {object.begin_s, object.end_s}},
                                {"scans", object.scans},
                                {"points", object.points},
@@ -262,6 +302,8 @@ nlohmann::ordered_json to_json(const TrafficResult& result) {
                                {"scans_aligned", object.aligned.scans},
                                {"median_shift_m", object.aligned.median_shift_m},
                                {"median_turn_rad", object.aligned.median_turn_rad},
+                               {"beams", object.beams},
+                               {"open_beams", object.open_beams},
                                {"left_out", object.left_out}});
   return json;
 }

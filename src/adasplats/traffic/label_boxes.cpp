@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/traffic/label_boxes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/function_ref.h"
+#include "adasplats/traffic/fit_boxes.h"
+#include "adasplats/traffic/ground_heights.h"
+#include "adasplats/traffic/object_kind.h"
+#include "adasplats/traffic/track_clusters.h"
+
+namespace adasplats {
+namespace {
+
+/// Class and instance.
+using ObjectKey = std::pair<std::uint16_t, std::uint16_t>;
+
+struct ObjectAtRest {
+  std::vector<Vec3d> points, sensors;  ///< world coordinates, m
+};
+
+/// The label of an object of a class.
+std::string label_of(const SemanticClass& of) {
+  constexpr std::string_view kMoving = "moving-";
+  return of.name.starts_with(kMoving) ? of.name.substr(kMoving.size()) : of.name;
+}
+
+/// One point per cube of 5 cm: near scans do not outweigh far ones.
+std::vector<Vec3d> thinned(const std::vector<Vec3d>& points) {
+  constexpr double kCube_m = 0.05;
+  std::set<std::array<std::int64_t, 3>> cubes;
+  std::vector<Vec3d> kept;
+  for (const Vec3d& p : points)
+    if (cubes
+            .insert({std::llround(p.x / kCube_m), std::llround(p.y / kCube_m),
+                     std::llround(p.z / kCube_m)})
+            .second)
+      kept.push_back(p);
+  return kept;
+}
+
+/// Collects the labelled points scan by scan.
+class Collector {
+ public:
+  explicit Collector(const LabelScheme& scheme) : scheme_(scheme) {}
+
+  void add(const KittiSequence& drive, std::size_t index, const KittiScan& scan) {
+    const TimedPose& pose = drive.trajectory[index];
+    LoosePoints& of_scan = loose_.emplace_back();
+    of_scan.scan = index;
+    of_scan.time_s = pose.time_s;
+    of_scan.sensor = pose.world_from_sensor.translation;
+    std::map<ObjectKey, std::vector<std::uint32_t>> clusters;
+    std::set<ObjectKey> seen;
+    for (std::size_t i = 0; i < scan.instances.size(); ++i) {
+      const ObjectKey key = {scan.classes[i], scan.instances[i]};
+      const SemanticClass* const of = scheme_.find(key.first);
+      if (key.second == 0 || of == nullptr || of->mobility == Mobility::fixed) continue;
+      const bool moves = of->mobility == Mobility::moving;
+      if (!moves && !object_kind_of(of->name).is_vehicle) continue;
+      const Vec3d place = pose.world_from_sensor * beam_of(drive, index, scan, i).end;
+      if (!is_finite(place)) continue;
+      if (moves) {
+        clusters[key].push_back(static_cast<std::uint32_t>(of_scan.points.size()));
+        of_scan.points.push_back(place);
+        of_scan.times_s.push_back(time_of_point(scan, pose, i));
+      } else {
+        at_rest_[key].points.push_back(place);
+        if (seen.insert(key).second) at_rest_[key].sensors.push_back(of_scan.sensor);
+      }
+    }
+    constexpr std::size_t kMinPoints = 5;
+    for (auto& [key, points] : clusters)
+      if (points.size() >= kMinPoints)
+        tracks_[key].push_back(cluster_of(of_scan, loose_.size() - 1, std::move(points)));
+  }
+
+  BoxContent boxes(FunctionRef<double(Vec3d)> height_below) const {
+    BoxContent content;
+    for (const auto& [key, track] : tracks_) {
+      constexpr std::size_t kMinScans = 3;
+      if (track.size() < kMinScans) continue;
+      std::optional<BoxTrack> boxes = fit_boxes(track, loose_, height_below, {});
+      if (!boxes) continue;
+      boxes->id = key.second;
+      boxes->label = label_of(*scheme_.find(key.first));
+      content.moving.push_back(std::move(*boxes));
+    }
+    for (const auto& [key, object] : at_rest_) {
+      const std::string label = label_of(*scheme_.find(key.first));
+      BoxTrack track{key.second, label, {}, true};
+      track.boxes.push_back(fit_box_at_rest(thinned(object.points), object.sensors, label));
+      constexpr double kMaxLength_m = 20;
+      if (2 * track.boxes.front().half_size.x <= kMaxLength_m)
+        content.at_rest.push_back(std::move(track));
+    }
+    return content;
+  }
+
+ private:
+  const LabelScheme& scheme_;
+  std::vector<LoosePoints> loose_;
+  std::map<ObjectKey, ClusterTrack> tracks_;
+  std::map<ObjectKey, ObjectAtRest> at_rest_;
+};
+
+/// Every object gets an id of its own.
+void make_unique(BoxContent& content) {
+  std::set<std::uint64_t> used;
+  for (std::vector<BoxTrack>* const tracks : {&content.moving, &content.at_rest}) {
+    for (BoxTrack& track : *tracks)
+      if (!used.insert(track.id).second) {
+        while (used.contains(track.id)) ++track.id;
+        used.insert(track.id);
+      }
+    std::ranges::sort(*tracks, {}, &BoxTrack::id);
+  }
+}
+
+}  // namespace
+
+BoxContent boxes_of_labels(const KittiSequence& drive, const LabelScheme& scheme,
+                           const Executor& executor, ProgressSink& progress) {
+  if (drive.labels.empty() && !drive.reader) return {};
+  progress.begin_step("find labelled objects", drive.scans.size());
+  Collector collector(scheme);
+  GroundHeights ground;
+  for (std::size_t k = 0; k < drive.scans.size(); ++k) {
+    executor.check_interruption();
+    const KittiScan scan = read_all_returns(drive, k);
+    ground.add(drive, k, scan);
+    collector.add(drive, k, scan);
+    progress.advance(k + 1);
+  }
+  BoxContent content = collector.boxes([&](Vec3d point) { return ground.at(point.x, point.y); });
+  make_unique(content);
+  progress.end_step();
+  return content;
+}
+
+}  // namespace adasplats
