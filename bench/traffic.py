@@ -7,8 +7,8 @@
 
 REAL_DATA: folder with kitti-0005 and pandaset-002, unpacked; missing ones are skipped. Needs NumPy.
 Writes OUT/traffic.json (for bench/results) and prints Markdown tables: models without traffic, with
-traffic found without labels, and (pandaset-002) with traffic of the given boxes, on all held-out
-beams, on those that hit what moves and on the others. Found objects of pandaset-002 are compared
+traffic found without labels, and with traffic of the given boxes (pandaset-002) or instance labels
+(kitti-0005), on all held-out beams, on those that hit what moves and on the others. Found objects of pandaset-002 are compared
 with the cuboids of each frame. Reports that are newer than the program are reused.
 """
 
@@ -48,13 +48,24 @@ class Place:
     def __init__(self, program, out, name, training, held_out, reading, boxes, scans):
         self.program, self.folder = program, out / name
         self.training, self.held_out, self.reading, self.boxes = training, held_out, reading, boxes
+        self.labelled = training
         self.scans = scans  # of the model, of the held-out beams
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def boxes_flags(self):
         return ["--boxes", self.boxes] if self.boxes else []
 
-    def judged(self, name, flags, traffic):
+    def without_labels(self):
+        """The same sequence with links to everything but its labels."""
+        links = self.folder / "unlabelled"
+        links.mkdir(exist_ok=True)
+        for file in self.training.iterdir():
+            if file.name != "labels" and not (links / file.name).exists():
+                (links / file.name).symlink_to(file.resolve())
+        self.training = links
+        return self
+
+    def judged(self, name, flags, traffic, training=None):
         output = self.folder / (name if traffic else f"{name}.ply")
         report = self.folder / f"{name}-model.json"
         is_new = not report.exists() or (report.stat().st_mtime <
@@ -63,7 +74,7 @@ class Place:
             for file in sorted(output.rglob("*"), reverse=True):
                 file.rmdir() if file.is_dir() else file.unlink()
             output.rmdir()
-        made = report_of([self.program, "model", self.training, *self.reading, *self.scans[0], "-o",
+        made = report_of([self.program, "model", training or self.training, *self.reading, *self.scans[0], "-o",
                           output, *flags], report)
         world = output / "world.toml" if traffic else output
         beams = report_of([self.program, "evaluate", "resimulate", world, self.held_out,
@@ -71,25 +82,26 @@ class Place:
                            "--keep-moving"], self.folder / f"{name}-beams.json")
         row = {"splats": made["primitives"], "seconds": made["seconds"], **figures_of(beams)}
         if traffic:
-            row["objects"] = sum(not entry["left_out"] for entry in made["objects"])
+            for key, at_rest in (("moving_objects", False), ("parked_vehicles", True)):
+                row[key] = sum(not entry["left_out"] and entry["at_rest"] == at_rest
+                               for entry in made["objects"])
             row["splats_of_objects"] = sum(entry["splats"] for entry in made["objects"])
         return row
 
     def rows(self):
         rows = {"without": self.judged("without", [], False),
                 "found": self.judged("found", ["--traffic"], True)}
-        if self.boxes:
-            rows["boxes removed"] = self.judged(
-                "boxes-removed", [*self.boxes_flags(), "--remove", "none"], False)
-            rows["given boxes"] = self.judged(
-                "given-boxes", [*self.boxes_flags(), "--remove", "none", "--traffic"], True)
+        given = [*self.boxes_flags(), "--remove", "none" if self.boxes else "moving"]
+        rows["given, removed"] = self.judged("given-removed", given, False, self.labelled)
+        rows["given"] = self.judged("given", [*given, "--traffic"], True, self.labelled)
         return rows
 
 
 def places(program, data, out):
     kitti = data / "kitti-0005/sequences"
     if kitti.exists():
-        yield Place(program, out, "kitti-0005", kitti / "00", kitti / "01", [], None, ([], []))
+        yield Place(program, out, "kitti-0005", kitti / "00", kitti / "01", [], None,
+                    ([], [])).without_labels()
     panda = data / "pandaset-002"
     if panda.exists():
         yield Place(program, out, "pandaset-002", panda / "frames", panda / "frames",

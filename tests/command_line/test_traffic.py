@@ -104,6 +104,41 @@ class Traffic(ProgramTest):
         self.assertGreater(counts["world"], 500)
         self.assertEqual(counts["empty"], 0)
 
+    def test_labelled_and_parked_cars_are_objects(self):
+        self.write_street()
+        (self.folder / "street.obj").write_text(boxes_obj(((-40, -9, 0), (60, 9, 8))))
+        (self.folder / "drive.toml").write_text(
+            'model = "street.obj"\n[[object]]\ngeometry = "car.obj"\n'
+            f'class = {MOVING_CAR}\ntrajectory = "car.csv"\n'
+            '[[object]]\ngeometry = "car.obj"\nclass = 10\nposition = [8, -5, 0.2]\n')
+        self.run_good("simulate", self.folder / "drive.toml", "--sensor", "velodyne-hdl-64e-s3",
+                      "--trajectory", self.folder / "ego.csv", "-o", self.folder / "drive")
+        place = self.folder / "place"
+        result = self.run_good("model", self.folder / "drive" / "sequences" / "00", "--traffic",
+                               "-o", place)
+        self.assertIn("1 moving objects and 1 parked vehicles; 0 left out", result.stdout)
+        moving, parked = tomllib.loads((place / "world.toml").read_text())["object"]
+        self.assertEqual((moving["name"], moving["class"]), ("001-car", MOVING_CAR))
+        self.assertEqual((parked["name"], parked["class"]), ("002-car", 10))
+        for value, expected in zip(parked["position"][:2], (8, -5)):
+            self.assertAlmostEqual(value, expected, delta=0.2)
+        counts = {}
+        for name, x in (("here", 8), ("there", 16)):
+            text = (place / "world.toml").read_text().replace(
+                f"position = [{parked['position'][0]}", f"position = [{x}")
+            (place / f"{name}.toml").write_text(text)
+            self.run_good("simulate", place / f"{name}.toml", "--trajectory",
+                          self.folder / "held_out.csv", "--sensor", "velodyne-hdl-64e-s3", "-o",
+                          self.folder / name)
+            file = self.folder / name / "sequences" / "00" / "velodyne" / "000000.bin"
+            points = list(struct.iter_unpack("<4f", file.read_bytes()))
+            counts[name] = [sum(abs(px + 5 * 0.35 - at) < 2 and abs(py + 5) < 1 and pz > -1.3
+                                for px, py, pz, _ in points) for at in (8, 16)]
+        self.assertGreater(counts["here"][0], 300)
+        self.assertEqual(counts["here"][1], 0)
+        self.assertEqual(counts["there"][0], 0)
+        self.assertGreater(counts["there"][1], 50)
+
     def points_on_car(self, scans):
         """Points of the first scan above the ground where the car is then."""
         file = scans / "sequences" / "00" / "velodyne" / "000000.bin"
