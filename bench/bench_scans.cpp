@@ -8,7 +8,8 @@
 // batches of some attributes in page-locked memory (host) and on the device, each including the
 // wait for the GPU. All alternate in one run; medians, and medians of the ratios to `traced`.
 // `plain`: the sensor without extras. `rich`: 7 sub-rays, D = 5, two returns, rain. `rich_objects`:
-// the same with a moving sensor among 20 moving cars of 5,000 splats.
+// the same with a moving sensor among 20 moving cars of 5,000 splats. `traffic`: complete scans of
+// a moving sensor among 200 such cars along 500 m, against the same scans without cars.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -96,8 +97,6 @@ nlohmann::ordered_json measure(const ModelScene& scene, const ScanSettings& sett
   return json;
 }
 
-constexpr std::size_t kCars = 20;
-
 /// The scans with a sensor that moves between their poses.
 std::vector<ScanMotion> driven_scans(std::span<const ScanMotion> scans, double duration_s) {
   Trajectory poses;
@@ -110,8 +109,10 @@ std::vector<ScanMotion> driven_scans(std::span<const ScanMotion> scans, double d
   return driven;
 }
 
-/// Adds cars of 5,000 splats within 40 m of the sensor, which overtake it or fall behind.
-void add_traffic(World& world, std::span<const ScanMotion> scans) {
+/// Adds cars of 5,000 splats at most `reach_m` ahead of or behind the sensor, which overtake it or
+/// fall behind.
+void add_traffic(World& world, std::span<const ScanMotion> scans, std::size_t cars,
+                 double reach_m) {
   constexpr std::size_t kSplats = 5000;
   SplatModel car;
   for (std::size_t i = 0; i < kSplats; ++i) {
@@ -122,10 +123,11 @@ void add_traffic(World& world, std::span<const ScanMotion> scans) {
     car.disks.push_back({at, 0.14F, normalized(at)});
   }
   const std::size_t geometry = world.add_geometry(std::move(car));
-  for (std::size_t k = 0; k < kCars; ++k) {
+  for (std::size_t k = 0; k < cars; ++k) {
     Random random(4, 0, k);
-    const double from_m = random.uniform(-40, 40), to_m = random.uniform(-40, 40);
-    const double side_m = k % 2 == 0 ? 3.5 : -3.5;
+    const double from_m = random.uniform(-reach_m, reach_m);
+    const double to_m = random.uniform(-reach_m, reach_m);
+    const double side_m = (k % 2 == 0 ? 3.5 : -3.5) * (k % 4 < 2 ? 1 : 2);
     WorldObject object;
     object.geometry = geometry;
     object.instance = static_cast<std::uint16_t>(k + 1);
@@ -139,6 +141,32 @@ void add_traffic(World& world, std::span<const ScanMotion> scans) {
     }
     world.add_object(std::move(object));
   }
+}
+
+/// Complete scans with and without 200 cars, alternating. Adds the cars to `busy`, which is `empty`
+/// loaded again.
+nlohmann::ordered_json measure_traffic(const ModelScene& empty, ModelScene& busy,
+                                       const ScanSettings& settings,
+                                       std::span<const ScanMotion> scans, const Executor& executor,
+                                       int repeats) {
+  constexpr std::size_t kCars = 200;
+  constexpr double kReach_m = 250;
+  busy.add_objects([&](World& world) { add_traffic(world, scans, kCars, kReach_m); });
+  ScanSimulator without(empty, settings, executor), with(busy, settings, executor);
+  Variants variants;
+  std::size_t on_cars = 0;
+  variants.emplace_back("empty", [&] { without.run(scans, 0, [](std::size_t, const Scan&) {}); });
+  variants.emplace_back("busy", [&] {
+    on_cars = 0;
+    with.run(scans, 0, [&](std::size_t, const Scan& scan) {
+      on_cars += static_cast<std::size_t>(
+          std::ranges::count_if(scan.instances, [](std::uint16_t id) { return id != 0; }));
+    });
+  });
+  nlohmann::ordered_json json = rates_of(variants, scans.size(), repeats);
+  json["cars"] = kCars;
+  json["returns_of_cars"] = static_cast<double>(on_cars) / static_cast<double>(scans.size());
+  return json;
 }
 
 nlohmann::ordered_json measure_all(const bench::Arguments& arguments) {
@@ -180,7 +208,11 @@ nlohmann::ordered_json measure_all(const bench::Arguments& arguments) {
   json["rich"] = measure(scene, rich, some, executor, repeats);
   // The objects move with time, which starts at the first scan.
   const std::vector<ScanMotion> driven = driven_scans(some, 1 / rich.sensor.rotation_hz);
-  scene.add_objects([&](World& world) { add_traffic(world, driven); });
+  ModelScene busy(arguments.input(0), "", session);
+  json["traffic"] = measure_traffic(scene, busy, plain, driven, executor, repeats);
+  constexpr std::size_t kCars = 20;
+  constexpr double kReach_m = 40;
+  scene.add_objects([&](World& world) { add_traffic(world, driven, kCars, kReach_m); });
   json["rich_objects"] = measure(scene, rich, driven, executor, repeats);
   return json;
 }

@@ -41,8 +41,8 @@ class SimKitti32Command final : public Command {
         ->type_name("SCHEME");
     add_settings(app, job_);
     add_path(app, "--model", job_.model,
-             "Use this model with its classes instead of making one from the scans; if it is "
-             "calibrated, scans are simulated at its corrected poses")
+             "Use this model with its classes, or a world file with its objects, instead of making "
+             "one from the scans; if it is calibrated, scans are simulated at its corrected poses")
         ->group("Static model")
         ->basic();
     add_path(app, "--ray-drop", job_.ray_drop,

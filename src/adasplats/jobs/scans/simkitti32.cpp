@@ -29,10 +29,12 @@
 #include "adasplats/jobs/scans/scan_manifest.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/scene_files.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
+#include "adasplats/simulate/world/world_file.h"
 
 namespace adasplats {
 namespace {
@@ -41,6 +43,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 constexpr const char* kSimKitti32 = "simkitti32";
 const std::string kModelFile = "model.ply";
+
+bool is_world(const SimKitti32Job& job) { return job.model.extension() == ".toml"; }
 
 /// The part of a sequence that is simulated: scan i of the output is scan numbers[i] of the input.
 struct Source {
@@ -145,7 +149,11 @@ std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarMode
                                        Source& source, Session& session) {
   if (job.model.empty()) return nullptr;
   session.progress.begin_step("load " + job.model.filename().string(), 0);
-  AnyModel model = load_any_model_or_city(job.model);
+  const std::optional<WorldFile> world =
+      is_world(job) ? std::optional(read_world_file(job.model)) : std::nullopt;
+  if (world && world->model.empty())
+    throw Error(ErrorKind::config, job.model.string() + ": has no model");
+  AnyModel model = load_any_model_or_city(world ? world->model : job.model);
   // Averages of hits are those of opaque splats.
   if (auto* splats = std::get_if<SplatModel>(&model); splats != nullptr && job.depth > 1)
     *splats = opaque(std::move(*splats));
@@ -160,6 +168,7 @@ std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarMode
   const LabelScheme labels = load_label_scheme(job.labels);
   require_one_place(agreement_of(*given, source, labels, session.executor),
                     source.sequence.folder.string());
+  if (world) given->add_objects([&](World& objects) { add_objects(objects, *world, labels); });
   return given;
 }
 
@@ -197,10 +206,17 @@ MethodOptions recipe_of(const SimKitti32Job& job) {
 
 /// The method with its settings, or the hash of the given model.
 Json model_content(const SimKitti32Job& job, const Source& source) {
-  if (!job.model.empty())
-    return {{"sha256", sha256_of_file(job.model)},
-            {"poses", word_of(source.poses_are, kHeldOutPoses)},
-            {"opaque", job.depth > 1}};
+  if (!job.model.empty()) {
+    Json json = {{"sha256", sha256_of_file(job.model)},
+                 {"poses", word_of(source.poses_are, kHeldOutPoses)},
+                 {"opaque", job.depth > 1}};
+    if (is_world(job)) {
+      const fs::path folder = fs::absolute(job.model).parent_path();
+      for (const fs::path& file : files_of_scene(fs::absolute(job.model)))
+        json["files"][file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
+    }
+    return json;
+  }
   const SplatMethod method = job.method;
   Json json = {{"method", word_of(method, kSplatMethods)}};
   const MethodOptions recipe = recipe_of(job);
@@ -320,7 +336,7 @@ class Simulation {
 
   void simulate(std::span<const std::size_t> missing, SimKitti32Result& result) {
     const Stopwatch watch;
-    if (job_.moving) {
+    if (job_.moving && !is_world(job_)) {
       const IntensityResponse* const response = scene_->attributes().response;
       scene_->add_objects(
           [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
@@ -499,6 +515,7 @@ std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job) {
       if (names.contains(each.setting.name)) unused.push_back(std::move(each));
   };
   add(!job.moving, {"moving_radius"}, "without moving objects");
+  add(is_world(job), {"moving", "moving_radius"}, "with the objects of a world file");
   add(!job.model.empty(), {"method", "model_every", "keep_model"}, "with a given model");
   return unused;
 }

@@ -18,11 +18,8 @@ namespace {
 /// Errors: usage (not accepted), config (without a model).
 WorldFile read_scene_file(const std::filesystem::path& file, WorldFiles world_files) {
   if (world_files == WorldFiles::refused)
-    throw Error(
-        ErrorKind::usage,
-        file.string() +
-            ": only 'adasplats simulate' and 'adasplats view' accept a world file; use the model "
-            "that it names");
+    throw Error(ErrorKind::usage,
+                file.string() + ": a world file is not accepted here; use the model that it names");
   WorldFile world = read_world_file(file);
   if (world.model.empty())
     throw Error(ErrorKind::config,
