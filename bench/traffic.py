@@ -80,7 +80,7 @@ class Place:
         beams = report_of([self.program, "evaluate", "resimulate", world, self.held_out,
                            *(self.reading or KITTI_FLAGS), *self.scans[1], *self.boxes_flags(),
                            "--keep-moving"], self.folder / f"{name}-beams.json")
-        row = {"splats": made["primitives"], "seconds": made["seconds"], **figures_of(beams)}
+        row = {"splats": made["primitives"], "seconds": made["seconds"]["total"], **figures_of(beams)}
         if traffic:
             for key, at_rest in (("moving_objects", False), ("parked_vehicles", True)):
                 row[key] = sum(not entry["left_out"] and entry["at_rest"] == at_rest
