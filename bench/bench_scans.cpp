@@ -109,20 +109,31 @@ std::vector<ScanMotion> driven_scans(std::span<const ScanMotion> scans, double d
   return driven;
 }
 
+/// 5,000 splats on the sides and the top of a box, below the sensor.
+SplatModel car_of_splats() {
+  constexpr std::size_t kSplats = 5000;
+  constexpr Vec3f kLow = {-2.2F, -0.9F, -1.7F}, kHigh = {2.2F, 0.9F, -0.2F};
+  SplatModel car;
+  for (std::size_t i = 0; i < kSplats; ++i) {
+    Random random(3, 0, i);
+    Vec3f at, normal;
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] = static_cast<float>(random.uniform(kLow[axis], kHigh[axis]));
+    const std::size_t side = i % 5;  // of x twice, of y twice, the top
+    const int axis = static_cast<int>(side / 2);
+    const bool is_high = side % 2 == 1 || axis == 2;
+    at[axis] = is_high ? kHigh[axis] : kLow[axis];
+    normal[axis] = is_high ? 1.0F : -1.0F;
+    car.disks.push_back({at, 0.1F, normal});
+  }
+  return car;
+}
+
 /// Adds cars of 5,000 splats at most `reach_m` ahead of or behind the sensor, which overtake it or
 /// fall behind.
 void add_traffic(World& world, std::span<const ScanMotion> scans, std::size_t cars,
                  double reach_m) {
-  constexpr std::size_t kSplats = 5000;
-  SplatModel car;
-  for (std::size_t i = 0; i < kSplats; ++i) {
-    Random random(3, 0, i);
-    const Vec3f at = {static_cast<float>(random.uniform(-2.2, 2.2)),
-                      static_cast<float>(random.uniform(-0.9, 0.9)),
-                      static_cast<float>(random.uniform(-1.7, -0.2))};
-    car.disks.push_back({at, 0.14F, normalized(at)});
-  }
-  const std::size_t geometry = world.add_geometry(std::move(car));
+  const std::size_t geometry = world.add_geometry(car_of_splats());
   for (std::size_t k = 0; k < cars; ++k) {
     Random random(4, 0, k);
     const double from_m = random.uniform(-reach_m, reach_m);

@@ -226,15 +226,15 @@ class Comparison:
         return truth, hits, extra, switches
 
     def amota(self):
-        """nuScenes' average over recalls of 1 - (switches + extra + missed - (1 - r) P) / (r P);
-        tracks are ranked by their number of scans."""
+        """nuScenes' average over recalls r of 1 - (switches + extra + missed - (1 - r) P) / (r P), 0 where r
+        is not reached. Tracks are ranked by their number of scans; where they reach more than r, the
+        recall that they reach counts."""
         total = 0
         for recall in RECALLS:
             for score in sorted(set(self.scores.values()), reverse=True):
                 truth, hits, extra, switches = self.counts(score)
                 if hits >= recall * truth:
-                    total += max(0, 1 - (switches + extra + truth - hits - (1 - recall) * truth) /
-                                 (recall * truth))
+                    total += max(0, 1 - (switches + extra) / hits)
                     break
         return total / len(RECALLS)
 

@@ -13,14 +13,6 @@ namespace {
 constexpr unsigned kObjectBlock = 64;
 constexpr int kMaxObjectHits = 64;
 
-/// Search distance in an object for hits within `reach_m`, in the unit of its geometry, with a
-/// margin for rounding.
-__device__ float object_reach(double reach_m, double begin_m, double scale) {
-  constexpr double kMargin = 1e-3;
-  const double reach = in_object(reach_m, begin_m, scale);
-  return static_cast<float>(reach + kMargin * (fabs(reach) + 1 / scale));
-}
-
 /// Loops over the objects one by one: neighbouring rays hit the same ones.
 template <class Best>
 __global__ void __launch_bounds__(kObjectBlock)

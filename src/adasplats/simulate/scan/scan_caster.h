@@ -11,6 +11,7 @@
 #include "adasplats/core/function_ref.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/simulate/scan/scan_ray.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -65,6 +66,23 @@ class ScanCaster {
                              std::uint64_t first_number, const Executor& executor,
                              ScanSink sink) const = 0;
 };
+
+/// Hits of what is not in the traced scene, such as moving objects.
+class MoreHits {
+ public:
+  virtual ~MoreHits() = default;
+  /// Called before each scan.
+  virtual void begin(std::uint64_t scan_index, const ScanMotion& motion) = 0;
+  /// Merges hits into those of some rays of the scan, hits[i * depth + k] of rays[i], ascending.
+  /// Called by several threads at once.
+  virtual void add(std::span<const Ray> rays, std::span<const FiringRay> firings, int depth,
+                   std::span<Hit> hits) const = 0;
+};
+
+/// ScanCaster::report() on the CPU, with additional hits unless `more` is null.
+ReportTimes report_on_cpu(const Tracer& tracer, Vec3d scene_origin, const ScanRules& rules,
+                          std::span<const ScanMotion> scans, std::uint64_t first_number,
+                          MoreHits* more, const Executor& executor, ScanCaster::ScanSink sink);
 
 /// Casts with a tracer, scan by scan. `scene_origin`: world coordinates of the scene's local
 /// origin. Tracer and executor must outlive it.

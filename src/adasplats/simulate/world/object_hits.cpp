@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace adasplats {
 namespace {
 
 constexpr std::size_t kRaysPerBundle = 64;  // of one ring: 10 degrees of an HDL-64
-static_assert(kFineGrain % kRaysPerBundle == 0);
+/// Rays that a thread casts into one object after the other.
+constexpr std::size_t kRaysPerTask = 16 * kRaysPerBundle;
 
 /// The rays that may hit one object.
 struct ObjectRays {
@@ -18,36 +20,12 @@ struct ObjectRays {
   std::vector<std::uint32_t> firings;
   std::vector<double> begins_m;
 
-  void append(const ObjectRays& other) {
-    rays.insert(rays.end(), other.rays.begin(), other.rays.end());
-    firings.insert(firings.end(), other.firings.begin(), other.firings.end());
-    begins_m.insert(begins_m.end(), other.begins_m.begin(), other.begins_m.end());
+  void clear() {
+    rays.clear();
+    firings.clear();
+    begins_m.clear();
   }
 };
-
-ObjectRays rays_in_object(const ScanRays& scan, const ObjectSighting& object,
-                          const ObjectPose* knots, const Executor& executor) {
-  const WorldSphere sphere = {object.center, object.radius_m};
-  const auto take = [&](std::size_t i, ObjectRays& part) {
-    ObjectRay made;
-    if (!object_ray(object, knots, scan.rays[i], scan.firings[i].share, made)) return;
-    part.rays.push_back(made.ray);
-    part.firings.push_back(static_cast<std::uint32_t>(i));
-    part.begins_m.push_back(made.begin_m);
-  };
-  std::vector<ObjectRays> parts((scan.rays.size() + kFineGrain - 1) / kFineGrain);
-  executor.for_chunks(scan.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    ObjectRays& part = parts[begin / kFineGrain];
-    for (std::size_t first = begin; first < end; first += kRaysPerBundle) {
-      if (!scan.bundles[first / kRaysPerBundle].may_meet(sphere)) continue;
-      const std::size_t behind = std::min(end, first + kRaysPerBundle);
-      for (std::size_t i = first; i < behind; ++i) take(i, part);
-    }
-  });
-  ObjectRays all;
-  for (const ObjectRays& part : parts) all.append(part);
-  return all;
-}
 
 /// Restores the ascending order of `found`.
 void to_scan(std::span<Hit> found, const ObjectSighting& object, double begin_m, const Ray& ray) {
@@ -63,7 +41,94 @@ void merge_nearest(std::span<Hit> hits, std::span<const Hit> found, std::vector<
   std::copy_n(buffer.begin(), hits.size(), hits.begin());
 }
 
+/// Casts some rays of a scan into objects.
+class RayTask {
+ public:
+  RayTask(std::span<const Ray> rays, std::span<const FiringRay> firings,
+          const SightedObjects& sighted, std::span<Hit> hits, std::size_t slots)
+      : rays_(rays), firings_(firings), sighted_(sighted), hits_(hits), slots_(slots) {
+    for (std::size_t first = 0; first < rays.size(); first += kRaysPerBundle) {
+      bundles_.emplace_back(rays.subspan(first, behind(first) - first));
+      double& reach_m = reaches_m_.emplace_back(0);
+      for (std::size_t i = first; i < behind(first); ++i)
+        reach_m = std::max(reach_m, static_cast<double>(reach_of(i)));
+    }
+  }
+
+  void cast_into(std::size_t number, const Executor& executor) {
+    const ObjectSighting& object = sighted_.objects[number];
+    find_rays(object, sighted_.boxes[number]);
+    if (local_.rays.empty()) return;
+    found_.resize(local_.rays.size() * slots_);
+    const Tracer& tracer = *sighted_.tracers[number];
+    if (slots_ == 1)
+      tracer.nearest(local_.rays, found_, executor);
+    else
+      tracer.nearest_hits(local_.rays, static_cast<int>(slots_), found_, executor);
+    for (std::size_t i = 0; i < local_.rays.size(); ++i) {
+      const std::span<Hit> of_ray = std::span(found_).subspan(i * slots_, slots_);
+      if (!of_ray.front().valid()) continue;
+      const std::size_t firing = local_.firings[i];
+      to_scan(of_ray, object, local_.begins_m[i], rays_[firing]);
+      merge_nearest(hits_.subspan(firing * slots_, slots_), of_ray, buffer_);
+    }
+  }
+
+ private:
+  std::size_t behind(std::size_t first) const {
+    return std::min(rays_.size(), first + kRaysPerBundle);
+  }
+  /// Hits of objects beyond it do not count, m.
+  float reach_of(std::size_t i) const {
+    const Hit& last = hits_[(i + 1) * slots_ - 1];
+    return last.valid() ? last.t : rays_[i].t_max;
+  }
+
+  void find_rays(const ObjectSighting& object, const LocalBox& box) {
+    local_.clear();
+    const WorldSphere sphere = {object.center, object.radius_m};
+    for (std::size_t first = 0; first < rays_.size(); first += kRaysPerBundle) {
+      const std::size_t bundle = first / kRaysPerBundle;
+      if (!bundles_[bundle].may_meet(sphere, reaches_m_[bundle])) continue;
+      for (std::size_t i = first; i < behind(first); ++i) {
+        ObjectRay made;
+        if (!object_ray(object, sighted_.knots.data(), rays_[i], firings_[i].share, made)) continue;
+        const auto reach_m = static_cast<double>(reach_of(i));
+        if (made.begin_m > reach_m || !box.is_met(made.ray)) continue;
+        made.ray.t_max =
+            std::min(made.ray.t_max, object_reach(reach_m, made.begin_m, object.scale));
+        local_.rays.push_back(made.ray);
+        local_.firings.push_back(static_cast<std::uint32_t>(i));
+        local_.begins_m.push_back(made.begin_m);
+      }
+    }
+  }
+
+  std::span<const Ray> rays_;
+  std::span<const FiringRay> firings_;
+  const SightedObjects& sighted_;
+  std::span<Hit> hits_;
+  std::size_t slots_;
+  std::vector<RayBundle> bundles_;
+  std::vector<double> reaches_m_;  ///< of the bundles
+  ObjectRays local_;
+  std::vector<Hit> found_, buffer_;
+};
+
 }  // namespace
+
+bool LocalBox::is_met(const Ray& ray) const {
+  float enter = 0, leave = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A direction of 0 gives infinities; 0 * infinity, NaN, leaves both as they are.
+    const float inverse = 1 / ray.direction[axis];
+    const float a = (low[axis] - ray.origin[axis]) * inverse;
+    const float b = (high[axis] - ray.origin[axis]) * inverse;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter <= leave;
+}
 
 RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(rays[0].t_max)) {
   const Vec3d first = vec_cast<double>(rays[0].origin);
@@ -86,47 +151,30 @@ RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(ra
 
 /// Seen from the cone's apex, the sphere has the half angle asin(radius / distance); it is outside
 /// if the angle to its centre exceeds the sum of that and the cone's half angle.
-bool RayBundle::may_meet(const WorldSphere& sphere) const {
+bool RayBundle::may_meet(const WorldSphere& sphere, double limit_m) const {
   const Vec3d to_center = sphere.center - origins.center;
   const double radius = sphere.radius + origins.radius;
+  // Most bundles of less than half of the sphere look away from an object.
+  const double along = dot(axis, to_center);
+  if (cos_half > 0 && along < -radius) return false;
   const double distance = length(to_center);
   if (distance <= radius) return true;
-  if (distance - radius > reach_m) return false;
+  if (distance - radius > std::min(reach_m, limit_m)) return false;
   const double sine = radius / distance, cosine = std::sqrt(1.0 - sine * sine);
   if (cos_half <= -cosine) return true;  // the two angles are 180 degrees or more
   const double sin_half = std::sqrt(std::max(0.0, 1.0 - cos_half * cos_half));
-  return dot(axis, to_center) >= distance * (cos_half * cosine - sin_half * sine);
+  return along >= distance * (cos_half * cosine - sin_half * sine);
 }
 
-std::vector<RayBundle> bundles_of(std::span<const Ray> rays) {
-  std::vector<RayBundle> bundles;
-  bundles.reserve(rays.size() / kRaysPerBundle + 1);
-  for (std::size_t first = 0; first < rays.size(); first += kRaysPerBundle)
-    bundles.emplace_back(rays.subspan(first, std::min(kRaysPerBundle, rays.size() - first)));
-  return bundles;
-}
-
-void add_object_hits(const ScanRays& scan, const ObjectSighting& object, const ObjectPose* knots,
-                     const Tracer& tracer, int depth, std::span<Hit> hits,
+void add_object_hits(std::span<const Ray> rays, std::span<const FiringRay> firings,
+                     const SightedObjects& sighted, int depth, std::span<Hit> hits,
                      const Executor& executor) {
-  const ObjectRays local = rays_in_object(scan, object, knots, executor);
-  if (local.rays.empty()) return;
   const auto slots = static_cast<std::size_t>(depth);
-  std::vector<Hit> found(local.rays.size() * slots);
-  if (depth == 1) {
-    tracer.nearest(local.rays, found, executor);
-  } else {
-    tracer.nearest_hits(local.rays, depth, found, executor);
-  }
-  executor.for_chunks(local.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Hit> buffer;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::span<Hit> of_ray = std::span(found).subspan(i * slots, slots);
-      if (!of_ray.front().valid()) continue;
-      const std::size_t firing = local.firings[i];
-      to_scan(of_ray, object, local.begins_m[i], scan.rays[firing]);
-      merge_nearest(hits.subspan(firing * slots, slots), of_ray, buffer);
-    }
+  executor.for_chunks(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    RayTask task(rays.subspan(begin, count), firings.subspan(begin, count), sighted,
+                 hits.subspan(begin * slots, count * slots), slots);
+    for (std::size_t k = 0; k < sighted.objects.size(); ++k) task.cast_into(k, executor);
   });
 }
 

@@ -24,23 +24,30 @@ struct RayBundle {
   double reach_m = 0;
 
   explicit RayBundle(std::span<const Ray> rays);
-  bool may_meet(const WorldSphere& sphere) const;
+  /// Whether a ray may meet the sphere at most `limit_m` from its origin.
+  bool may_meet(const WorldSphere& sphere, double limit_m) const;
 };
 
-/// The rays of one scan, relative to the scene's local origin.
-struct ScanRays {
-  std::vector<Ray> rays;
-  std::vector<FiringRay> firings;
-  std::vector<RayBundle> bundles;  ///< of 64 each
+/// A box around a geometry in its own frame and unit, with a margin for rounding.
+struct LocalBox {
+  Vec3f low, high;
+  /// Whether a ray meets it.
+  bool is_met(const Ray& ray) const;
 };
 
-/// Makes a bundle of every 64 rays.
-std::vector<RayBundle> bundles_of(std::span<const Ray> rays);
+/// The objects of a scan, relative to the scene's local origin, with their poses, and the tracer
+/// and the box of each; near ones first are faster.
+struct SightedObjects {
+  std::span<const ObjectSighting> objects;
+  std::span<const ObjectPose> knots;
+  std::span<const Tracer* const> tracers;
+  std::span<const LocalBox> boxes;
+};
 
-/// Merges the hits of one object into those of the rays of a scan: hits[i * depth + k] of firing i,
-/// ascending. `knots`: of all objects of the scan.
-void add_object_hits(const ScanRays& scan, const ObjectSighting& object, const ObjectPose* knots,
-                     const Tracer& tracer, int depth, std::span<Hit> hits,
+/// Merges the hits of objects into those of rays of a scan: hits[i * depth + k] of rays[i],
+/// ascending. `firings`: of the rays.
+void add_object_hits(std::span<const Ray> rays, std::span<const FiringRay> firings,
+                     const SightedObjects& sighted, int depth, std::span<Hit> hits,
                      const Executor& executor);
 
 }  // namespace adasplats

@@ -61,6 +61,14 @@ ADASPLATS_HD inline double in_object(double t_m, double begin_m, double scale) {
   return (t_m - begin_m) / scale;
 }
 
+/// Search distance in an object for hits within `reach_m` of the scan's ray, in the unit of its
+/// geometry, with a margin for rounding.
+ADASPLATS_HD inline float object_reach(double reach_m, double begin_m, double scale) {
+  constexpr double kMargin = 1e-3;
+  const double reach = in_object(reach_m, begin_m, scale);
+  return static_cast<float>(reach + kMargin * (std::fabs(reach) + 1 / scale));
+}
+
 /// The index of the segment at `share`: the last of `count` (at least two) knots that has a
 /// successor and is not after `share`; the first if all are after it.
 ADASPLATS_HD inline std::uint32_t segment_of(const ObjectPose* knots, std::uint32_t count,

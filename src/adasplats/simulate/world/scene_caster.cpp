@@ -15,7 +15,9 @@ namespace {
 class CpuSceneCaster final : public SceneCaster {
  public:
   CpuSceneCaster(const Tracer& tracer, Vec3d scene_origin, const Executor& executor)
-      : caster_(make_cpu_scan_caster(tracer, scene_origin, executor)) {}
+      : tracer_(tracer),
+        scene_origin_(scene_origin),
+        caster_(make_cpu_scan_caster(tracer, scene_origin, executor)) {}
 
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                  std::span<const ScanMotion> scans, int depth, Sink sink) const override {
@@ -25,29 +27,10 @@ class CpuSceneCaster final : public SceneCaster {
   ReportTimes report_world(const ScanRules& rules, std::span<const ScanMotion> scans,
                            std::uint64_t first_number, const World* world, const Executor& executor,
                            ScanSink sink) const override {
-    if (world == nullptr) return caster_->report(rules, scans, first_number, executor, sink);
-    const LidarModel& sensor = rules.sensor();
-    const std::span<const Firing> firings = rules.cast_firings();
-    const int depth = rules.beam().depth;
-    ScanReporter reporter(rules, executor);
-    ReportTimes times;
-    std::vector<Hit> all;
-    Scan scan;
-    const auto report_hits = [&](std::size_t i, std::span<const Hit> hits) {
-      const Stopwatch watch;
-      all.assign(hits.begin(), hits.end());
-      world->add_hits(first_number + i, sensor, firings, scans[i], 1.0 / sensor.rotation_hz, depth,
-                      all, executor);
-      times.traced_s += watch.seconds();
-      reporter.report(scans[i], ScanPoses(rules, scans[i], world->scene_origin()), first_number + i,
-                      all, scan);
-      times.reported_s += watch.seconds();
-      sink(i, std::move(scan));
-    };
-    const CastTimes cast_times = caster_->cast(sensor, firings, scans, depth, report_hits);
-    times.traced_s += cast_times.traced_s;
-    times.reported_s += cast_times.returned_s;
-    return times;
+    const std::unique_ptr<MoreHits> more =
+        world == nullptr ? nullptr : world->more_hits(1.0 / rules.sensor().rotation_hz, executor);
+    return report_on_cpu(tracer_, scene_origin_, rules, scans, first_number, more.get(), executor,
+                         sink);
   }
 
   ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
@@ -64,6 +47,8 @@ class CpuSceneCaster final : public SceneCaster {
   bool has_large_batches() const override { return false; }
 
  private:
+  const Tracer& tracer_;
+  Vec3d scene_origin_;
   std::unique_ptr<ScanCaster> caster_;
 };
 

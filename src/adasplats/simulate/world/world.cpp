@@ -16,6 +16,24 @@
 
 namespace adasplats {
 
+namespace {
+
+void sort_by_distance(std::vector<ObjectSighting>& objects, Vec3d from) {
+  std::ranges::stable_sort(objects, {}, [from](const ObjectSighting& object) {
+    const Vec3d off = object.center - from;
+    return dot(off, off);
+  });
+}
+
+LocalBox local_box(const WorldBox& box, Vec3d origin) {
+  constexpr double kMargin = 1e-3;
+  const double margin = kMargin * length(box.size());
+  const Vec3d around = {margin, margin, margin};
+  return {vec_cast<float>(box.low - origin - around), vec_cast<float>(box.high - origin + around)};
+}
+
+}  // namespace
+
 struct World::Impl {
   std::uint32_t first_primitive;
   Vec3d scene_origin;
@@ -43,6 +61,28 @@ struct World::Impl {
       for (const std::size_t i : here->second) take(i);
     std::ranges::sort(found);
     return found;
+  }
+
+  /// What is cast of a scan.
+  struct Cast {
+    ObjectSightings there;
+    std::vector<const Tracer*> tracers;
+    std::vector<LocalBox> boxes;
+
+    bool empty() const { return there.objects.empty(); }
+    SightedObjects sighted() const { return {there.objects, there.knots, tracers, boxes}; }
+  };
+
+  /// Sorts the objects by distance from the sensor and adds the tracer and the box of each.
+  void prepare(Cast& cast, Vec3d sensor, const Executor& executor) const {
+    sort_by_distance(cast.there.objects, sensor);
+    cast.tracers.clear();
+    cast.boxes.clear();
+    for (const ObjectSighting& object : cast.there.objects) {
+      const ObjectGeometry& geometry = *geometries[object.geometry];
+      cast.tracers.push_back(&geometry.tracer(executor));
+      cast.boxes.push_back(local_box(geometry.box, object.geometry_origin));
+    }
   }
 
   /// Values of the primitives from `first` on: `place` and then, object by object, what
@@ -144,16 +184,40 @@ void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                      const Executor& executor) const {
   if (depth < 1 || hits.size() != firings.size() * static_cast<std::size_t>(depth))
     throw std::logic_error("World: expected `depth` hits per firing");
-  ObjectSightings there;
-  sight(scan_index, motion, scan_duration_s, there);
-  if (there.objects.empty() || firings.empty()) return;
-  ScanRays scan;
-  scan.rays = scan_rays(sensor, firings, motion, impl_->scene_origin, executor);
-  scan.firings = firing_rays(sensor, firings);
-  scan.bundles = bundles_of(scan.rays);
-  for (const ObjectSighting& object : there.objects)
-    add_object_hits(scan, object, there.knots.data(),
-                    impl_->geometries[object.geometry]->tracer(executor), depth, hits, executor);
+  Impl::Cast objects;
+  sight(scan_index, motion, scan_duration_s, objects.there);
+  if (objects.empty() || firings.empty()) return;
+  const std::vector<Ray> rays = scan_rays(sensor, firings, motion, impl_->scene_origin, executor);
+  impl_->prepare(objects, vec_cast<double>(rays.front().origin), executor);
+  add_object_hits(rays, firing_rays(sensor, firings), objects.sighted(), depth, hits, executor);
+}
+
+std::unique_ptr<MoreHits> World::more_hits(double scan_duration_s, const Executor& executor) const {
+  /// The objects of one scan after the other.
+  class Objects final : public MoreHits {
+   public:
+    Objects(const World& world, double scan_duration_s, const Executor& executor)
+        : world_(world), scan_duration_s_(scan_duration_s), executor_(executor) {}
+
+    void begin(std::uint64_t scan_index, const ScanMotion& motion) override {
+      objects_.there.clear();
+      world_.sight(scan_index, motion, scan_duration_s_, objects_.there);
+      const Vec3d sensor = motion.reference.world_from_sensor.translation - world_.scene_origin();
+      world_.impl_->prepare(objects_, sensor, executor_);
+    }
+    void add(std::span<const Ray> rays, std::span<const FiringRay> firings, int depth,
+             std::span<Hit> hits) const override {
+      if (!objects_.empty())
+        add_object_hits(rays, firings, objects_.sighted(), depth, hits, executor_);
+    }
+
+   private:
+    const World& world_;
+    double scan_duration_s_;
+    const Executor& executor_;
+    Impl::Cast objects_;
+  };
+  return std::make_unique<Objects>(*this, scan_duration_s, executor);
 }
 
 void World::add_hits(std::span<const Ray> rays, std::span<const double> times_s,
@@ -163,22 +227,19 @@ void World::add_hits(std::span<const Ray> rays, std::span<const double> times_s,
   if (rays.empty()) return;
   const auto [first, last] = std::ranges::minmax_element(times_s);
   const double begin_s = *first, duration_s = *last - *first;
-  ScanRays scan;
-  scan.rays.assign(rays.begin(), rays.end());
-  scan.firings.resize(rays.size());
+  std::vector<FiringRay> firings(rays.size());
   for (std::size_t i = 0; duration_s > 0 && i < rays.size(); ++i)
-    scan.firings[i].share = static_cast<float>((times_s[i] - begin_s) / duration_s);
-  scan.bundles = bundles_of(scan.rays);
-  std::vector<ObjectPose> knots;
+    firings[i].share = static_cast<float>((times_s[i] - begin_s) / duration_s);
+  Impl::Cast objects;
   for (const std::size_t i : impl_->in_all_scans) {
     const PlacedObject& placed = impl_->objects[i];
     if (placed.geometry->primitives == 0 || !placed.is_there(begin_s, *last)) continue;
-    knots.clear();
-    const ObjectSighting object =
-        sighting_of(placed, begin_s, duration_s, impl_->scene_origin, knots);
-    add_object_hits(scan, object, knots.data(), placed.geometry->tracer(executor), 1, hits,
-                    executor);
+    objects.there.objects.push_back(
+        sighting_of(placed, begin_s, duration_s, impl_->scene_origin, objects.there.knots));
   }
+  if (objects.empty()) return;
+  impl_->prepare(objects, vec_cast<double>(rays.front().origin), executor);
+  add_object_hits(rays, firings, objects.sighted(), 1, hits, executor);
 }
 
 void World::sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,

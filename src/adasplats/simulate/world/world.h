@@ -106,6 +106,9 @@ class World {
                 const ScanMotion& motion, double scan_duration_s, int depth, std::span<Hit> hits,
                 const Executor& executor) const;
 
+  /// The same for report_on_cpu(). The world and the executor must outlive it.
+  std::unique_ptr<MoreHits> more_hits(double scan_duration_s, const Executor& executor) const;
+
   /// Merges the nearest hits of objects into those of rays that were cast at their own times, such
   /// as measured beams: hits[i] of rays[i], relative to the scene's local origin, at times_s[i].
   /// Objects of a single scan are left out. Throws std::logic_error if sizes differ.
