@@ -28,35 +28,57 @@ std::uint16_t usual_class(std::span<const std::uint16_t> classes) {
   return most == counts.end() ? std::uint16_t{0} : most->first;
 }
 
-ObjectPose knot_at(const PlacedObject& placed, double time_s, double share, Vec3d scene_origin) {
-  const RigidTransform pose = placed.world_from_object(time_s);
+ObjectPose knot_of(const RigidTransform& pose, double share, Vec3d scene_origin) {
   const Mat3d object_from_world = pose.rotation.transposed();
   const Vec3d* const rows = object_from_world.rows;
   return {{rows[0], rows[1], rows[2]}, scene_origin - pose.translation, share};
 }
 
-/// Begin, end, and the times of the object's poses in between, with enough additional times for it
-/// to turn by less than half a degree from one to the next.
-std::vector<double> knot_times(const PlacedObject& placed, double begin_s, double end_s) {
+/// Begin, end, and the object's poses in between.
+Trajectory poses_between(const PlacedObject& placed, double begin_s, double end_s) {
+  const Trajectory& all = placed.object.trajectory;
+  Trajectory poses = {{begin_s, placed.world_from_object(begin_s)}};
+  auto pose = std::ranges::upper_bound(all, begin_s, {}, &TimedPose::time_s);
+  for (; pose != all.end() && pose->time_s < end_s; ++pose) poses.push_back(*pose);
+  if (end_s > begin_s) poses.push_back({end_s, placed.world_from_object(end_s)});
+  return poses;
+}
+
+WorldSphere sphere_around(const PlacedObject& placed, const Trajectory& poses) {
+  const double scale = placed.object.scale;
+  const Vec3d center = scale * placed.geometry->box.center();
+  const double radius = 0.5 * scale * length(placed.geometry->box.size());
+  const RigidTransform* before = &poses.front().world_from_sensor;
+  WorldBox path = {*before * center, *before * center};
+  double bend = 0;
+  for (const TimedPose& pose : poses) {
+    path.add(pose.world_from_sensor * center);
+    // A rotation moves the centre off the straight line between two poses by less than an eighth of
+    // its acceleration, as for any linear interpolation.
+    const double turn_rad = angle_between(before->rotation, pose.world_from_sensor.rotation);
+    bend = std::max(bend, 0.125 * length(center) * turn_rad * turn_rad);
+    before = &pose.world_from_sensor;
+  }
+  return {path.center(), 0.5 * length(path.size()) + bend + radius + kMargin_m};
+}
+
+/// Adds poses so that the object turns by less than half a degree from one to the next.
+Trajectory with_small_turns(const PlacedObject& placed, const Trajectory& poses) {
   constexpr double kHalfDegree_rad = 0.5 * std::numbers::pi / 180;
   constexpr double kMaxParts = 64;
-  const Trajectory& poses = placed.object.trajectory;
-  std::vector<double> times = {begin_s};
-  RigidTransform before = placed.world_from_object(begin_s);
-  const auto go_to = [&](double time_s) {
-    const RigidTransform here = placed.world_from_object(time_s);
-    const double turn_rad = angle_between(before.rotation, here.rotation);
+  Trajectory fine = {poses.front()};
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    const TimedPose &from = poses[k - 1], &to = poses[k];
+    const double turn_rad =
+        angle_between(from.world_from_sensor.rotation, to.world_from_sensor.rotation);
     const double parts = std::clamp(std::ceil(turn_rad / kHalfDegree_rad), 1.0, kMaxParts);
-    const double from_s = times.back();
-    for (double part = 1; part < parts; ++part)
-      times.push_back(from_s + part / parts * (time_s - from_s));
-    times.push_back(time_s);
-    before = here;
-  };
-  auto pose = std::ranges::upper_bound(poses, begin_s, {}, &TimedPose::time_s);
-  for (; pose != poses.end() && pose->time_s < end_s; ++pose) go_to(pose->time_s);
-  go_to(end_s);
-  return times;
+    for (double part = 1; part < parts; ++part) {
+      const double time_s = from.time_s + part / parts * (to.time_s - from.time_s);
+      fine.push_back({time_s, placed.world_from_object(time_s)});
+    }
+    fine.push_back(to);
+  }
+  return fine;
 }
 
 }  // namespace
@@ -86,32 +108,14 @@ const Tracer& ObjectGeometry::tracer(const Executor& executor) const {
 }
 
 WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s) {
-  const double scale = placed.object.scale;
-  const Vec3d center = scale * placed.geometry->box.center();
-  const double radius = 0.5 * scale * length(placed.geometry->box.size());
-  RigidTransform before = placed.world_from_object(begin_s);
-  WorldBox path = {before * center, before * center};
-  double bend = 0;
-  const auto go_on = [&](const RigidTransform& pose) {
-    path.add(pose * center);
-    // A rotation moves the centre off the straight line between two poses by less than an eighth of
-    // its acceleration, as for any linear interpolation.
-    const double turn_rad = angle_between(before.rotation, pose.rotation);
-    bend = std::max(bend, 0.125 * length(center) * turn_rad * turn_rad);
-    before = pose;
-  };
-  const Trajectory& poses = placed.object.trajectory;
-  auto pose = std::ranges::upper_bound(poses, begin_s, {}, &TimedPose::time_s);
-  for (; pose != poses.end() && pose->time_s < end_s; ++pose) go_on(pose->world_from_sensor);
-  if (end_s > begin_s) go_on(placed.world_from_object(end_s));
-  return {path.center(), 0.5 * length(path.size()) + bend + radius + kMargin_m};
+  return sphere_around(placed, poses_between(placed, begin_s, end_s));
 }
 
 ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double duration_s,
                            Vec3d scene_origin, std::vector<ObjectPose>& knots) {
   const Trajectory& poses = placed.object.trajectory;
-  const double end_s = begin_s + duration_s;
-  const WorldSphere sphere = swept_sphere(placed, begin_s, end_s);
+  const Trajectory between = poses_between(placed, begin_s, begin_s + duration_s);
+  const WorldSphere sphere = sphere_around(placed, between);
   ObjectSighting sighting;
   sighting.center = sphere.center - scene_origin;
   sighting.radius_m = sphere.radius;
@@ -121,15 +125,16 @@ ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double du
   sighting.first_primitive = placed.first_primitive;
   sighting.first_knot = static_cast<std::uint32_t>(knots.size());
   if (!placed.moves(duration_s)) {
-    knots.push_back(knot_at(placed, begin_s, 0, scene_origin));
+    knots.push_back(knot_of(between.front().world_from_sensor, 0, scene_origin));
     return sighting;
   }
   if (placed.object.only_during) {
     sighting.first_share = static_cast<float>((poses.front().time_s - begin_s) / duration_s);
     sighting.last_share = static_cast<float>((poses.back().time_s - begin_s) / duration_s);
   }
-  for (const double time_s : knot_times(placed, begin_s, end_s))
-    knots.push_back(knot_at(placed, time_s, (time_s - begin_s) / duration_s, scene_origin));
+  for (const TimedPose& pose : with_small_turns(placed, between))
+    knots.push_back(
+        knot_of(pose.world_from_sensor, (pose.time_s - begin_s) / duration_s, scene_origin));
   sighting.knot_count = static_cast<std::uint32_t>(knots.size()) - sighting.first_knot;
   return sighting;
 }
