@@ -189,19 +189,25 @@ std::string world_text(const std::vector<TrafficObject>& objects) {
 }
 
 /// The objects to be taken out of the scans, the vehicles at rest behind the moving ones.
-BoxContent objects_of(const KittiSequence& drive, const ModelJob& job, Session& session) {
+BoxContent objects_of(const KittiSequence& drive, const ModelJob& job, Session& session,
+                      std::vector<StepTime>& steps) {
   BoxContent content;
+  Stopwatch watch;
   if (drive.boxes) {
     content = drive.boxes->content();
   } else if (!job.segment.on) {
     if (const std::optional<LabelScheme> scheme =
-            label_scheme_for(job.labels, job.inputs, job.load.label_field))
+            label_scheme_for(job.labels, job.inputs, job.load.label_field)) {
       content = boxes_of_labels(drive, *scheme, session.executor, session.progress);
+      steps.push_back({"find labelled objects", watch.seconds()});
+    }
   }
   if (!drive.boxes && content.moving.empty() && content.at_rest.empty()) {
+    watch = {};
     std::vector<std::size_t> scans(drive.scans.size());
     std::iota(scans.begin(), scans.end(), std::size_t{0});
     content.moving = find_moving(drive, scans, {}, session.executor, session.progress);
+    steps.push_back({"find moving objects", watch.seconds()});
   }
   for (BoxTrack& track : content.at_rest)
     if (object_kind_of(track.label).is_vehicle) content.moving.push_back(std::move(track));
@@ -242,7 +248,8 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   KittiSequence drive = open_scans(job, session);
   ModelJob without = job;
   const bool are_given = drive.boxes != nullptr;
-  drive.boxes = std::make_shared<const MovingBoxes>(objects_of(drive, job, session));
+  std::vector<StepTime> steps;
+  drive.boxes = std::make_shared<const MovingBoxes>(objects_of(drive, job, session, steps));
   BoxContent moving, parked;
   moving.are_of_scans = drive.boxes->are_of_scans();
   for (const BoxTrack& track : drive.boxes->tracks())
@@ -254,10 +261,14 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
     write_file(output.path() / "boxes.csv", boxes_text(*drive.boxes));
   auto [scene, made] = make_model(without, session);
   result.scene = std::move(made);
+  steps.insert(steps.end(), result.scene.steps.begin(), result.scene.steps.end());
   save_model(output.path() / "scene.ply", scene);
   if (!result.scene.calibration.empty() && !apply(result.scene.calibration, drive))
     throw std::logic_error("run_traffic: the calibration is of other scans");
+  Stopwatch watch;
   std::vector<RecordedObject> objects = collect_objects(drive, session);
+  steps.push_back({"collect objects", watch.seconds()});
+  watch = {};
   std::filesystem::create_directory(output.path() / "objects");
   session.progress.begin_step("model objects", objects.size());
   std::unique_ptr<Tracer> tracer;
@@ -277,6 +288,8 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
     session.progress.advance(result.objects.size());
   }
   session.progress.end_step();
+  steps.push_back({"model objects", watch.seconds()});
+  result.scene.steps = std::move(steps);
   write_file(output.path() / "world.toml", world_text(result.objects));
   output.commit();
   result.scene.seconds = total.seconds();
