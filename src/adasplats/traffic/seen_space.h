@@ -32,20 +32,24 @@ class SeenSpace {
 
  private:
   struct Beam {
-    float elevation, azimuth;  ///< tangent; rad
     Vec3f origin, end;
+  };
+  struct Direction {
+    float elevation, azimuth;  ///< tangent; rad
   };
   /// Sides of a direction.
   struct Side {
     bool above, left;
   };
-  /// The beam with the smallest angle to a direction on one side of it; null: none in reach.
-  const Beam* nearest(float elevation, float azimuth, Side side) const;
+  /// The columns around a direction, for all of its sides.
+  class Columns;
 
   SeenSpaceOptions options_;
   RigidTransform sensor_from_world_;
   std::vector<std::uint32_t> starts_;  ///< of columns
-  std::vector<Beam> beams_;            ///< by column and elevation
+  /// By column and elevation: what is searched is apart from what is read of few beams.
+  std::vector<float> elevations_, azimuths_;
+  std::vector<Beam> beams_;
 };
 
 }  // namespace adasplats
