@@ -3,13 +3,48 @@
 #include "adasplats/traffic/loose_points.h"
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace adasplats {
 namespace {
 
+/// What scans say about a point.
 struct Votes {
   std::uint8_t free = 0, occupied = 0;
+
+  void add(Seen seen) {
+    if (seen == Seen::free) ++free;
+    if (seen == Seen::occupied) ++occupied;
+  }
+  bool is_loose(std::size_t min_free) const { return free >= min_free && free >= occupied; }
+  /// Whether `left` more votes cannot change is_loose() and, if `is_firm_asked` of a point that is
+  /// not loose, whether any scan saw it occupied.
+  bool are_clear(std::size_t left, std::size_t min_free, bool is_firm_asked) const {
+    if (is_loose(min_free)) return free >= occupied + left;
+    const bool is_never_loose = free + left < min_free || free + left < occupied;
+    return is_never_loose && (!is_firm_asked || occupied > 0);
+  }
 };
+
+struct AskedPoint {
+  std::size_t number;
+  Vec3d place;
+};
+
+/// Asks the scans one after the other, each about all points whose votes are not clear yet.
+void count_votes(std::vector<AskedPoint> points, std::span<const SeenSpace* const> others,
+                 std::size_t min_free, std::vector<Votes>& votes) {
+  std::size_t left = others.size();
+  for (const SeenSpace* other : others) {
+    --left;
+    std::erase_if(points, [&](const AskedPoint& point) {
+      Votes& of_point = votes[point.number];
+      of_point.add(other->at(point.place));
+      return of_point.are_clear(left, min_free, point.number % LoosePoints::kFirmEvery == 0);
+    });
+  }
+}
 
 }  // namespace
 
@@ -26,19 +61,16 @@ LoosePoints loose_points(const KittiSequence& drive, std::size_t index, const Ki
     return pose.world_from_sensor * beam_of(drive, index, scan, i).end;
   };
   executor.for_chunks(votes.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<AskedPoint> points;
     for (std::size_t i = begin; i < end; ++i) {
       const double range_m = length(vec_cast<double>(scan.positions[i]));
-      if (!(range_m >= options.min_range_m && range_m <= options.max_range_m)) continue;
-      const Vec3d place = place_of(i);
-      for (const SeenSpace* other : others) {
-        const Seen seen = other->at(place);
-        if (seen == Seen::free) ++votes[i].free;
-        if (seen == Seen::occupied) ++votes[i].occupied;
-      }
+      if (range_m >= options.min_range_m && range_m <= options.max_range_m)
+        points.push_back({i, place_of(i)});
     }
+    count_votes(std::move(points), others, options.min_free, votes);
   });
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (votes[i].free < options.min_free || votes[i].free < votes[i].occupied) {
+    if (!votes[i].is_loose(options.min_free)) {
       if (votes[i].occupied > 0 && i % LoosePoints::kFirmEvery == 0)
         loose.firm.push_back(vec_cast<float>(place_of(i) - loose.sensor));
       continue;
