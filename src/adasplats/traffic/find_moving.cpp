@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "adasplats/traffic/ground_heights.h"
@@ -16,6 +17,9 @@ namespace {
 /// ones for slow ones.
 constexpr std::array<std::size_t, 10> kOffsets = {1, 2, 3, 4, 6, 8, 11, 15, 20, 26};
 
+/// So many scans are read at once, by several threads.
+constexpr std::size_t kAtOnce = 16;
+
 /// Consecutive scans that are in memory.
 class Window {
  public:
@@ -24,13 +28,20 @@ class Window {
       : drive_(drive), scans_(scans), options_(options) {}
 
   /// Reads scans up to number `k` of the chosen ones; `ground` gets their points.
-  void read_to(std::size_t k, GroundHeights& ground) {
-    for (; end_ < scans_.size() && end_ <= k; ++end_) {
-      KittiScan scan = read_all_returns(drive_, scans_[end_]);
-      ground.add(drive_, scans_[end_], scan);
-      SeenSpace seen(drive_, scans_[end_], scan, options_);
-      entries_.push_back({std::move(scan), std::move(seen)});
-    }
+  void read_to(std::size_t k, GroundHeights& ground, const Executor& executor) {
+    const std::size_t before = entries_.size(), end = std::min(scans_.size(), k + 1);
+    if (end <= end_) return;
+    entries_.resize(before + end - end_);
+    std::vector<ScanHeights> heights(end - end_);
+    executor.for_chunks(heights.size(), 1, [&](std::size_t n, std::size_t) {
+      const std::size_t index = scans_[end_ + n];
+      Entry& entry = entries_[before + n];
+      entry.scan = read_all_returns(drive_, index);
+      heights[n] = ScanHeights(drive_, index, entry.scan);
+      entry.seen.emplace(drive_, index, entry.scan, options_);
+    });
+    for (const ScanHeights& of_scan : heights) ground.add(of_scan);
+    end_ = end;
   }
   void forget_before(std::size_t k) {
     for (; begin_ < k && begin_ < end_; ++begin_) entries_.pop_front();
@@ -40,8 +51,8 @@ class Window {
   std::vector<const SeenSpace*> others_of(std::size_t k) const {
     std::vector<const SeenSpace*> others;
     for (const std::size_t offset : kOffsets) {
-      if (k >= offset) others.push_back(&entries_[k - offset - begin_].seen);
-      if (k + offset < end_) others.push_back(&entries_[k + offset - begin_].seen);
+      if (k >= offset) others.push_back(&*entries_[k - offset - begin_].seen);
+      if (k + offset < end_) others.push_back(&*entries_[k + offset - begin_].seen);
     }
     return others;
   }
@@ -49,7 +60,7 @@ class Window {
  private:
   struct Entry {
     KittiScan scan;
-    SeenSpace seen;
+    std::optional<SeenSpace> seen;
   };
   const KittiSequence& drive_;
   std::span<const std::size_t> scans_;
@@ -68,8 +79,10 @@ std::vector<BoxTrack> find_moving(const KittiSequence& drive, std::span<const st
   GroundHeights ground;
   std::vector<LoosePoints> loose;
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    window.forget_before(k - std::min(k, kOffsets.back()));
-    window.read_to(k + kOffsets.back(), ground);
+    if (k % kAtOnce == 0) {
+      window.forget_before(k - std::min(k, kOffsets.back()));
+      window.read_to(k + kAtOnce - 1 + kOffsets.back(), ground, executor);
+    }
     loose.push_back(loose_points(drive, scans[k], window.scan(k), window.others_of(k),
                                  options.loose, executor));
     progress.advance(k + 1);

@@ -22,7 +22,7 @@ struct FindMovingOptions {
 
 /// Finds what moved in the chosen scans of a drive, without labels: points where other scans saw
 /// free space, grouped to clusters, tracked, with boxes around them. The same for any number of
-/// threads. Memory: about 50 scans at a time, and the loose points of all.
+/// threads. Memory: about 70 scans at a time, and the loose points of all.
 std::vector<BoxTrack> find_moving(const KittiSequence& drive, std::span<const std::size_t> scans,
                                   const FindMovingOptions& options, const Executor& executor,
                                   ProgressSink& progress);

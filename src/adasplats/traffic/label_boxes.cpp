@@ -136,12 +136,19 @@ BoxContent boxes_of_labels(const KittiSequence& drive, const LabelScheme& scheme
   progress.begin_step("find labelled objects", drive.scans.size());
   Collector collector(scheme);
   GroundHeights ground;
-  for (std::size_t k = 0; k < drive.scans.size(); ++k) {
-    executor.check_interruption();
-    const KittiScan scan = read_all_returns(drive, k);
-    ground.add(drive, k, scan);
-    collector.add(drive, k, scan);
-    progress.advance(k + 1);
+  constexpr std::size_t kAtOnce = 16;
+  for (std::size_t begin = 0; begin < drive.scans.size(); begin += kAtOnce) {
+    std::vector<KittiScan> scans(std::min(kAtOnce, drive.scans.size() - begin));
+    std::vector<ScanHeights> heights(scans.size());
+    executor.for_chunks(scans.size(), 1, [&](std::size_t n, std::size_t) {
+      scans[n] = read_all_returns(drive, begin + n);
+      heights[n] = ScanHeights(drive, begin + n, scans[n]);
+    });
+    for (std::size_t n = 0; n < scans.size(); ++n) {
+      ground.add(heights[n]);
+      collector.add(drive, begin + n, scans[n]);
+      progress.advance(begin + n + 1);
+    }
   }
   BoxContent content = collector.boxes([&](Vec3d point) { return ground.at(point.x, point.y); });
   make_unique(content);

@@ -43,7 +43,7 @@ TEST(LoosePoints, OnlyThoseOnWhatMoves) {
 TEST(GroundHeights, LowestPointsCountAndUnknownIsNaN) {
   const KittiSequence drive = recorded_street({{{10, 3.5, 0.75}, {4.4, 1.8, 1.5}, 0}}, 3);
   GroundHeights ground;
-  for (std::size_t k = 0; k < 3; ++k) ground.add(drive, k, read_all_returns(drive, k));
+  for (std::size_t k = 0; k < 3; ++k) ground.add(ScanHeights(drive, k, read_all_returns(drive, k)));
   EXPECT_NEAR(ground.at(5.5, -2.5), 0, 0.06);
   EXPECT_TRUE(std::isnan(ground.at(500, 0)));
 }
