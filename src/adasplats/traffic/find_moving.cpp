@@ -77,15 +77,17 @@ std::vector<BoxTrack> find_moving(const KittiSequence& drive, std::span<const st
   progress.begin_step("find moving objects", scans.size());
   Window window(drive, scans, options.seen);
   GroundHeights ground;
-  std::vector<LoosePoints> loose;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    if (k % kAtOnce == 0) {
-      window.forget_before(k - std::min(k, kOffsets.back()));
-      window.read_to(k + kAtOnce - 1 + kOffsets.back(), ground, executor);
-    }
-    loose.push_back(loose_points(drive, scans[k], window.scan(k), window.others_of(k),
-                                 options.loose, executor));
-    progress.advance(k + 1);
+  std::vector<LoosePoints> loose(scans.size());
+  for (std::size_t begin = 0; begin < scans.size(); begin += kAtOnce) {
+    window.forget_before(begin - std::min(begin, kOffsets.back()));
+    window.read_to(begin + kAtOnce - 1 + kOffsets.back(), ground, executor);
+    const std::size_t count = std::min(kAtOnce, scans.size() - begin);
+    executor.for_chunks(count, 1, [&](std::size_t n, std::size_t) {
+      const std::size_t k = begin + n;
+      loose[k] = loose_points(drive, scans[k], window.scan(k), window.others_of(k), options.loose,
+                              executor);
+    });
+    progress.advance(begin + count);
   }
   const auto height_below = [&](Vec3d point) { return ground.at(point.x, point.y); };
   std::vector<BoxTrack> found = find_boxes(loose, height_below, options.boxes, executor);

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/traffic/loose_points.h"
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,17 @@ struct AskedPoint {
   Vec3d place;
 };
 
+/// Of points in range: neighbours in the image of the sensor get keys close to each other, so that
+/// what other scans saw near them is in the cache.
+std::uint64_t order_key(Vec3f point) {
+  constexpr double kTurn = 2 * std::numbers::pi, kColumns = 1024, kRows = 4096;
+  const Vec3d at = vec_cast<double>(point);
+  const double turn = std::atan2(at.y, at.x) / kTurn + 0.5;
+  const double up = 0.5 * at.z / length(at) + 0.5;
+  return (static_cast<std::uint64_t>(turn * kColumns) << 32) |
+         static_cast<std::uint64_t>(up * kRows);
+}
+
 /// Asks the scans one after the other, each about all points whose votes are not clear yet.
 void count_votes(std::vector<AskedPoint> points, std::span<const SeenSpace* const> others,
                  std::size_t min_free, std::vector<Votes>& votes) {
@@ -60,13 +73,19 @@ LoosePoints loose_points(const KittiSequence& drive, std::size_t index, const Ki
   const auto place_of = [&](std::size_t i) {
     return pose.world_from_sensor * beam_of(drive, index, scan, i).end;
   };
-  executor.for_chunks(votes.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::uint64_t> keys;
+  std::vector<std::uint32_t> in_range, order;
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    const double range_m = length(vec_cast<double>(scan.positions[i]));
+    if (!(range_m >= options.min_range_m && range_m <= options.max_range_m)) continue;
+    in_range.push_back(static_cast<std::uint32_t>(i));
+    keys.push_back(order_key(scan.positions[i]));
+  }
+  executor.sort_keys(keys, order);
+  executor.for_chunks(order.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<AskedPoint> points;
-    for (std::size_t i = begin; i < end; ++i) {
-      const double range_m = length(vec_cast<double>(scan.positions[i]));
-      if (range_m >= options.min_range_m && range_m <= options.max_range_m)
-        points.push_back({i, place_of(i)});
-    }
+    for (std::size_t k = begin; k < end; ++k)
+      points.push_back({in_range[order[k]], place_of(in_range[order[k]])});
     count_votes(std::move(points), others, options.min_free, votes);
   });
   for (std::size_t i = 0; i < votes.size(); ++i) {
