@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "adasplats/core/maths/rigid_transform.h"
 
@@ -92,16 +94,19 @@ ObjectCollector::ObjectCollector(const MovingBoxes& boxes) : are_of_scans_(boxes
   for (const BoxTrack& track : boxes.tracks()) objects_.push_back(object_of(track));
 }
 
-void ObjectCollector::add(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
-                          const Executor& executor) {
+std::vector<ObjectCollector::Part> ObjectCollector::parts_of(const KittiSequence& drive,
+                                                             std::size_t index,
+                                                             const KittiScan& scan) const {
   constexpr double kGround_m = 0.05;
-  if (scan.in_boxes.empty()) return;
+  if (scan.in_boxes.empty()) return {};
   if (scan.in_boxes.size() != scan.positions.size())
     throw std::logic_error("ObjectCollector: not one object number a point");
   const TimedPose& pose = drive.trajectory[index];
+  std::map<std::size_t, ObjectScan> scans;
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     if (scan.in_boxes[i] == 0) continue;
-    RecordedObject& object = objects_.at(scan.in_boxes[i] - 1U);
+    const std::size_t number = scan.in_boxes[i] - std::size_t{1};
+    const RecordedObject& object = objects_.at(number);
     const double time_s = time_of_point(scan, pose, i);
     const RigidTransform object_from_sensor =
         interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : time_s).inverse() *
@@ -109,44 +114,51 @@ void ObjectCollector::add(const KittiSequence& drive, std::size_t index, const K
     const MeasuredBeam beam = beam_of(drive, index, scan, i);
     const Vec3d point = object_from_sensor * beam.end;
     if (point.z < -0.5 * object.size_m.z + kGround_m) continue;
-    if (object.scans.empty() || object.scans.back().scan != index) {
-      object.scans.emplace_back();
-      object.scans.back().scan = index;
-    }
-    ObjectScan& of_scan = object.scans.back();
+    ObjectScan& of_scan = scans[number];
+    of_scan.scan = index;
     of_scan.points.push_back(point);
     of_scan.origins.push_back(object_from_sensor * beam.origin);
     if (!scan.intensities.empty()) of_scan.intensities.push_back(scan.intensities[i]);
     // The running mean.
     of_scan.time_s += (time_s - of_scan.time_s) / static_cast<double>(of_scan.points.size());
   }
-  add_passing(drive, index, scan, executor);
+  std::vector<Part> parts;
+  if (scans.empty()) return parts;
+  std::vector<MeasuredBeam> beams;
+  beams.reserve(scan.positions.size());
+  for (std::size_t i = 0; i < scan.positions.size(); ++i)
+    beams.push_back(beam_of(drive, index, scan, i));
+  for (auto& [number, of_scan] : scans) {
+    parts.push_back({number, std::move(of_scan)});
+    add_passing(pose, scan, beams, parts.back());
+  }
+  return parts;
 }
 
-void ObjectCollector::add_passing(const KittiSequence& drive, std::size_t index,
-                                  const KittiScan& scan, const Executor& executor) {
-  const TimedPose& pose = drive.trajectory[index];
-  executor.for_chunks(objects_.size(), 1, [&](std::size_t number, std::size_t) {
-    RecordedObject& object = objects_[number];
-    if (object.scans.empty() || object.scans.back().scan != index) return;
-    ObjectScan& of_scan = object.scans.back();
-    of_scan.world_from_object =
-        interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : of_scan.time_s);
-    const Vec3d half_size = kPassing * 0.5 * object.size_m;
-    const RigidTransform sensor_from_object =
-        pose.world_from_sensor.inverse() * of_scan.world_from_object;
-    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-      if (scan.in_boxes[i] == number + 1) continue;
-      const MeasuredBeam beam = beam_of(drive, index, scan, i);
-      if (!may_pass(beam, sensor_from_object.translation, length(half_size))) continue;
-      const double time_s = are_of_scans_ ? pose.time_s : time_of_point(scan, pose, i);
-      const RigidTransform object_from_sensor =
-          interpolate(object.world_from_object, time_s).inverse() * pose.world_from_sensor;
-      const Vec3d origin = object_from_sensor * beam.origin, end = object_from_sensor * beam.end;
-      if (passes(origin, end, half_size))
-        of_scan.passing.push_back({origin, normalized(end - origin)});
-    }
-  });
+void ObjectCollector::add(std::vector<Part> parts) {
+  for (Part& part : parts) objects_.at(part.number).scans.push_back(std::move(part.scan));
+}
+
+void ObjectCollector::add_passing(const TimedPose& pose, const KittiScan& scan,
+                                  std::span<const MeasuredBeam> beams, Part& part) const {
+  const RecordedObject& object = objects_[part.number];
+  ObjectScan& of_scan = part.scan;
+  of_scan.world_from_object =
+      interpolate(object.world_from_object, are_of_scans_ ? pose.time_s : of_scan.time_s);
+  const Vec3d half_size = kPassing * 0.5 * object.size_m;
+  const RigidTransform sensor_from_object =
+      pose.world_from_sensor.inverse() * of_scan.world_from_object;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (scan.in_boxes[i] == part.number + 1) continue;
+    const MeasuredBeam& beam = beams[i];
+    if (!may_pass(beam, sensor_from_object.translation, length(half_size))) continue;
+    const double time_s = are_of_scans_ ? pose.time_s : time_of_point(scan, pose, i);
+    const RigidTransform object_from_sensor =
+        interpolate(object.world_from_object, time_s).inverse() * pose.world_from_sensor;
+    const Vec3d origin = object_from_sensor * beam.origin, end = object_from_sensor * beam.end;
+    if (passes(origin, end, half_size))
+      of_scan.passing.push_back({origin, normalized(end - origin)});
+  }
 }
 
 }  // namespace adasplats

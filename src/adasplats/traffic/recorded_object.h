@@ -56,15 +56,23 @@ RecordedObject object_of(const BoxTrack& track);
 class ObjectCollector {
  public:
   explicit ObjectCollector(const MovingBoxes& boxes);
-  /// Adds scan number `index` of a drive; `scan` has KittiScan::in_boxes of these boxes.
-  void add(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
-           const Executor& executor);
+  /// What one scan shows of an object, which has a number from 0.
+  struct Part {
+    std::size_t number;
+    ObjectScan scan;
+  };
+  /// What scan number `index` of a drive shows, by ascending number; `scan` has KittiScan::in_boxes
+  /// of these boxes. For any thread.
+  std::vector<Part> parts_of(const KittiSequence& drive, std::size_t index,
+                             const KittiScan& scan) const;
+  /// Adds what one scan shows, scan by scan.
+  void add(std::vector<Part> parts);
   /// One object per track, in their order; some have no points.
   std::vector<RecordedObject> take() { return std::move(objects_); }
 
  private:
-  void add_passing(const KittiSequence& drive, std::size_t index, const KittiScan& scan,
-                   const Executor& executor);
+  void add_passing(const TimedPose& pose, const KittiScan& scan,
+                   std::span<const MeasuredBeam> beams, Part& part) const;
 
   std::vector<RecordedObject> objects_;
   bool are_of_scans_;

@@ -46,7 +46,7 @@ TEST(ObjectCollector, PointsAreInTheFrameOfTheirObjectAtTheirTime) {
   scan.lasers.resize(4);
   scan.times_s = {0, 1, 0.5, 0.5};
   scan.in_boxes = {1, 1, 1, 0};  // the third is ground
-  collector.add(drive, 0, scan, Executor(1));
+  collector.add(collector.parts_of(drive, 0, scan));
   const std::vector<RecordedObject> objects = collector.take();
   ASSERT_EQ(objects.size(), 1U);
   ASSERT_EQ(objects[0].scans.size(), 1U);

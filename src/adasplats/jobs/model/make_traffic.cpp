@@ -63,11 +63,17 @@ KittiSequence open_scans(const ModelJob& job, Session& session) {
 }
 
 std::vector<RecordedObject> collect_objects(const KittiSequence& drive, Session& session) {
+  constexpr std::size_t kAtOnce = 64;  // scans
   ObjectCollector collector(*drive.boxes);
   session.progress.begin_step("collect objects", drive.scans.size());
-  for (std::size_t k = 0; k < drive.scans.size(); ++k) {
-    collector.add(drive, k, read_all_returns(drive, k), session.executor);
-    session.progress.advance(k + 1);
+  for (std::size_t begin = 0; begin < drive.scans.size(); begin += kAtOnce) {
+    std::vector<std::vector<ObjectCollector::Part>> parts(
+        std::min(kAtOnce, drive.scans.size() - begin));
+    session.executor.for_chunks(parts.size(), 1, [&](std::size_t n, std::size_t) {
+      parts[n] = collector.parts_of(drive, begin + n, read_all_returns(drive, begin + n));
+    });
+    for (std::vector<ObjectCollector::Part>& of_scan : parts) collector.add(std::move(of_scan));
+    session.progress.advance(begin + parts.size());
   }
   session.progress.end_step();
   return collector.take();
