@@ -100,12 +100,24 @@ void Executor::for_chunks(std::size_t count, std::size_t grain,
     run_chunk(0);
     return;
   }
-  impl_->arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
+  const auto run_all = [&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); };
+  impl_->arena.execute([&] {
+    // While a nested loop waits for its last chunks, it may not begin chunks of the outer loop.
+    if (is_outermost)
+      run_all();
+    else
+      oneapi::tbb::this_task_arena::isolate(run_all);
+  });
 }
 
 void Executor::run(FunctionRef<void()> body) const {
   check_interruption();
-  impl_->arena.execute([&] { body(); });
+  impl_->arena.execute([&] {
+    if (inside_loop)
+      oneapi::tbb::this_task_arena::isolate([&] { body(); });
+    else
+      body();
+  });
 }
 
 namespace {
