@@ -93,7 +93,7 @@ void to_reflectances(const IntensityResponse& response, PointCloud& cloud) {
 
 /// The splats of an object from all of its points.
 /// Rays through those of people and cyclists, whose limbs move, do not count against them.
-SplatModel body_of(PointCloud cloud, bool is_rigid, const ModelJob& job, Session& session) {
+SplatModel body_of(PointCloud cloud, bool is_rigid, const ModelJob& job, const Session& session) {
   ModelOptions options;
   options.build.recipe = job.build.recipe;
   options.build.remove = DynamicRemoval::none;
@@ -102,14 +102,17 @@ SplatModel body_of(PointCloud cloud, bool is_rigid, const ModelJob& job, Session
   options.calibration.on = false;
   if (auto* const ours = std::get_if<ConsistentOptions>(&options.build.recipe))
     ours->refine = is_rigid;
+  // Starting a GPU takes longer than making so few splats.
+  DeviceChoice cpu;
   ProgressSink silence;
-  Session quiet{session.executor, silence, session.seed, session.device};
+  Session quiet{session.executor, silence, session.seed, cpu};
   return make_model([&cloud] { return cloud; }, options, quiet).first;
 }
 
 /// Models one object and writes its files; fills in what the caller does not know yet.
 void write_object(RecordedObject& object, const ModelJob& job, const IntensityResponse& response,
-                  const std::filesystem::path& folder, Session& session, TrafficObject& made) {
+                  const std::filesystem::path& folder, const Session& session,
+                  TrafficObject& made) {
   constexpr std::size_t kMinPoints = 100;
   constexpr float kMirrorApart_m = 0.4F;
   made.scans = object.scans.size();
@@ -242,6 +245,39 @@ void count_open_beams(const RecordedObject& object, const Tracer& tracer, Vec3d 
       std::ranges::count_if(hits, [](const Hit& hit) { return !hit.valid(); }));
 }
 
+/// Models the objects, several at once, and writes their files.
+std::vector<TrafficObject> model_objects(std::vector<RecordedObject>& objects,
+                                         const KittiSequence& drive, const SplatModel& scene,
+                                         const ModelJob& job, const std::filesystem::path& folder,
+                                         Session& session) {
+  std::filesystem::create_directory(folder);
+  session.progress.begin_step("model objects", kPassUnits);
+  std::vector<TrafficObject> all(objects.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    TrafficObject& made = all[k];
+    made.id = objects[k].id;
+    made.label = objects[k].label;
+    made.name = file_name_of(objects[k]);
+    made.is_at_rest = drive.boxes->tracks()[k].is_at_rest;
+    made.class_id = class_of(object_kind_of(made.label), made.is_at_rest, scene.label_scheme);
+    made.size_m = objects[k].size_m;
+  }
+  {
+    const ProgressPass pass(session.executor, all.size());
+    session.executor.for_chunks(all.size(), 1, [&](std::size_t k, std::size_t) {
+      write_object(objects[k], job, scene.response, folder, session, all[k]);
+    });
+  }
+  std::unique_ptr<Tracer> tracer;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!all[k].is_at_rest || objects[k].scans.empty()) continue;
+    if (!tracer) tracer = make_cpu_tracer(view_of(scene), session.executor);
+    count_open_beams(objects[k], *tracer, scene.origin, session.executor, all[k]);
+  }
+  session.progress.end_step();
+  return all;
+}
+
 }  // namespace
 
 TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& folder, bool overwrite,
@@ -275,25 +311,7 @@ TrafficResult run_traffic(const ModelJob& job, const std::filesystem::path& fold
   std::vector<RecordedObject> objects = collect_objects(drive, session);
   steps.push_back({"collect objects", watch.seconds()});
   watch = {};
-  std::filesystem::create_directory(output.path() / "objects");
-  session.progress.begin_step("model objects", objects.size());
-  std::unique_ptr<Tracer> tracer;
-  for (RecordedObject& object : objects) {
-    TrafficObject& entry = result.objects.emplace_back();
-    entry.id = object.id;
-    entry.label = object.label;
-    entry.name = file_name_of(object);
-    entry.is_at_rest = drive.boxes->tracks()[result.objects.size() - 1].is_at_rest;
-    entry.class_id = class_of(object_kind_of(object.label), entry.is_at_rest, scene.label_scheme);
-    entry.size_m = object.size_m;
-    write_object(object, job, scene.response, output.path() / "objects", session, entry);
-    if (entry.is_at_rest && !object.scans.empty()) {
-      if (!tracer) tracer = make_cpu_tracer(view_of(scene), session.executor);
-      count_open_beams(object, *tracer, scene.origin, session.executor, entry);
-    }
-    session.progress.advance(result.objects.size());
-  }
-  session.progress.end_step();
+  result.objects = model_objects(objects, drive, scene, job, output.path() / "objects", session);
   steps.push_back({"model objects", watch.seconds()});
   result.scene.steps = std::move(steps);
   write_file(output.path() / "world.toml", world_text(result.objects));
