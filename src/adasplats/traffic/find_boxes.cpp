@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace adasplats {
@@ -82,41 +83,55 @@ bool is_same_object(const BoxTrack& a, const BoxTrack& b, const ClusterTrack& cl
 /// Which track every cluster belongs to.
 class Owners {
  public:
-  Owners(std::span<const LoosePoints> loose, std::vector<std::vector<Cluster>> clusters)
-      : loose_(loose), clusters_(std::move(clusters)) {
-    for (const std::vector<Cluster>& of_scan : clusters_)
+  Owners(std::span<const LoosePoints> loose, std::vector<std::vector<Cluster>> clusters,
+         std::size_t tracks)
+      : loose_(loose), clusters_(std::move(clusters)), members_(tracks) {
+    for (const std::vector<Cluster>& of_scan : clusters_) {
       owners_.emplace_back(of_scan.size(), kNobody);
+      TimeSpan& span = spans_.emplace_back();
+      for (const Cluster& cluster : of_scan) {
+        span.begin_s = std::min(span.begin_s, cluster.time_s);
+        span.end_s = std::max(span.end_s, cluster.time_s);
+      }
+    }
   }
-
-  const std::vector<std::vector<Cluster>>& clusters() const { return clusters_; }
 
   /// The clusters that begin with the same point as those of the track.
   void set(const ClusterTrack& track, std::size_t owner) {
     for (const Cluster& cluster : track)
       for (std::size_t k = 0; k < clusters_[cluster.scan].size(); ++k)
         if (clusters_[cluster.scan][k].points.front() == cluster.points.front())
-          owners_[cluster.scan][k] = owner;
+          give({cluster.scan, k}, owner);
   }
 
-  /// All of them, to undo changes.
-  using State = std::vector<std::vector<std::size_t>>;
-  const State& state() const { return owners_; }
-  void restore(State state) { owners_ = std::move(state); }
+  /// Changes from now on can be undone.
+  void begin_changes() { changes_.clear(); }
+  void undo_changes() {
+    while (!changes_.empty()) {
+      const auto [place, before] = changes_.back();
+      changes_.pop_back();
+      move(place, before);
+    }
+  }
 
   /// Gives all clusters of one track to another.
   void join(std::size_t from, std::size_t to) {
-    for (std::vector<std::size_t>& of_scan : owners_) std::ranges::replace(of_scan, from, to);
+    const std::set<Place> places = members_[from];
+    for (const Place& place : places) give(place, to);
   }
 
   /// Gives an object all clusters in its boxes that are nobody's or of one with a larger number.
   void absorb(const BoxTrack& boxes, std::size_t owner, double margin_m) {
+    constexpr double kReach_s = 0.01;
+    const double begin_s = boxes.boxes.front().time_s - kReach_s;
+    const double end_s = boxes.boxes.back().time_s + kReach_s;
     for (std::size_t scan = 0; scan < clusters_.size(); ++scan) {
+      if (spans_[scan].end_s < begin_s || spans_[scan].begin_s > end_s) continue;
       for (std::size_t k = 0; k < clusters_[scan].size(); ++k) {
         const Cluster& cluster = clusters_[scan][k];
-        if (owners_[scan][k] <= owner || cluster.time_s < boxes.boxes.front().time_s - kReach_s ||
-            cluster.time_s > boxes.boxes.back().time_s + kReach_s)
+        if (owners_[scan][k] <= owner || cluster.time_s < begin_s || cluster.time_s > end_s)
           continue;
-        if (boxes.at(cluster.time_s).contains(cluster.middle, margin_m)) owners_[scan][k] = owner;
+        if (boxes.at(cluster.time_s).contains(cluster.middle, margin_m)) give({scan, k}, owner);
       }
     }
   }
@@ -124,13 +139,14 @@ class Owners {
   /// The clusters of an object, one per scan.
   ClusterTrack track_of(std::size_t owner) const {
     ClusterTrack track;
-    for (std::size_t scan = 0; scan < clusters_.size(); ++scan) {
+    const std::set<Place>& places = members_[owner];
+    for (auto place = places.begin(); place != places.end();) {
+      const std::size_t scan = place->first;
       std::vector<std::uint32_t> points;
-      for (std::size_t k = 0; k < clusters_[scan].size(); ++k)
-        if (owners_[scan][k] == owner)
-          points.insert(points.end(), clusters_[scan][k].points.begin(),
-                        clusters_[scan][k].points.end());
-      if (points.empty()) continue;
+      for (; place != places.end() && place->first == scan; ++place) {
+        const std::vector<std::uint32_t>& of_cluster = clusters_[scan][place->second].points;
+        points.insert(points.end(), of_cluster.begin(), of_cluster.end());
+      }
       std::ranges::sort(points);
       track.push_back(cluster_of(loose_[scan], scan, std::move(points)));
     }
@@ -138,11 +154,28 @@ class Owners {
   }
 
  private:
-  static constexpr double kReach_s = 0.01;
+  using Place = std::pair<std::size_t, std::size_t>;  ///< scan, number in it
+  struct TimeSpan {
+    double begin_s = std::numeric_limits<double>::infinity(), end_s = -begin_s;
+  };
+
+  void give(Place place, std::size_t owner) {
+    changes_.emplace_back(place, owners_[place.first][place.second]);
+    move(place, owner);
+  }
+  void move(Place place, std::size_t owner) {
+    std::size_t& now = owners_[place.first][place.second];
+    if (now != kNobody) members_[now].erase(place);
+    if (owner != kNobody) members_[owner].insert(place);
+    now = owner;
+  }
 
   std::span<const LoosePoints> loose_;
   std::vector<std::vector<Cluster>> clusters_;
+  std::vector<TimeSpan> spans_;  ///< of the clusters of scans
   std::vector<std::vector<std::size_t>> owners_;
+  std::vector<std::set<Place>> members_;                ///< of tracks
+  std::vector<std::pair<Place, std::size_t>> changes_;  ///< and their owners before
 };
 
 }  // namespace
@@ -150,12 +183,13 @@ class Owners {
 std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
                                  FunctionRef<double(Vec3d)> height_below,
                                  const FindBoxesOptions& options, const Executor& executor) {
-  std::vector<std::vector<Cluster>> clusters;
-  for (const LoosePoints& of_scan : loose)
-    clusters.push_back(clusters_of(of_scan, clusters.size(), options.clusters, executor));
+  std::vector<std::vector<Cluster>> clusters(loose.size());
+  executor.for_chunks(loose.size(), 1, [&](std::size_t k, std::size_t) {
+    clusters[k] = clusters_of(loose[k], k, options.clusters, executor);
+  });
   std::vector<ClusterTrack> tracks = track_clusters(clusters, options.tracks);
   std::ranges::stable_sort(tracks, std::ranges::greater{}, points_of);
-  Owners owners(loose, std::move(clusters));
+  Owners owners(loose, std::move(clusters), tracks.size());
   for (std::size_t t = 0; t < tracks.size(); ++t) owners.set(tracks[t], t);
   const auto fit = [&](std::size_t t) -> std::optional<BoxTrack> {
     const ClusterTrack track = owners.track_of(t);
@@ -171,11 +205,11 @@ std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
     for (std::size_t other = t + 1; fits[t] && other < tracks.size(); ++other) {
       if (!fits[other] || !is_same_object(*fits[t], *fits[other], tracks[other], options.margin_m))
         continue;
-      const Owners::State before = owners.state();
+      owners.begin_changes();
       owners.join(other, t);
       std::optional<BoxTrack> joined = fit(t);
       if (!joined) {
-        owners.restore(before);
+        owners.undo_changes();
         continue;
       }
       fits[t] = std::move(joined);
@@ -183,12 +217,12 @@ std::vector<BoxTrack> find_boxes(std::span<const LoosePoints> loose,
       other = t;  // the longer track may go on with others
     }
     if (!fits[t]) continue;
-    const Owners::State before = owners.state();
+    owners.begin_changes();
     owners.absorb(*fits[t], t, options.margin_m);
     std::optional<BoxTrack> boxes = fit(t);
     if (!boxes || !has_usual_height(*boxes) ||
         loose_share(*boxes, owners.track_of(t), loose) < options.min_loose) {
-      owners.restore(before);
+      owners.undo_changes();
       continue;
     }
     boxes->id = found.size() + 1;
