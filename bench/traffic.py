@@ -92,7 +92,7 @@ class Place:
         rows = {"without": self.judged("without", [], False),
                 "found": self.judged("found", ["--traffic"], True)}
         given = [*self.boxes_flags(), "--remove", "none" if self.boxes else "moving"]
-        rows["given, removed"] = self.judged("given-removed", given, False, self.labelled)
+        rows["removed"] = self.judged("given-removed", given, False, self.labelled)
         rows["given"] = self.judged("given", [*given, "--traffic"], True, self.labelled)
         return rows
 
