@@ -38,8 +38,8 @@ struct SimKitti32Job {
   double moving_radius_m = 0.14;  ///< radius of their splats
   bool keep_model = false;        ///< as model.ply beside the sequences
   /// The static model; empty: made of the scans, by `method` and `model_every`. A world file
-  /// (simulate/world/world_file.h), such as that of run_traffic(): its objects replace the splats of
-  /// moving points.
+  /// (simulate/world/world_file.h), such as that of run_traffic(): its objects replace the splats
+  /// of moving points.
   std::filesystem::path model;
   std::filesystem::path ray_drop;  ///< as for load_ray_drop_choice
   Weather weather;
