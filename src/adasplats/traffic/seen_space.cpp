@@ -115,7 +115,8 @@ class SeenSpace::Columns {
   };
 
   const Range& column(int offset) {
-    Range& range = ranges_[static_cast<std::size_t>(offset + kBeside)];
+    const int place = offset + kBeside;
+    Range& range = ranges_[static_cast<std::size_t>(place)];
     if (range.is_known) return range;
     const std::size_t c = (column_ + kColumns + static_cast<std::size_t>(offset)) % kColumns;
     range = {seen_.starts_[c], 0, seen_.starts_[c + 1], true};

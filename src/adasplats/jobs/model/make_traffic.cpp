@@ -271,7 +271,7 @@ std::vector<TrafficObject> model_objects(std::vector<RecordedObject>& objects,
   std::unique_ptr<Tracer> tracer;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (!all[k].is_at_rest || objects[k].scans.empty()) continue;
-    if (!tracer) tracer = make_cpu_tracer(view_of(scene), session.executor);
+    if (!tracer) tracer = make_cpu_tracer(scene.view(), session.executor);
     count_open_beams(objects[k], *tracer, scene.origin, session.executor, all[k]);
   }
   session.progress.end_step();
