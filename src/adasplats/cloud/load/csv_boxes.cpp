@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -64,6 +65,10 @@ BoxNumbers numbers_of_box(const std::vector<std::string>& cells, const BoxPlaces
     throw Error(ErrorKind::data, here + "column 'id' is not a whole number from 0");
   if (!(std::min({v[6], v[7], v[8]}) > 0))
     throw Error(ErrorKind::data, here + "the size of the box is not positive");
+  constexpr double kMaxYaw_rad = 4 * std::numbers::pi;  // two turns
+  if (std::fabs(v[9]) > kMaxYaw_rad)
+    throw Error(ErrorKind::data,
+                here + "column 'yaw' is more than two turns; it must be in radians");
   return v;
 }
 

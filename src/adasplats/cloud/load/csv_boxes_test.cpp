@@ -101,6 +101,9 @@ TEST(MovingBoxes, NumberTheObjectsByTheirIdsAndTheNearestCounts) {
 
 TEST(MovingBoxes, WhatIsWrongIsNamed) {
   const TemporaryFolder folder;
+  expect_error(ErrorKind::data, {"d.csv:2", "must be in radians"}, [&] {
+    boxes_of(folder.write("d.csv", std::string(kBoxNames) + "0,0,1,Car,0,0,0,0,4,1,1,90\n"));
+  });
   expect_error(ErrorKind::data, {"has no column 'stationary'"},
                [&] { boxes_of(folder.write("a.csv", std::string("time,id,x,y,z\n0,1,0,0,0\n"))); });
   expect_error(ErrorKind::data, {"b.csv:3", "'yaw' is not a finite number"}, [&] {

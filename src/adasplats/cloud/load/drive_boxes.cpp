@@ -107,6 +107,22 @@ BoxContent at_poses(BoxContent content, std::span<const double> stamps_s, const 
   return content;
 }
 
+/// Whether a box is within 500 m of the path, which is farther than any LiDAR measures.
+bool is_near_path(const BoxContent& content, const Trajectory& poses) {
+  constexpr double kFarthest_m = 500;
+  constexpr std::size_t kPoses = 200;  // spread over the path
+  const std::size_t step = std::max<std::size_t>(1, poses.size() / kPoses);
+  const auto is_near = [&](const TimedBox& box) {
+    for (std::size_t k = 0; k < poses.size(); k += step)
+      if (length(box.middle - poses[k].world_from_sensor.translation) < kFarthest_m) return true;
+    return false;
+  };
+  for (const std::vector<BoxTrack>* const tracks : {&content.moving, &content.at_rest})
+    for (const BoxTrack& track : *tracks)
+      if (std::ranges::any_of(track.boxes, is_near)) return true;
+  return false;
+}
+
 std::string clock_text(const std::filesystem::path& file, const BoxClock& clock) {
   std::array<char, 200> text{};
   std::snprintf(
@@ -162,6 +178,10 @@ void add_boxes(const DriveSettings& settings, std::span<const double> stamps_s,
   if (content.twins > 0)
     progress.warn(settings.boxes.string() + ": " + std::to_string(content.twins) +
                   " objects are in the boxes of others at the same times; they were left out");
+  if (!is_near_path(content, drive.trajectory))
+    throw Error(ErrorKind::data, settings.boxes.string() +
+                                     ": no box is within 500 m of the sensor's path; boxes must be "
+                                     "in the frame of the poses");
   constexpr double kSweep_s = 0.1;
   MovingBoxes boxes(std::move(content));
   if (!boxes.overlaps(drive.trajectory.front().time_s - kSweep_s,
