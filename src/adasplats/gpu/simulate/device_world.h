@@ -47,20 +47,24 @@ class WorldObjects {
   /// Queues the copy of the objects that scans `first_number` + i see. Earlier ones must have been
   /// cast.
   void upload(const World& world, DeviceWorld& on_device, std::span<const ScanMotion> motions,
-              std::uint64_t first_number, double scan_duration_s, cudaStream_t stream);
+              std::uint64_t first_number, double scan_duration_s, const Executor& executor,
+              cudaStream_t stream);
   /// Queues the merging of their hits into those of the scene, as World::add_hits() does.
-  void add_hits(const RaySource& source, std::uint64_t rays, int depth, Hit* hits,
-                cudaStream_t stream) const;
+  void add_hits(const RaySource& source, int depth, Hit* hits, cudaStream_t stream) const;
 
  private:
   template <class T>
   struct Copied {
     PinnedBuffer<T> host;
     DeviceBuffer<T> device;
-    void upload(std::span<const T> values, cudaStream_t stream);
+    std::size_t size = 0;
+    void resize(std::size_t values, cudaStream_t stream);
+    void upload() { device.upload(host.span().first(size)); }
   };
 
-  ObjectSightings seen_;
+  void find_trees(DeviceWorld& on_device, cudaStream_t stream);
+
+  std::vector<ObjectSightings> seen_;  ///< by scan
   std::vector<std::shared_ptr<const SceneTrees>> held_;
   Copied<TreesView> trees_;
   Copied<ObjectSighting> objects_;

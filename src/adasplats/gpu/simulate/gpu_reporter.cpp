@@ -152,6 +152,7 @@ struct GpuReporter::Run {
   std::span<const ScanMotion> motions;
   std::uint64_t first_number;
   const World* world;
+  const Executor& executor;
   BatchMemory memory;
   std::size_t devices;
   std::size_t scans = 0;  ///< of a batch
@@ -297,10 +298,10 @@ void GpuReporter::begin(Run& run, std::size_t k) {
   const std::size_t rays = lane.count * source.firing_count;
   if (run.world != nullptr)
     lane.objects.upload(*run.world, *device.world, motions, poses.first_scan, scan_duration_s_,
-                        stream);
+                        run.executor, stream);
   lane.begin.record(stream);
   device.part->scene->cast(source, rays, depth_, lane.hits.data(), stream);
-  if (run.world != nullptr) lane.objects.add_hits(source, rays, depth_, lane.hits.data(), stream);
+  if (run.world != nullptr) lane.objects.add_hits(source, depth_, lane.hits.data(), stream);
   lane.traced.record(stream);
   const FiringRules& rules = device.rules->view();
   gpu::queue_reports(rules, poses, lane.hits.data(), lane.space(), stream);
@@ -353,11 +354,12 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
 }
 
 ReportTimes GpuReporter::report(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                                const World* world, BatchMemory memory, BatchSink sink) {
+                                const World* world, const Executor& executor, BatchMemory memory,
+                                BatchSink sink) {
   if (scans.empty()) return {};
   const std::size_t devices = memory == BatchMemory::device ? 1 : devices_.size();
   if (world != nullptr && world->empty()) world = nullptr;
-  Run run{scans, first_number, world, memory, devices, 0, {}};
+  Run run{scans, first_number, world, executor, memory, devices, 0, {}};
   reserve_all(run);
   prepare_world(run);
   const Stopwatch all;

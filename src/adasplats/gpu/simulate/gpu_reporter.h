@@ -35,7 +35,8 @@ class GpuReporter {
   /// page-locked. Batches on a device (only the first one) are complete.
   /// `world`: objects in addition to the scene, or null; must be that of the rules' attributes.
   ReportTimes report(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                     const World* world, BatchMemory memory, BatchSink sink);
+                     const World* world, const Executor& executor, BatchMemory memory,
+                     BatchSink sink);
 
  private:
   struct Run;

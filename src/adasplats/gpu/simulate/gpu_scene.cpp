@@ -58,7 +58,7 @@ class GpuSceneCaster final : public SceneCaster {
     std::vector<Scan> taken;
     return with_reporter(rules, [&](GpuReporter& reporter) {
       return reporter.report(
-          scans, first_number, world, BatchMemory::host, [&](const ScanBatch& batch) {
+          scans, first_number, world, executor, BatchMemory::host, [&](const ScanBatch& batch) {
             if (taken.size() < batch.scans()) taken.resize(batch.scans());
             executor.for_chunks(batch.scans(), 1, [&](std::size_t i, std::size_t) {
               ScanView(batch, i, scans[batch.first + i], rules).copy_to(taken[i]);
@@ -71,10 +71,10 @@ class GpuSceneCaster final : public SceneCaster {
 
   ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
                              std::uint64_t first_number, const World* world,
-                             const Executor& /*executor*/, BatchMemory memory,
+                             const Executor& executor, BatchMemory memory,
                              BatchSink sink) const override {
     return with_reporter(rules, [&](GpuReporter& reporter) {
-      return reporter.report(scans, first_number, world, memory, sink);
+      return reporter.report(scans, first_number, world, executor, memory, sink);
     });
   }
 

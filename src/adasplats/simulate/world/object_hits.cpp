@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace adasplats {
 namespace {
@@ -57,7 +56,7 @@ class RayTask {
 
   void cast_into(std::size_t number, const Executor& executor) {
     const ObjectSighting& object = sighted_.objects[number];
-    find_rays(object, sighted_.boxes[number]);
+    find_rays(object);
     if (local_.rays.empty()) return;
     found_.resize(local_.rays.size() * slots_);
     const Tracer& tracer = *sighted_.tracers[number];
@@ -84,7 +83,7 @@ class RayTask {
     return last.valid() ? last.t : rays_[i].t_max;
   }
 
-  void find_rays(const ObjectSighting& object, const LocalBox& box) {
+  void find_rays(const ObjectSighting& object) {
     local_.clear();
     const WorldSphere sphere = {object.center, object.radius_m};
     for (std::size_t first = 0; first < rays_.size(); first += kRaysPerBundle) {
@@ -92,11 +91,9 @@ class RayTask {
       if (!bundles_[bundle].may_meet(sphere, reaches_m_[bundle])) continue;
       for (std::size_t i = first; i < behind(first); ++i) {
         ObjectRay made;
-        if (!object_ray(object, sighted_.knots.data(), rays_[i], firings_[i].share, made)) continue;
-        const auto reach_m = static_cast<double>(reach_of(i));
-        if (made.begin_m > reach_m || !box.is_met(made.ray)) continue;
-        made.ray.t_max =
-            std::min(made.ray.t_max, object_reach(reach_m, made.begin_m, object.scale));
+        if (!object_ray(object, sighted_.knots.data(), rays_[i], firings_[i].share,
+                        static_cast<double>(reach_of(i)), made))
+          continue;
         local_.rays.push_back(made.ray);
         local_.firings.push_back(static_cast<std::uint32_t>(i));
         local_.begins_m.push_back(made.begin_m);
@@ -116,19 +113,6 @@ class RayTask {
 };
 
 }  // namespace
-
-bool LocalBox::is_met(const Ray& ray) const {
-  float enter = 0, leave = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    // A direction of 0 gives infinities; 0 * infinity, NaN, leaves both as they are.
-    const float inverse = 1 / ray.direction[axis];
-    const float a = (low[axis] - ray.origin[axis]) * inverse;
-    const float b = (high[axis] - ray.origin[axis]) * inverse;
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave;
-}
 
 RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(rays[0].t_max)) {
   const Vec3d first = vec_cast<double>(rays[0].origin);

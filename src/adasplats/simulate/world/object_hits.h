@@ -28,20 +28,12 @@ struct RayBundle {
   bool may_meet(const WorldSphere& sphere, double limit_m) const;
 };
 
-/// A box around a geometry in its own frame and unit, with a margin for rounding.
-struct LocalBox {
-  Vec3f low, high;
-  /// Whether a ray meets it.
-  bool is_met(const Ray& ray) const;
-};
-
-/// The objects of a scan, relative to the scene's local origin, with their poses, and the tracer
-/// and the box of each; near ones first are faster.
+/// The objects of a scan, relative to the scene's local origin, with their poses and the tracer
+/// of each; near ones first are faster.
 struct SightedObjects {
   std::span<const ObjectSighting> objects;
   std::span<const ObjectPose> knots;
   std::span<const Tracer* const> tracers;
-  std::span<const LocalBox> boxes;
 };
 
 /// Merges the hits of objects into those of rays of a scan: hits[i * depth + k] of rays[i],

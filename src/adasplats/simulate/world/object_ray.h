@@ -17,11 +17,32 @@ struct ObjectPose {
   double share = 0;  ///< elapsed share of the revolution
 };
 
+/// A box around a geometry in its own frame and unit, with a margin for rounding.
+struct LocalBox {
+  Vec3f low, high;
+
+  /// Whether a ray meets it.
+  ADASPLATS_HD bool is_met(const Ray& ray) const {
+    float enter = 0, leave = ray.t_max;
+    for (int axis = 0; axis < 3; ++axis) {
+      // A direction of 0 gives infinities, and NaN in the plane of a face, outside the geometry.
+      const float inverse = 1 / ray.direction[axis];
+      const float a = (low[axis] - ray.origin[axis]) * inverse;
+      const float b = (high[axis] - ray.origin[axis]) * inverse;
+      const float first = b < a ? b : a, last = a < b ? b : a;
+      if (first > enter) enter = first;
+      if (last < leave) leave = last;
+    }
+    return enter <= leave;
+  }
+};
+
 /// An object in one scan, with all data for its rays and hits, for CPU and GPU.
 struct ObjectSighting {
   Vec3d center;           ///< of a sphere that contains it during the scan, relative to the scene's
   double radius_m = 0;    ///< local origin, m
   Vec3d geometry_origin;  ///< of its geometry's local frame, in the object's
+  LocalBox box;           ///< around its geometry
   double scale = 1;       ///< m per unit of the geometry
   float first_share = 0;  ///< share of the revolution at which it appears...
   float last_share = 1;   ///< ...and disappears
@@ -81,14 +102,15 @@ ADASPLATS_HD inline std::uint32_t segment_of(const ObjectPose* knots, std::uint3
   return first;
 }
 
-/// The ray of a firing that may hit an object, the same on every backend. `ray`: relative to the
-/// scene's local origin; `share`: of the revolution at the firing. Between knots, at most half a
-/// degree apart, origins and directions are interpolated linearly, like those of the sensor. False:
-/// it misses.
+/// The ray of a firing that may hit an object within `reach_m`, the same on every backend. `ray`:
+/// relative to the scene's local origin; `share`: of the revolution at the firing. Between knots,
+/// at most half a degree apart, origins and directions are interpolated linearly, like those of the
+/// sensor. False: it misses.
 ADASPLATS_HD inline bool object_ray(const ObjectSighting& object, const ObjectPose* all_knots,
-                                    const Ray& ray, float share, ObjectRay& made) {
+                                    const Ray& ray, float share, double reach_m, ObjectRay& made) {
   const double begin_m = entry_m(ray, object.center, object.radius_m);
-  if (begin_m < 0 || share < object.first_share || share > object.last_share) return false;
+  if (begin_m < 0 || begin_m > reach_m || share < object.first_share || share > object.last_share)
+    return false;
   const Vec3d direction = vec_cast<double>(ray.direction);
   const Vec3d begin = vec_cast<double>(ray.origin) + begin_m * direction;
   const ObjectPose* const knots = all_knots + object.first_knot;
@@ -109,11 +131,12 @@ ADASPLATS_HD inline bool object_ray(const ObjectSighting& object, const ObjectPo
   const Vec3d origin = from_object / object.scale - object.geometry_origin;
   const auto least =
       static_cast<float>(in_object(static_cast<double>(ray.t_min), begin_m, object.scale));
-  const auto most =
-      static_cast<float>(in_object(static_cast<double>(ray.t_max), begin_m, object.scale));
+  auto most = static_cast<float>(in_object(static_cast<double>(ray.t_max), begin_m, object.scale));
+  const float reach = object_reach(reach_m, begin_m, object.scale);
+  if (reach < most) most = reach;
   made = {{vec_cast<float>(origin), least > 0.0F ? least : 0.0F, vec_cast<float>(along), most},
           begin_m};
-  return true;
+  return object.box.is_met(made.ray);
 }
 
 /// Converts a hit of an object's ray to one of the scan's ray; none if rounding moves it out of

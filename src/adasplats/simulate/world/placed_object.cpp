@@ -44,6 +44,13 @@ Trajectory poses_between(const PlacedObject& placed, double begin_s, double end_
   return poses;
 }
 
+LocalBox local_box(const WorldBox& box, Vec3d origin) {
+  constexpr double kMargin = 1e-3;
+  const double margin = kMargin * length(box.size());
+  const Vec3d around = {margin, margin, margin};
+  return {vec_cast<float>(box.low - origin - around), vec_cast<float>(box.high - origin + around)};
+}
+
 WorldSphere sphere_around(const PlacedObject& placed, const Trajectory& poses) {
   const double scale = placed.object.scale;
   const Vec3d center = scale * placed.geometry->box.center();
@@ -120,6 +127,7 @@ ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double du
   sighting.center = sphere.center - scene_origin;
   sighting.radius_m = sphere.radius;
   sighting.geometry_origin = origin_of(placed.geometry->place);
+  sighting.box = local_box(placed.geometry->box, sighting.geometry_origin);
   sighting.scale = placed.object.scale;
   sighting.geometry = static_cast<std::uint32_t>(placed.object.geometry);
   sighting.first_primitive = placed.first_primitive;

@@ -25,13 +25,6 @@ void sort_by_distance(std::vector<ObjectSighting>& objects, Vec3d from) {
   });
 }
 
-LocalBox local_box(const WorldBox& box, Vec3d origin) {
-  constexpr double kMargin = 1e-3;
-  const double margin = kMargin * length(box.size());
-  const Vec3d around = {margin, margin, margin};
-  return {vec_cast<float>(box.low - origin - around), vec_cast<float>(box.high - origin + around)};
-}
-
 }  // namespace
 
 struct World::Impl {
@@ -67,22 +60,16 @@ struct World::Impl {
   struct Cast {
     ObjectSightings there;
     std::vector<const Tracer*> tracers;
-    std::vector<LocalBox> boxes;
 
     bool empty() const { return there.objects.empty(); }
-    SightedObjects sighted() const { return {there.objects, there.knots, tracers, boxes}; }
+    SightedObjects sighted() const { return {there.objects, there.knots, tracers}; }
   };
 
-  /// Sorts the objects by distance from the sensor and adds the tracer and the box of each.
-  void prepare(Cast& cast, Vec3d sensor, const Executor& executor) const {
-    sort_by_distance(cast.there.objects, sensor);
+  /// Adds the tracers of the objects.
+  void prepare(Cast& cast, const Executor& executor) const {
     cast.tracers.clear();
-    cast.boxes.clear();
-    for (const ObjectSighting& object : cast.there.objects) {
-      const ObjectGeometry& geometry = *geometries[object.geometry];
-      cast.tracers.push_back(&geometry.tracer(executor));
-      cast.boxes.push_back(local_box(geometry.box, object.geometry_origin));
-    }
+    for (const ObjectSighting& object : cast.there.objects)
+      cast.tracers.push_back(&geometries[object.geometry]->tracer(executor));
   }
 
   /// Values of the primitives from `first` on: `place` and then, object by object, what
@@ -188,7 +175,7 @@ void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
   sight(scan_index, motion, scan_duration_s, objects.there);
   if (objects.empty() || firings.empty()) return;
   const std::vector<Ray> rays = scan_rays(sensor, firings, motion, impl_->scene_origin, executor);
-  impl_->prepare(objects, vec_cast<double>(rays.front().origin), executor);
+  impl_->prepare(objects, executor);
   add_object_hits(rays, firing_rays(sensor, firings), objects.sighted(), depth, hits, executor);
 }
 
@@ -200,10 +187,8 @@ std::unique_ptr<MoreHits> World::more_hits(double scan_duration_s, const Executo
         : world_(world), scan_duration_s_(scan_duration_s), executor_(executor) {}
 
     void begin(std::uint64_t scan_index, const ScanMotion& motion) override {
-      objects_.there.clear();
       world_.sight(scan_index, motion, scan_duration_s_, objects_.there);
-      const Vec3d sensor = motion.reference.world_from_sensor.translation - world_.scene_origin();
-      world_.impl_->prepare(objects_, sensor, executor_);
+      world_.impl_->prepare(objects_, executor_);
     }
     void add(std::span<const Ray> rays, std::span<const FiringRay> firings, int depth,
              std::span<Hit> hits) const override {
@@ -238,17 +223,21 @@ void World::add_hits(std::span<const Ray> rays, std::span<const double> times_s,
         sighting_of(placed, begin_s, duration_s, impl_->scene_origin, objects.there.knots));
   }
   if (objects.empty()) return;
-  impl_->prepare(objects, vec_cast<double>(rays.front().origin), executor);
+  sort_by_distance(objects.there.objects, vec_cast<double>(rays.front().origin));
+  impl_->prepare(objects, executor);
   add_object_hits(rays, firings, objects.sighted(), 1, hits, executor);
 }
 
 void World::sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
-                  ObjectSightings& all) const {
+                  ObjectSightings& seen) const {
+  seen.clear();
   const double duration_s = motion.knots.empty() ? 0.0 : std::max(0.0, scan_duration_s);
   const double begin_s = motion.reference.time_s - 0.5 * duration_s;
   for (const std::size_t i : impl_->objects_in(scan_index, begin_s, begin_s + duration_s))
-    all.objects.push_back(
-        sighting_of(impl_->objects[i], begin_s, duration_s, impl_->scene_origin, all.knots));
+    seen.objects.push_back(
+        sighting_of(impl_->objects[i], begin_s, duration_s, impl_->scene_origin, seen.knots));
+  sort_by_distance(seen.objects,
+                   motion.reference.world_from_sensor.translation - impl_->scene_origin);
 }
 
 std::size_t World::geometry_count() const { return impl_->geometries.size(); }

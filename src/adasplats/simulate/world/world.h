@@ -115,10 +115,10 @@ class World {
   void add_hits(std::span<const Ray> rays, std::span<const double> times_s, std::span<Hit> hits,
                 const Executor& executor) const;
 
-  /// Appends the objects present in a scan, in the order of addition, with the data that a device
-  /// needs to cast them like add_hits().
+  /// The objects present in a scan, near ones first, with the data that a device needs to cast them
+  /// like add_hits().
   void sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
-             ObjectSightings& all) const;
+             ObjectSightings& seen) const;
   std::size_t geometry_count() const;
   SceneView geometry_view(std::size_t geometry) const;
   const AnyModel& geometry(std::size_t geometry) const;
