@@ -164,10 +164,10 @@ nlohmann::ordered_json measure_traffic(const ModelScene& empty, ModelScene& busy
   constexpr double kReach_m = 250;
   busy.add_objects([&](World& world) { add_traffic(world, scans, kCars, kReach_m); });
   ScanSimulator without(empty, settings, executor), with(busy, settings, executor);
-  Variants variants;
   std::size_t on_cars = 0;
-  variants.emplace_back("empty", [&] { without.run(scans, 0, [](std::size_t, const Scan&) {}); });
-  variants.emplace_back("busy", [&] { with.run(scans, 0, [](std::size_t, const Scan&) {}); });
+  const auto ignore = [](std::size_t, const Scan&) {};
+  const Variants variants = {{"empty", [&] { without.run(scans, 0, ignore); }},
+                             {"busy", [&] { with.run(scans, 0, ignore); }}};
   nlohmann::ordered_json json = rates_of(variants, scans.size(), repeats);
   with.run(scans, 0, [&](std::size_t, const Scan& scan) {
     on_cars += static_cast<std::size_t>(

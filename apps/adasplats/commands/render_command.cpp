@@ -19,6 +19,7 @@ constexpr const char* kRenderExamples =
     "  adasplats render basic.ply adaptive.ply -o both.png --trajectory poses.txt --pose 12\n"
     "  adasplats render street.ply -o around.webp --turntable\n"
     "  adasplats render street.ply -o drive.mp4 --drive --trajectory poses.txt\n"
+    "  adasplats render place/world.toml -o traffic.mp4 --drive --trajectory poses.csv\n"
     "  adasplats render basic.ply adaptive.ply -o changes.png --difference\n"
     "  adasplats render street.ply -o pole.png --eye 3,-2,1.7 --target 8,4,2 --color normal\n"
     "  adasplats render street.ply street/mapping.ply -o measured.png --labels semantickitti\n";
@@ -30,8 +31,9 @@ class RenderCommand final : public Command {
                 "Draw splat models, meshes and point clouds, side by side, as a picture or film",
                 kRenderExamples) {
     OptionSet& app = options();
-    require(add_paths(app, "MODEL", job_.models,
-                      "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders"));
+    require(
+        add_paths(app, "MODEL", job_.models,
+                  "Splat models, meshes (PLY, OBJ), world files, point files, sequence folders"));
     require(writes(add_path(app, "-o,--output", job_.output,
                             "PNG, film (WebP, MP4) or folder (--each-pose) to write"),
                    {".png", ".webp", ".mp4", ""}));
@@ -65,6 +67,9 @@ class RenderCommand final : public Command {
     add_path(app, "--trajectory", job_.view.trajectory,
              "Look ahead from a pose of this pose file or sequence folder")
         ->basic();
+    app.add_option("--time", job_.time_s,
+                   "Time at which objects of a world file are shown, s (default: that of the pose, "
+                   "else when the first begins to move)");
     app.add_option("--pose", job_.view.pose, "Number of the pose, from 0")->capture_default_str();
     add_path(
         app, "--errors", job_.errors,

@@ -122,6 +122,25 @@ TEST(AddBoxes, CorrectedTimesFindAllPointsAndAreStated) {
   }
 }
 
+// The frame of the city, with a drive in its own.
+TEST(AddBoxes, ThoseOfAnotherFrameAreAnError) {
+  const TemporaryFolder folder;
+  KittiSequence drive = drive_with_cars();
+  DriveSettings settings;
+  settings.boxes = folder.write("boxes.csv",
+                                "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
+                                "0,1,0,650010,6860000,1,4,2,1.5,0\n"
+                                "1,1,0,650015,6860000,1,4,2,1.5,0\n");
+  RecordedProgress progress;
+  try {
+    add_boxes(settings, {}, drive, Executor(1), progress);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::data);
+    EXPECT_NE(std::string(error.what()).find("within 500 m"), std::string::npos) << error.what();
+  }
+}
+
 TEST(AddBoxes, ClocksFarApartAreAnError) {
   const TemporaryFolder folder;
   std::string text = "time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n";

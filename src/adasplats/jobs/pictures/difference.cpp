@@ -47,7 +47,7 @@ Image draw_difference(const ModelScene& first, const ModelScene& second, const C
   const auto width = static_cast<std::size_t>(camera.width);
   // Each scene has an origin of its own: the same rays, relative to each.
   const CameraRays rays_of[2] = {camera.rays(first.origin()), camera.rays(second.origin())};
-  const Tracer* const tracers[2] = {&first.tracer(), &second.tracer()};
+  const Tracer* const tracers[2] = {&first.picture_tracer(), &second.picture_tracer()};
   for (std::size_t begin = 0; begin < static_cast<std::size_t>(camera.height);
        begin += kRowsPerChunk) {
     const std::size_t end =

@@ -63,12 +63,15 @@ std::optional<Vec3d> in_picture(const Camera& camera, Vec3d world) {
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& input) {
-  return is_splat_model(input) || (std::filesystem::is_regular_file(input) && is_mesh_file(input));
+  return input.extension() == ".toml" || is_splat_model(input) ||
+         (std::filesystem::is_regular_file(input) && is_mesh_file(input));
 }
 
 Panel::Panel(const std::filesystem::path& input, const std::string& labels, Session& session) {
   if (is_model_file(input)) {
-    model_ = std::make_shared<const ModelScene>(input, labels, session);
+    auto scene = std::make_shared<ModelScene>(input, labels, session, WorldFiles::taken);
+    if (scene->world() != nullptr) world_ = scene;
+    model_ = std::move(scene);
     return;
   }
   const std::filesystem::path resolved = resolve_cloud_input(input);
@@ -91,7 +94,7 @@ void Panel::show_errors(const std::filesystem::path& errors) {
 }
 
 void Panel::show_errors(const ErrorPoints& points, const std::filesystem::path& name) {
-  if (!model_ || model_->splats() == nullptr)
+  if (!model_ || model_->splats() == nullptr || world_)
     throw Error(ErrorKind::usage, "errors are shown on splat models; draw " + name.string() +
                                       " by itself to see its points");
   SplatErrors errors(model_->splats()->size());
@@ -100,6 +103,16 @@ void Panel::show_errors(const ErrorPoints& points, const std::filesystem::path& 
   holes_.clear();
   for (std::size_t i = 0; i < points.cloud.size(); ++i)
     if (std::isnan(points.errors_m[i])) holes_.push_back(points.cloud.world(i));
+}
+
+bool Panel::has_motion() const { return world_ && world_->world()->motion_begin_s(); }
+
+void Panel::show_at(std::optional<double> time_s, Session& session) {
+  if (!world_) return;
+  const double shown_s = time_s.value_or(world_->world()->motion_begin_s().value_or(0));
+  if (shown_s_ == shown_s) return;
+  world_->show_at(shown_s, session);
+  shown_s_ = shown_s;
 }
 
 ShownPart Panel::shown_part() const {
@@ -175,7 +188,7 @@ void Panel::mark_holes(Image& image, const Camera& camera) const {
     places.push_back(*at);
   }
   std::vector<Hit> hits(rays.size());
-  model_->tracer().nearest(rays, hits, model_->executor());
+  model_->picture_tracer().nearest(rays, hits, model_->executor());
   const Vec3d forward = camera.world_from_camera.rotation * Vec3d{1, 0, 0};
   const double size_px = std::max(3.0, image.height / 300.0);
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -33,7 +33,7 @@ struct PanelLook {
 /// same colouring share them.
 using SharedRange = std::map<ImageColor, ValueRange>;
 
-/// Whether a file is a splat model or a mesh; other inputs are points.
+/// Whether a file is a splat model, a mesh or a world file; other inputs are points.
 bool is_model_file(const std::filesystem::path& input);
 
 /// One part of a picture: a model, points, or points with errors.
@@ -51,6 +51,12 @@ class Panel {
   void show_errors(const std::filesystem::path& errors);
   /// The same of errors in memory; `name`: of them in messages.
   void show_errors(const ErrorPoints& errors, const std::filesystem::path& name);
+
+  /// Whether it has objects that move.
+  bool has_motion() const;
+  /// Shows the objects of a world file at this time, or without one when the first begins to move.
+  /// Does nothing for others.
+  void show_at(std::optional<double> time_s, Session& session);
 
   ShownPart shown_part() const;
   /// Chooses what the panel shows and its scale: that of `range`, which else gets the panel's own.
@@ -75,6 +81,8 @@ class Panel {
   const Crs& crs() const { return model_ ? model_->crs() : cloud_.crs; }
 
   std::shared_ptr<const ModelScene> model_;
+  std::shared_ptr<ModelScene> world_;  ///< the same, if it has objects
+  std::optional<double> shown_s_;      ///< time of show_at()
   PointCloud cloud_;
   std::optional<LabelScheme> labels_;  ///< of the cloud
   std::vector<float> point_errors_m_;  ///< of the cloud's points, where it has them

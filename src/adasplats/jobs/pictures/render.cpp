@@ -46,6 +46,7 @@ class Panels {
       require_overlap(*panels_[0].model(), job.models[0], *panels_[1].model(), job.models[1]);
     SharedRange range;
     for (Panel& panel : panels_) {
+      if (job.view.trajectory.empty()) panel.show_at(job.time_s, session);
       if (!job.errors.empty()) panel.show_errors(job.errors);
       panel.prepare(job.look, range);
     }
@@ -54,6 +55,16 @@ class Panels {
   }
 
   const ShownPart& part() const { return part_; }
+  /// Shows the objects of worlds at the time of the camera. Errors: usage (it has none).
+  void show_at(const std::optional<double>& time_s) {
+    for (Panel& panel : panels_) {
+      if (!time_s && !job_.view.trajectory.empty() && panel.has_motion())
+        throw Error(ErrorKind::usage, job_.view.trajectory.string() +
+                                          ": has no times; the objects move with time, so name "
+                                          "one with `time`");
+      panel.show_at(time_s, session_);
+    }
+  }
   /// The model of the only panel; null if it is of points.
   const ModelScene* only_model() const { return panels_.front().model(); }
   int columns() const { return job_.difference ? 1 : static_cast<int>(panels_.size()); }
@@ -130,6 +141,8 @@ void check(const RenderJob& job) {
     throw Error(ErrorKind::usage, "`each_pose` needs `trajectory`");
   if (job.film != Film::none && (job.each_pose || !job.layers.empty()))
     throw Error(ErrorKind::usage, "a film has no `layers` and is not of `each_pose`");
+  if (job.time_s && (job.each_pose || job.film == Film::drive))
+    throw Error(ErrorKind::usage, "`time` is of one picture; others have those of the trajectory");
   if (job.each_pose) {
     if (lower_case(job.output.extension().string()) == ".png")
       throw Error(ErrorKind::usage, job.output.string() + ": `each_pose` writes a folder");
@@ -159,7 +172,7 @@ void check_inputs(const RenderJob& job) {
 }
 
 /// As many cameras as the film has pictures.
-std::vector<Camera> cameras_of(const RenderJob& job, const ShownPart& part) {
+std::vector<TimedCamera> cameras_of(const RenderJob& job, const ShownPart& part) {
   const auto frames =
       static_cast<std::size_t>(std::max(1.0, std::round(job.seconds * job.frames_per_s)));
   if (job.film == Film::turntable) return turntable(job.view, part, frames);
@@ -167,12 +180,13 @@ std::vector<Camera> cameras_of(const RenderJob& job, const ShownPart& part) {
 }
 
 RenderResult draw_film(const RenderJob& job, Panels& panels, Session& session) {
-  const std::vector<Camera> cameras = cameras_of(job, panels.part());
+  const std::vector<TimedCamera> cameras = cameras_of(job, panels.part());
   const std::unique_ptr<FilmWriter> film = make_film_writer(job.output, job.frames_per_s);
   RenderResult result;
   session.progress.begin_step("draw the film", cameras.size());
-  for (const Camera& camera : cameras) {
-    film->add(panels.draw(camera));
+  for (const TimedCamera& at : cameras) {
+    panels.show_at(job.time_s ? job.time_s : at.time_s);
+    film->add(panels.draw(at.camera));
     result.seconds_rendered += panels.seconds();
     session.progress.advance(++result.images);
   }
@@ -184,8 +198,10 @@ RenderResult draw_film(const RenderJob& job, Panels& panels, Session& session) {
 }
 
 /// Draws and writes one picture and its layers, and adds its figures.
-void draw_picture(const RenderJob& job, const Camera& camera, const fs::path& file, Panels& panels,
+void draw_picture(const RenderJob& job, const TimedCamera& at, const fs::path& file, Panels& panels,
                   Session& session, RenderResult& result) {
+  const Camera& camera = at.camera;
+  panels.show_at(job.time_s ? job.time_s : at.time_s);
   const Image picture = panels.draw(camera);
   write_png(file, picture.width, picture.height, picture.pixels);
   result.images += static_cast<std::size_t>(panels.columns());
@@ -195,7 +211,7 @@ void draw_picture(const RenderJob& job, const Camera& camera, const fs::path& fi
   const ModelScene& model = *panels.only_model();
   const Stopwatch watch;
   const LayerImages layers =
-      cast_layers(model.tracer(), model.image_scene(), camera, wanted, session.executor);
+      cast_layers(model.picture_tracer(), model.image_scene(), camera, wanted, session.executor);
   result.seconds_of_layers += watch.seconds();
   result.unlit_pixels += layers.unlit_pixels;
   result.clipped_values += write_layers(file, layers);
@@ -211,7 +227,7 @@ nlohmann::ordered_json content_of(const RenderJob& job) {
 }
 
 RenderResult draw_each_pose(const RenderJob& job, Panels& panels, Session& session) {
-  const std::vector<Camera> cameras = at_each_pose(job.view);
+  const std::vector<TimedCamera> cameras = at_each_pose(job.view);
   OutputFolder folder(job.output, job.overwrite, kRenderCommand, content_of(job));
   RenderResult result;
   session.progress.begin_step("render", cameras.size());
@@ -232,7 +248,7 @@ RenderResult draw(const RenderJob& job, std::vector<Panel> parts, Session& sessi
   if (job.each_pose) return draw_each_pose(job, panels, session);
   RenderResult result;
   session.progress.begin_step("render", 0);
-  draw_picture(job, camera_of(job.view, panels.part()), job.output, panels, session, result);
+  draw_picture(job, timed_camera_of(job.view, panels.part()), job.output, panels, session, result);
   session.progress.end_step();
   return result;
 }

@@ -23,8 +23,8 @@ enum class Film : std::uint8_t {
   drive,      ///< along the trajectory, looking ahead
 };
 
-/// One or several models (splats or meshes) or point clouds from the same camera, side by side in
-/// one picture.
+/// One or several models (splats, meshes, world files) or point clouds from the same camera, side
+/// by side in one picture.
 struct RenderJob {
   std::vector<std::filesystem::path> models;
   std::filesystem::path output;
@@ -34,6 +34,8 @@ struct RenderJob {
   ViewChoice view;     ///< width and height are those of one model's part of the picture
   std::string camera;  ///< of load_camera(), chosen for `view`; "": none
   std::string layers;  ///< of layers_of(); of one model
+  /// Of the objects of world files. Default: that of the pose, else when the first begins to move.
+  std::optional<double> time_s;
   /// One picture a pose of the trajectory: `output` is a folder of 000000.png, 000001.png...
   bool each_pose = false;
   bool overwrite = false;  ///< that folder

@@ -58,7 +58,7 @@ void ModelScene::prepare(const std::string& name, Session& session) {
     throw Error(ErrorKind::data, name + ": no " + std::string(primitives_of(model_)));
   if (!labels_) labels_ = load_labels_of_model(label_scheme_of(model_), session.progress);
   session.progress.begin_step("build the ray index", 0);
-  make_engine(session);
+  engine_ = make_engine(view(), session, &gpu_);
   attributes_ = model_attributes();
 }
 
@@ -94,16 +94,27 @@ std::size_t ModelScene::prefetch(std::span<const ScanMotion> scans, double) cons
   return scans.size();
 }
 
-void ModelScene::make_engine(Session& session) {
+std::unique_ptr<SceneEngine> ModelScene::make_engine(const SceneView& scene, Session& session,
+                                                     const GpuScene** gpu) const {
+  std::unique_ptr<SceneEngine> engine;
   const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
     const bool use_optix = session.device.kind == DeviceKind::optix;
-    auto gpu =
-        make_gpu_scene(view(), origin(), use_optix ? TracingBackend::optix : TracingBackend::cuda,
+    auto made =
+        make_gpu_scene(scene, origin(), use_optix ? TracingBackend::optix : TracingBackend::cuda,
                        session.device.gpu_numbers());
-    gpu_ = gpu.get();
-    engine_ = std::move(gpu);
+    *gpu = made.get();
+    engine = std::move(made);
   });
-  if (!on_gpu) engine_ = make_cpu_scene_engine(view(), origin(), executor_);
+  return on_gpu ? std::move(engine) : make_cpu_scene_engine(scene, origin(), executor_);
+}
+
+void ModelScene::show_at(double time_s, Session& session) {
+  if (!world_) throw std::logic_error("ModelScene: no objects");
+  renderer_.reset();
+  posed_engine_.reset();  // it looks into the scene of before
+  posed_ = std::make_unique<PosedScene>(place(), *world_, time_s);
+  const GpuScene* gpu = nullptr;
+  posed_engine_ = make_engine(posed_->scene().view, session, &gpu);
 }
 
 PrimitiveAttributes ModelScene::model_attributes() const {
@@ -118,7 +129,9 @@ PrimitiveAttributes ModelScene::model_attributes() const {
   return attributes;
 }
 
-ImageScene ModelScene::image_scene() const {
+ImageScene ModelScene::image_scene() const { return posed_ ? posed_->scene() : place(); }
+
+ImageScene ModelScene::place() const {
   ImageScene scene;
   scene.view = view();
   scene.attributes = model_attributes();
@@ -145,7 +158,7 @@ std::shared_ptr<ImageRenderer> ModelScene::renderer(const ImageOptions& options)
   const std::lock_guard lock(renderer_mutex_);
   if (!renderer_ || !(renderer_options_ == options)) {
     renderer_.reset();  // its memory is free before the next one needs some
-    renderer_ = engine_->renderer(image_scene(), options);
+    renderer_ = picture_engine().renderer(image_scene(), options);
     renderer_options_ = options;
   }
   return renderer_;
@@ -159,7 +172,7 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options,
                          std::span<const float> values) const {
   ImageScene scene = image_scene();
   scene.attributes.intensities = values;
-  return engine_->renderer(scene, options)->render(camera);
+  return picture_engine().renderer(scene, options)->render(camera);
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {

@@ -18,6 +18,7 @@
 #include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/simulate/scene_engine.h"
+#include "adasplats/simulate/world/posed_scene.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/splats/model/any_model.h"
 
@@ -48,6 +49,8 @@ class ModelScene final : public ScanScene {
   Vec3d origin() const override { return origin_of(model_); }
   const Crs& crs() const { return crs_of(model_); }
   const Tracer& tracer() const { return engine_->tracer(); }
+  /// Casts rays into what pictures show.
+  const Tracer& picture_tracer() const { return picture_engine().tracer(); }
   /// Casts rays into the model, without the objects.
   const SceneCaster& scan_caster() const override { return engine_->scan_caster(); }
   /// Of the model, followed by those of the objects.
@@ -68,6 +71,9 @@ class ModelScene final : public ScanScene {
   /// Null if the scene is on the CPU.
   const GpuScene* gpu() const { return gpu_; }
   const LabelScheme* labels() const override { return labels_ ? &*labels_ : nullptr; }
+  /// Pictures from now on show the objects as they are at this time (without a call: no objects).
+  /// Builds a tree of scene and objects. Not while pictures are made.
+  void show_at(double time_s, Session& session);
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
   /// The first that the model has: colours, classes with a colour for most of it, intensities, the
@@ -84,7 +90,10 @@ class ModelScene final : public ScanScene {
 
  private:
   void prepare(const std::string& name, Session& session);
-  void make_engine(Session& session);
+  std::unique_ptr<SceneEngine> make_engine(const SceneView& scene, Session& session,
+                                           const GpuScene** gpu) const;
+  ImageScene place() const;
+  const SceneEngine& picture_engine() const { return posed_engine_ ? *posed_engine_ : *engine_; }
   std::shared_ptr<ImageRenderer> renderer(const ImageOptions& options) const;
   PrimitiveAttributes model_attributes() const;
   std::vector<Vec3f> disk_centers() const;
@@ -93,7 +102,9 @@ class ModelScene final : public ScanScene {
   AnyModel model_;
   std::optional<LabelScheme> labels_;
   std::unique_ptr<SceneEngine> engine_;
-  const GpuScene* gpu_ = nullptr;                    ///< `engine_`, if it is on a GPU
+  const GpuScene* gpu_ = nullptr;      ///< `engine_`, if it is on a GPU
+  std::unique_ptr<PosedScene> posed_;  ///< of show_at()
+  std::unique_ptr<SceneEngine> posed_engine_;
   mutable std::shared_ptr<ImageRenderer> renderer_;  ///< of the last options
   mutable ImageOptions renderer_options_;
   std::optional<World> world_;

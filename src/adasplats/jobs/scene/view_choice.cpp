@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/error.h"
@@ -19,14 +20,23 @@ constexpr int kMaxPixels = 1 << 28;
 
 constexpr double kFromAfar_deg = 45, kFromWithin_deg = 70;
 
-RigidTransform pose_of(const ViewChoice& view) {
-  if (view.at) return *view.at;
-  const Trajectory trajectory = load_trajectory(view.trajectory);
+/// The poses, and whether they have times.
+std::pair<Trajectory, bool> poses_of(const ViewChoice& view) {
+  Trajectory trajectory = load_trajectory(view.trajectory);
+  const bool timed = trajectory.back().time_s > trajectory.front().time_s;
+  return {std::move(trajectory), timed};
+}
+
+TimedCamera camera_at_pose(const ViewChoice& view) {
+  if (view.at) return {camera_at(view, *view.at), std::nullopt};
+  const auto [trajectory, timed] = poses_of(view);
   if (view.pose >= trajectory.size()) {
     throw Error(ErrorKind::usage, "`pose` " + std::to_string(view.pose) + ": the trajectory has " +
                                       std::to_string(trajectory.size()) + " poses");
   }
-  return trajectory[view.pose].world_from_sensor;
+  const TimedPose& pose = trajectory[view.pose];
+  return {camera_at(view, pose.world_from_sensor),
+          timed ? std::optional(pose.time_s) : std::nullopt};
 }
 
 double fov_within_rad(const ViewChoice& view) {
@@ -67,26 +77,31 @@ Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera
   return camera;
 }
 
-Camera camera_of(const ViewChoice& view, const ShownPart& part) {
-  if (view.birds_eye) return birds_eye(part.low, part.high, view.width, view.height);
+TimedCamera timed_camera_of(const ViewChoice& view, const ShownPart& part) {
+  if (view.birds_eye)
+    return {birds_eye(part.low, part.high, view.width, view.height), std::nullopt};
   if (view.trajectory.empty() && !view.at && !view.eye)
-    return overview(part, view.width, view.height,
-                    view.horizontal_fov_deg.value_or(kFromAfar_deg) * kRadiansPerDegree);
-  if (!view.eye) return camera_at(view, pose_of(view));
+    return {overview(part, view.width, view.height,
+                     view.horizontal_fov_deg.value_or(kFromAfar_deg) * kRadiansPerDegree),
+            std::nullopt};
+  if (!view.eye) return camera_at_pose(view);
   const Camera looking = look_at(*view.eye, view.target.value_or(part.middle()));
   Camera camera = camera_at(view, looking.world_from_camera);
   camera.world_from_camera = looking.world_from_camera;
-  return camera;
+  return {camera, std::nullopt};
 }
 
-std::vector<Camera> at_each_pose(const ViewChoice& view) {
-  std::vector<Camera> cameras;
-  for (const TimedPose& pose : load_trajectory(view.trajectory))
-    cameras.push_back(camera_at(view, pose.world_from_sensor));
+std::vector<TimedCamera> at_each_pose(const ViewChoice& view) {
+  const auto [trajectory, timed] = poses_of(view);
+  std::vector<TimedCamera> cameras;
+  for (const TimedPose& pose : trajectory)
+    cameras.push_back({camera_at(view, pose.world_from_sensor),
+                       timed ? std::optional(pose.time_s) : std::nullopt});
   return cameras;
 }
 
-std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std::size_t frames) {
+std::vector<TimedCamera> turntable(const ViewChoice& view, const ShownPart& part,
+                                   std::size_t frames) {
   ViewChoice afar = view;
   afar.trajectory.clear();
   const Camera first = camera_of(afar, part);
@@ -99,7 +114,7 @@ std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std
                                        pitch, azimuth + k * std::numbers::pi / 12)
                              .world_from_camera.translation -
                          part.middle()));
-  std::vector<Camera> cameras;
+  std::vector<TimedCamera> cameras;
   for (std::size_t i = 0; i < frames; ++i) {
     const double turned =
         azimuth + 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(frames);
@@ -109,25 +124,24 @@ std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std
     camera.width = view.width;
     camera.height = view.height;
     camera.horizontal_fov_rad = first.horizontal_fov_rad;
-    cameras.push_back(camera);
+    cameras.push_back({camera, std::nullopt});
   }
   return cameras;
 }
 
-std::vector<Camera> along_drive(const ViewChoice& view, std::size_t frames) {
-  Trajectory trajectory = load_trajectory(view.trajectory);
+std::vector<TimedCamera> along_drive(const ViewChoice& view, std::size_t frames) {
+  auto [trajectory, timed] = poses_of(view);
   // Poses without times are treated as equally spaced in time.
-  const bool timed = trajectory.back().time_s > trajectory.front().time_s;
   for (std::size_t i = 0; !timed && i < trajectory.size(); ++i)
     trajectory[i].time_s = static_cast<double>(i);
-  const double begin = trajectory.front().time_s, span = trajectory.back().time_s - begin;
-  ViewChoice ahead = view;
-  std::vector<Camera> cameras;
+  const double begin_s = trajectory.front().time_s, span_s = trajectory.back().time_s - begin_s;
+  std::vector<TimedCamera> cameras;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share =
         frames > 1 ? static_cast<double>(i) / static_cast<double>(frames - 1) : 0.0;
-    Camera camera = camera_at(ahead, interpolate(trajectory, begin + share * span));
-    cameras.push_back(camera);
+    const double time_s = begin_s + share * span_s;
+    cameras.push_back({camera_at(view, interpolate(trajectory, time_s)),
+                       timed ? std::optional(time_s) : std::nullopt});
   }
   return cameras;
 }

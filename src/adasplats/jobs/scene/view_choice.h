@@ -45,21 +45,31 @@ void check(const ViewChoice& view);
 /// The camera at a pose of the trajectory, looking ahead, or as it is mounted there.
 Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera);
 
+/// A camera and the time of its pose, if its trajectory has times.
+struct TimedCamera {
+  Camera camera;
+  std::optional<double> time_s;
+};
+
 /// The camera for a part of a scene. Errors: those of the trajectory's file; usage (a pose that it
 /// does not have).
-Camera camera_of(const ViewChoice& view, const ShownPart& part);
+TimedCamera timed_camera_of(const ViewChoice& view, const ShownPart& part);
+inline Camera camera_of(const ViewChoice& view, const ShownPart& part) {
+  return timed_camera_of(view, part).camera;
+}
 
 /// Cameras at all poses of the view's trajectory. Errors: those of the trajectory's file.
-std::vector<Camera> at_each_pose(const ViewChoice& view);
+std::vector<TimedCamera> at_each_pose(const ViewChoice& view);
 
 /// Cameras of a film, one a picture.
 
 /// Once around the part, from the height of overview() and far enough away that all of it is always
-/// in the picture.
-std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std::size_t frames);
+/// in the picture. All at one time.
+std::vector<TimedCamera> turntable(const ViewChoice& view, const ShownPart& part,
+                                   std::size_t frames);
 
 /// Along the view's trajectory from its first pose to its last, at the driven speed. Errors: those
 /// of the trajectory's file.
-std::vector<Camera> along_drive(const ViewChoice& view, std::size_t frames);
+std::vector<TimedCamera> along_drive(const ViewChoice& view, std::size_t frames);
 
 }  // namespace adasplats

@@ -165,6 +165,16 @@ const WorldObject& World::object(std::size_t object) const {
 }
 Vec3d World::scene_origin() const { return impl_->scene_origin; }
 
+std::optional<double> World::motion_begin_s() const {
+  std::optional<double> begin_s;
+  for (const PlacedObject& placed : impl_->objects) {
+    const Trajectory& poses = placed.object.trajectory;
+    if (poses.size() > 1)
+      begin_s = std::min(poses.front().time_s, begin_s.value_or(poses.front().time_s));
+  }
+  return begin_s;
+}
+
 void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                      std::span<const Firing> firings, const ScanMotion& motion,
                      double scan_duration_s, int depth, std::span<Hit> hits,

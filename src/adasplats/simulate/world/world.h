@@ -96,6 +96,8 @@ class World {
   std::size_t object_count() const;
   const WorldObject& object(std::size_t object) const;
   Vec3d scene_origin() const;
+  /// The time of the first pose of all objects that move; nothing if none does.
+  std::optional<double> motion_begin_s() const;
 
   /// Merges hits of the objects present in scan `scan_index` into hits[i * depth + k] of firing i,
   /// ascending, for the poses of sensor and objects at the time of the firing. Primitives of
