@@ -96,6 +96,40 @@ class Render(ProgramTest):
                      says=["--seconds"])
         self.assertEqual([f.name for f in self.folder.glob(".*")], [], "nothing is left over")
 
+    def middle(self, *arguments):
+        """Range and class in the middle of a picture."""
+        self.run_good("render", *arguments, "-o", self.folder / "w.png", *SMALL, "--layers",
+                      "range,class")
+        return [npy(self.folder / f"w.{layer}.npy")[1][27 * 96 + 48] for layer in ("range", "class")]
+
+    def test_objects_of_a_world_at_their_time(self):
+        """A wall drives from 6 m to 3 m ahead of the camera within a second."""
+        (self.folder / "floor.obj").write_text("v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n")
+        (self.folder / "wall.obj").write_text("v 0 -5 0\nv 0 5 0\nv 0 5 5\nv 0 -5 5\nf 1 2 3 4\n")
+        (self.folder / "path.csv").write_text(
+            "time,x,y,z,qw,qx,qy,qz\n10,6,0,0,1,0,0,0\n11,3,0,0,1,0,0,0\n")
+        world = self.folder / "world.toml"
+        world.write_text('model = "floor.obj"\n[[object]]\ngeometry = "wall.obj"\nclass = 50\n'
+                         'trajectory = "path.csv"\n')
+        ahead = ["--eye", "0,0,1", "--target", "5,0,1"]
+        for time, distance in (("10", 6), ("10.5", 4.5), ("12", 3)):
+            range_m, class_id = self.middle(world, *ahead, "--time", time)
+            self.assertAlmostEqual(range_m, distance, delta=0.02)
+            self.assertEqual(class_id, 50)
+        self.assertAlmostEqual(self.middle(world, *ahead)[0], 6, delta=0.02)
+        poses = self.folder / "poses.csv"
+        poses.write_text("time,x,y,z,qw,qx,qy,qz\n10,0,0,1,1,0,0,0\n11,1,0,1,1,0,0,0\n")
+        self.run_good("render", world, "-o", self.folder / "each", *SMALL, "--trajectory", poses,
+                      "--each-pose", "--layers", "range")
+        last = npy(self.folder / "each" / "000001.range.npy")[1]
+        self.assertAlmostEqual(last[27 * 96 + 48], 2, delta=0.02)
+        range_m, _ = self.middle(world, "--trajectory", poses, "--pose", "1")
+        self.assertAlmostEqual(range_m, 2, delta=0.02)
+        self.run_good("render", world, "-o", self.folder / "film.webp", *SMALL, "--drive",
+                      "--trajectory", poses, "--seconds", "0.2", "--frames-per-s", "10")
+        self.run_bad(64, "render", world, "-o", self.folder / "each2", *SMALL, "--trajectory",
+                     poses, "--each-pose", "--time", "3", says=["--time"])
+
     def test_a_camera_with_layers(self):
         model, picture = self.model(), self.folder / "p.png"
         camera = self.folder / "car.toml"

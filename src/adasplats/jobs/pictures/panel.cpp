@@ -105,8 +105,6 @@ void Panel::show_errors(const ErrorPoints& points, const std::filesystem::path& 
     if (std::isnan(points.errors_m[i])) holes_.push_back(points.cloud.world(i));
 }
 
-bool Panel::has_motion() const { return world_ && world_->world()->motion_begin_s(); }
-
 void Panel::show_at(std::optional<double> time_s, Session& session) {
   if (!world_) return;
   const double shown_s = time_s.value_or(world_->world()->motion_begin_s().value_or(0));

@@ -52,8 +52,6 @@ class Panel {
   /// The same of errors in memory; `name`: of them in messages.
   void show_errors(const ErrorPoints& errors, const std::filesystem::path& name);
 
-  /// Whether it has objects that move.
-  bool has_motion() const;
   /// Shows the objects of a world file at this time, or without one when the first begins to move.
   /// Does nothing for others.
   void show_at(std::optional<double> time_s, Session& session);

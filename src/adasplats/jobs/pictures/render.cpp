@@ -55,15 +55,9 @@ class Panels {
   }
 
   const ShownPart& part() const { return part_; }
-  /// Shows the objects of worlds at the time of the camera. Errors: usage (it has none).
+  /// Shows the objects of worlds at this time.
   void show_at(const std::optional<double>& time_s) {
-    for (Panel& panel : panels_) {
-      if (!time_s && !job_.view.trajectory.empty() && panel.has_motion())
-        throw Error(ErrorKind::usage, job_.view.trajectory.string() +
-                                          ": has no times; the objects move with time, so name "
-                                          "one with `time`");
-      panel.show_at(time_s, session_);
-    }
+    for (Panel& panel : panels_) panel.show_at(time_s, session_);
   }
   /// The model of the only panel; null if it is of points.
   const ModelScene* only_model() const { return panels_.front().model(); }

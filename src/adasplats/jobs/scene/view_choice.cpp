@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/error.h"
@@ -20,23 +19,15 @@ constexpr int kMaxPixels = 1 << 28;
 
 constexpr double kFromAfar_deg = 45, kFromWithin_deg = 70;
 
-/// The poses, and whether they have times.
-std::pair<Trajectory, bool> poses_of(const ViewChoice& view) {
-  Trajectory trajectory = load_trajectory(view.trajectory);
-  const bool timed = trajectory.back().time_s > trajectory.front().time_s;
-  return {std::move(trajectory), timed};
-}
-
 TimedCamera camera_at_pose(const ViewChoice& view) {
   if (view.at) return {camera_at(view, *view.at), std::nullopt};
-  const auto [trajectory, timed] = poses_of(view);
+  const Trajectory trajectory = load_trajectory(view.trajectory);
   if (view.pose >= trajectory.size()) {
     throw Error(ErrorKind::usage, "`pose` " + std::to_string(view.pose) + ": the trajectory has " +
                                       std::to_string(trajectory.size()) + " poses");
   }
   const TimedPose& pose = trajectory[view.pose];
-  return {camera_at(view, pose.world_from_sensor),
-          timed ? std::optional(pose.time_s) : std::nullopt};
+  return {camera_at(view, pose.world_from_sensor), pose.time_s};
 }
 
 double fov_within_rad(const ViewChoice& view) {
@@ -92,11 +83,9 @@ TimedCamera timed_camera_of(const ViewChoice& view, const ShownPart& part) {
 }
 
 std::vector<TimedCamera> at_each_pose(const ViewChoice& view) {
-  const auto [trajectory, timed] = poses_of(view);
   std::vector<TimedCamera> cameras;
-  for (const TimedPose& pose : trajectory)
-    cameras.push_back({camera_at(view, pose.world_from_sensor),
-                       timed ? std::optional(pose.time_s) : std::nullopt});
+  for (const TimedPose& pose : load_trajectory(view.trajectory))
+    cameras.push_back({camera_at(view, pose.world_from_sensor), pose.time_s});
   return cameras;
 }
 
@@ -130,18 +119,14 @@ std::vector<TimedCamera> turntable(const ViewChoice& view, const ShownPart& part
 }
 
 std::vector<TimedCamera> along_drive(const ViewChoice& view, std::size_t frames) {
-  auto [trajectory, timed] = poses_of(view);
-  // Poses without times are treated as equally spaced in time.
-  for (std::size_t i = 0; !timed && i < trajectory.size(); ++i)
-    trajectory[i].time_s = static_cast<double>(i);
+  const Trajectory trajectory = load_trajectory(view.trajectory);
   const double begin_s = trajectory.front().time_s, span_s = trajectory.back().time_s - begin_s;
   std::vector<TimedCamera> cameras;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share =
         frames > 1 ? static_cast<double>(i) / static_cast<double>(frames - 1) : 0.0;
     const double time_s = begin_s + share * span_s;
-    cameras.push_back({camera_at(view, interpolate(trajectory, time_s)),
-                       timed ? std::optional(time_s) : std::nullopt});
+    cameras.push_back({camera_at(view, interpolate(trajectory, time_s)), time_s});
   }
   return cameras;
 }

@@ -45,7 +45,7 @@ void check(const ViewChoice& view);
 /// The camera at a pose of the trajectory, looking ahead, or as it is mounted there.
 Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera);
 
-/// A camera and the time of its pose, if its trajectory has times.
+/// A camera and, on a trajectory, the time of its pose.
 struct TimedCamera {
   Camera camera;
   std::optional<double> time_s;
