@@ -16,9 +16,9 @@
 #include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/jobs/session/session.h"
+#include "adasplats/simulate/image/posed_scene.h"
 #include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/simulate/scene_engine.h"
-#include "adasplats/simulate/world/posed_scene.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/splats/model/any_model.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/simulate/world/posed_scene.h"
+#include "adasplats/simulate/image/posed_scene.h"
 
 #include <limits>
 #include <optional>
