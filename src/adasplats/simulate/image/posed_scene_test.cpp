@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-constexpr Vec3d kOrigin = {650'000, 6'860'000, 30};
+constexpr Vec3d kPosedOrigin = {650'000, 6'860'000, 30};
 
 /// Disks of 0.6 m, 0.5 m apart, in a square of 2 * half m; normal along an axis.
 SplatModel plate(float half_m, int axis, std::uint16_t class_id) {
@@ -38,17 +38,17 @@ MeshModel wall() {
 }
 
 RigidTransform at(double x, double y, double yaw_rad) {
-  return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), kOrigin + Vec3d{x, y, 0}};
+  return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), kPosedOrigin + Vec3d{x, y, 0}};
 }
 
 class PosedSceneTest : public testing::Test {
  protected:
   PosedSceneTest() {
-    place_.origin = kOrigin;
+    place_.origin = kPosedOrigin;
     for (Disk& disk : place_.disks) disk.center.z -= 1.5F;
     scene_.view = place_.view();
     scene_.attributes.classes = place_.classes;
-    scene_.origin = kOrigin;
+    scene_.origin = kPosedOrigin;
     SplatModel car = plate(1, 1, 252);
     car.origin = {0, 0.5, 0};
     add(std::move(car), {{0, at(8, -2, 0.2)}, {1, at(8, 3, 0.9)}}).scale = 1.25;
@@ -69,7 +69,7 @@ class PosedSceneTest : public testing::Test {
   Executor executor_{2};
   SplatModel place_ = plate(20, 2, 40);
   ImageScene scene_;
-  World world_{static_cast<std::uint32_t>(place_.size()), kOrigin};
+  World world_{static_cast<std::uint32_t>(place_.size()), kPosedOrigin};
   WorldObject last_;
 };
 
