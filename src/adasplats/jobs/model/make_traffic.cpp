@@ -25,6 +25,7 @@
 #include "adasplats/traffic/find_moving.h"
 #include "adasplats/traffic/label_boxes.h"
 #include "adasplats/traffic/object_cloud.h"
+#include "adasplats/traffic/object_ground.h"
 #include "adasplats/traffic/object_kind.h"
 
 namespace adasplats {
@@ -115,6 +116,7 @@ void write_object(RecordedObject& object, const ModelJob& job, const IntensityRe
                   TrafficObject& made) {
   constexpr std::size_t kMinPoints = 100;
   constexpr float kMirrorApart_m = 0.4F;
+  made.ground_points = remove_ground(object);
   made.scans = object.scans.size();
   made.points = object.points();
   made.world_from_object = object.world_from_object.front().world_from_sensor;
@@ -336,6 +338,7 @@ nlohmann::ordered_json to_json(const TrafficResult& result) {
                                {"points", object.points},
                                {"mirrored_points", object.mirrored_points},
                                {"splats", object.splats},
+                               {"ground_points", object.ground_points},
                                {"scans_aligned", object.aligned.scans},
                                {"median_shift_m", object.aligned.median_shift_m},
                                {"median_turn_rad", object.aligned.median_turn_rad},

@@ -25,7 +25,9 @@ struct TrafficObject {
   bool is_at_rest = false;
   RigidTransform world_from_object;  ///< the pose at the beginning
   double begin_s = 0, end_s = 0;
-  std::size_t scans = 0, points = 0, mirrored_points = 0, splats = 0;
+  std::size_t scans = 0, points = 0, splats = 0;
+  std::size_t ground_points = 0;  ///< of the ground below it, left out
+  std::size_t mirrored_points = 0;
   AlignReport aligned;
   /// Of objects at rest: measured beams that ended on it, and those of them that hit nothing in the
   /// scene without it.
