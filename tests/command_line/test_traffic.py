@@ -70,7 +70,7 @@ class Traffic(ProgramTest):
         place = self.folder / "place"
         result = self.run_good("model", drive, "--traffic", "-o", place, "--report",
                                self.folder / "report.json")
-        self.assertIn("1 moving objects and 0 parked vehicles; 0 left out", result.stdout)
+        self.assertIn("1 moving objects and 0 at rest; 0 left out", result.stdout)
         car, = json.loads((self.folder / "report.json").read_text())["objects"]
         self.assertEqual((car["label"], car["name"], car["class"]), ("car", "001-car", MOVING_CAR))
         self.assertAlmostEqual(car["size_m"][0], 4.4, delta=0.4)
@@ -116,7 +116,7 @@ class Traffic(ProgramTest):
         place = self.folder / "place"
         result = self.run_good("model", self.folder / "drive" / "sequences" / "00", "--traffic",
                                "-o", place)
-        self.assertIn("1 moving objects and 1 parked vehicles; 0 left out", result.stdout)
+        self.assertIn("1 moving objects and 1 at rest; 0 left out", result.stdout)
         moving, parked = tomllib.loads((place / "world.toml").read_text())["object"]
         self.assertEqual((moving["name"], moving["class"]), ("001-car", MOVING_CAR))
         self.assertEqual((parked["name"], parked["class"]), ("002-car", 10))

@@ -286,12 +286,12 @@ class ModelCommand final : public Command {
     }
     print((result.objects.empty() ? std::string() : table.text() + "\n") +
           (job_.output / "world.toml").string() + ": " + grouped(result.scene.built.primitives) +
-          " splats, " + grouped(moving) + " moving objects and " + grouped(at_rest) +
-          " parked vehicles; " + grouped(result.objects.size() - moving - at_rest) + " left out\n" +
-          (at_rest == 0 ? std::string()
-                        : "Without the parked vehicles, " + grouped(open_beams) + " of the " +
-                              grouped(beams) + " beams on them hit nothing: no scan saw " +
-                              "what is behind\n"));
+          " splats, " + grouped(moving) + " moving objects and " + grouped(at_rest) + " at rest; " +
+          grouped(result.objects.size() - moving - at_rest) + " left out\n" +
+          (at_rest == 0
+               ? std::string()
+               : "Without those at rest, " + grouped(open_beams) + " of the " + grouped(beams) +
+                     " beams on them hit nothing: no scan saw " + "what is behind\n"));
   }
 
   void run_city(Session& session) {

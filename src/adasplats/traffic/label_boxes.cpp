@@ -66,9 +66,10 @@ class Collector {
     for (std::size_t i = 0; i < scan.instances.size(); ++i) {
       const ObjectKey key = {scan.classes[i], scan.instances[i]};
       const SemanticClass* const of = scheme_.find(key.first);
-      if (key.second == 0 || of == nullptr || of->mobility == Mobility::fixed) continue;
+      if (of == nullptr || of->mobility == Mobility::fixed) continue;
       const bool moves = of->mobility == Mobility::moving;
-      if (!moves && !object_kind_of(of->name).is_vehicle) continue;
+      ++points_;
+      if (key.second == 0) continue;
       const Vec3d place = pose.world_from_sensor * beam_of(drive, index, scan, i).end;
       if (!is_finite(place)) continue;
       if (moves) {
@@ -86,13 +87,17 @@ class Collector {
         tracks_[key].push_back(cluster_of(of_scan, loose_.size() - 1, std::move(points)));
   }
 
-  BoxContent boxes(FunctionRef<double(Vec3d)> height_below) const {
+  BoxContent boxes(FunctionRef<double(Vec3d)> height_below) {
     BoxContent content;
     for (const auto& [key, track] : tracks_) {
       constexpr std::size_t kMinScans = 3;
       if (track.size() < kMinScans) continue;
       std::optional<BoxTrack> boxes = fit_boxes(track, loose_, height_below, {});
-      if (!boxes) continue;
+      if (!boxes) {
+        at_rest_[key] = at_rest(track);
+        continue;
+      }
+      for (const Cluster& cluster : track) points_of_objects_ += cluster.points.size();
       boxes->id = key.second;
       boxes->label = label_of(*scheme_.find(key.first));
       content.moving.push_back(std::move(*boxes));
@@ -102,17 +107,34 @@ class Collector {
       BoxTrack track{key.second, label, {}, true};
       track.boxes.push_back(fit_box_at_rest(thinned(object.points), object.sensors, label));
       constexpr double kMaxLength_m = 20;
-      if (2 * track.boxes.front().half_size.x <= kMaxLength_m)
-        content.at_rest.push_back(std::move(track));
+      if (2 * track.boxes.front().half_size.x > kMaxLength_m) continue;
+      content.at_rest.push_back(std::move(track));
+      points_of_objects_ += object.points.size();
     }
     return content;
   }
 
+  /// Points of moving and movable classes, and those of them in no object of boxes().
+  std::size_t points() const { return points_; }
+  std::size_t points_of_none() const { return points_ - points_of_objects_; }
+
  private:
+  /// An object of a moving class that hardly moves, such as a person who waits.
+  ObjectAtRest at_rest(const ClusterTrack& track) const {
+    ObjectAtRest object;
+    for (const Cluster& cluster : track) {
+      const LoosePoints& of_scan = loose_[cluster.scan];
+      for (const std::uint32_t i : cluster.points) object.points.push_back(of_scan.points[i]);
+      object.sensors.push_back(of_scan.sensor);
+    }
+    return object;
+  }
+
   const LabelScheme& scheme_;
   std::vector<LoosePoints> loose_;
   std::map<ObjectKey, ClusterTrack> tracks_;
   std::map<ObjectKey, ObjectAtRest> at_rest_;
+  std::size_t points_ = 0, points_of_objects_ = 0;
 };
 
 /// Every object gets an id of its own.
@@ -153,6 +175,13 @@ BoxContent boxes_of_labels(const KittiSequence& drive, const LabelScheme& scheme
   BoxContent content = collector.boxes([&](Vec3d point) { return ground.at(point.x, point.y); });
   make_unique(content);
   progress.end_step();
+  constexpr std::size_t kWorthALine = 100;  // one in so many
+  if (collector.points_of_none() * kWorthALine > collector.points())
+    progress.warn(std::to_string(collector.points_of_none()) + " of " +
+                  std::to_string(collector.points()) +
+                  " points of moving and movable classes are of no object: they have no instance, "
+                  "or move and are seen in fewer than 3 scans with 5 points each, or their "
+                  "instance extends over more than 20 m");
   return content;
 }
 

@@ -11,10 +11,11 @@
 namespace adasplats {
 
 /// Boxes around the objects that the labels of a drive tell apart: points of one class and
-/// instance. Objects of moving classes get boxes by fit_boxes(), vehicles of movable classes one by
-/// fit_box_at_rest(). Left out are instance 0, objects of moving classes that hardly move, and
-/// vehicles at rest that extend over more than 20 m: their number was used again. Empty without
-/// such labels. Ids are the instances, where those are unique. The same for any number of threads.
+/// instance. Objects of moving classes get boxes by fit_boxes(), those that hardly move and objects
+/// of movable classes one by fit_box_at_rest(). Left out are instance 0, moving objects in fewer
+/// than 3 scans, and objects at rest that extend over more than 20 m: their number was used again.
+/// A warning counts their points if they are more than 1 % of all. Empty without such labels. Ids
+/// are the instances, where those are unique. The same for any number of threads.
 BoxContent boxes_of_labels(const KittiSequence& drive, const LabelScheme& scheme,
                            const Executor& executor, ProgressSink& progress);
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/traffic/fit_boxes.h"
 #include "adasplats/traffic/recorded_street_test.h"
 
@@ -70,6 +71,36 @@ TEST(LabelBoxes, MovingAndParkedVehiclesHaveBoxes) {
   EXPECT_EQ(
       boxes_of_labels(drive, semantickitti_labels(), Executor(3), quiet).at_rest[0].boxes[0].middle,
       rest.boxes[0].middle);
+}
+
+// Nothing that labels call moving is lost: what hardly moves is at rest.
+TEST(LabelBoxes, AMovingClassThatStandsIsAtRest) {
+  const DrivingBox waiting{{9, 3.5, 0.95}, {4.4, 1.8, 1.5}, 0};
+  const DrivingBox parked{{14, -5, 0.95}, {4.4, 1.8, 1.5}, 0};
+  const KittiSequence drive = labelled_street(waiting, parked);
+  RecordedProgress progress;
+  const BoxContent content = boxes_of_labels(drive, semantickitti_labels(), Executor(1), progress);
+  EXPECT_TRUE(content.moving.empty());
+  ASSERT_EQ(content.at_rest.size(), 2U);
+  for (const BoxTrack& track : content.at_rest) EXPECT_TRUE(track.is_at_rest);
+  EXPECT_TRUE(progress.warnings.empty());
+}
+
+TEST(LabelBoxes, MovingPointsOfNoObjectAreStated) {
+  KittiSequence drive =
+      labelled_street({{-8, 3.5, 0.95}, {4.4, 1.8, 1.5}, 12}, {{14, -5, 0.95}, {4.4, 1.8, 1.5}, 0});
+  std::vector<KittiScan> scans;
+  for (std::size_t k = 0; k < drive.scans.size(); ++k) {
+    scans.push_back(read_kitti_points(drive, k));
+    if (k > 1) continue;
+    for (std::size_t i = 0; i < scans[k].classes.size(); ++i)
+      if (scans[k].classes[i] == kMovingCar) scans[k].instances[i] = 0;
+  }
+  drive.reader = std::make_shared<MemoryReader>(std::move(scans));
+  RecordedProgress progress;
+  boxes_of_labels(drive, semantickitti_labels(), Executor(1), progress);
+  ASSERT_EQ(progress.warnings.size(), 1U);
+  EXPECT_NE(progress.warnings[0].find("of no object"), std::string::npos) << progress.warnings[0];
 }
 
 TEST(LabelBoxes, WithoutInstancesThereAreNone) {

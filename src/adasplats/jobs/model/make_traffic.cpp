@@ -221,7 +221,8 @@ BoxContent objects_of(const KittiSequence& drive, const ModelJob& job, Session& 
     steps.push_back({"find moving objects", watch.seconds()});
   }
   for (BoxTrack& track : content.at_rest)
-    if (object_kind_of(track.label).is_vehicle) content.moving.push_back(std::move(track));
+    if (!drive.boxes || object_kind_of(track.label).is_vehicle)
+      content.moving.push_back(std::move(track));
   content.at_rest.clear();
   return content;
 }
