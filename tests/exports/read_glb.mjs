@@ -15,8 +15,13 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 async function validate(file, bytes) {
   const report = await validator.validateBytes(new Uint8Array(bytes), { maxIssues: 20 });
-  const { numErrors, numWarnings, messages } = report.issues;
-  assert.equal(numErrors + numWarnings, 0, `${file}: ${JSON.stringify(messages, null, 1)}`);
+  // This version does not know the attributes of KHR_gaussian_splatting.
+  const issues = report.issues.messages.filter(
+    ({ severity, code, pointer }) =>
+      severity < 2 &&
+      !(code === "MESH_PRIMITIVE_INVALID_ATTRIBUTE" && pointer.includes("/KHR_gaussian_splatting:")),
+  );
+  assert.equal(issues.length, 0, `${file}: ${JSON.stringify(issues, null, 1)}`);
 }
 
 async function loadedPoints(bytes) {

@@ -265,8 +265,39 @@ void add_meshes(Seeds& seeds) {
     return bytes_of(static_cast<std::uint32_t>(content.size())) + bytes_of(type) + content;
   };
   const std::string chunks = chunk(text, 0x4e4f534a) + chunk(bytes, 0x004e4942);
-  seeds.add("glb", {"glTF" + bytes_of(2U) +
-                    bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks});
+  std::string gaussians;  // two: position, rotation, scale, opacity, harmonic, class
+  for (int i = 0; i < 2; ++i)
+    for (const float value :
+         {1.F, 2.F, 3.F, 0.F, 0.F, 0.F, 1.F, 0.5F, 0.4F, 0.01F, 0.9F, 0.F, 1.F, -1.F, 40.F})
+      gaussians += bytes_of(value);
+  std::string accessors;
+  for (const auto& [offset, type] : {std::pair(0, "VEC3"),
+                                     {12, "VEC4"},
+                                     {28, "VEC3"},
+                                     {40, "SCALAR"},
+                                     {44, "VEC3"},
+                                     {56, "SCALAR"}})
+    accessors += std::string(accessors.empty() ? "" : ",") + R"({"bufferView":0,"byteOffset":)" +
+                 std::to_string(offset) + R"(,"componentType":5126,"count":2,"type":")" + type +
+                 "\"}";
+  std::string splats =
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_gaussian_splatting"],"scene":0,)"
+      R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[2,2,2],"extras":{"origin":[1,2,3],)"
+      R"("adasplats":["adasplats.method basic"]}}],"meshes":[{"primitives":[{"mode":0,"attributes":)"
+      R"({"POSITION":0,"KHR_gaussian_splatting:ROTATION":1,"KHR_gaussian_splatting:SCALE":2,)"
+      R"("KHR_gaussian_splatting:OPACITY":3,"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0":4,)"
+      R"("_CLASS":5},"extensions":{"KHR_gaussian_splatting":{"kernel":"ellipse"}}}]}],)"
+      R"("accessors":[)" +
+      accessors +
+      R"(],"bufferViews":[{"buffer":0,"byteLength":120,"byteStride":60}],"buffers":)"
+      R"([{"byteLength":120}]})";
+  while (splats.size() % 4 != 0) splats += ' ';
+  const auto glb = [](const std::string& content) {
+    return "glTF" + bytes_of(2U) + bytes_of(static_cast<std::uint32_t>(12 + content.size())) +
+           content;
+  };
+  seeds.add("glb", {glb(chunks)});
+  seeds.add("glb", {glb(chunk(splats, 0x4e4f534a) + chunk(gaussians, 0x004e4942))});
 }
 
 void add_cities(Seeds& seeds) {
@@ -311,6 +342,12 @@ void add_places(Seeds& seeds) {
       "property float nz\nproperty float radius\nproperty ushort class\nproperty uchar group\n"
       "property float intensity\nend_header\n";
   seeds.add("splats", {splats + "1 2 3 0 0 1 0.5 40 0 0.25\n4 5 6 1 0 0 0.1 50 1 0.5\n"});
+  std::string trained = "ply\nformat ascii 1.0\ncomment adasplats.origin 1 2 3\nelement vertex 2\n";
+  for (const char* name : {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0",
+                           "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+    trained += "property float " + std::string(name) + "\n";
+  seeds.add("splats", {trained + "end_header\n1 2 3 0 1 -1 2 -1 -2 -6 1 0 0 0\n"
+                                 "4 5 6 0 1 -1 -9 -1 -2 -6 2 0 1 0\n"});
   seeds.add("world",
             {joined({"[[object]]\ngeometry = \"car.ply\"\nclass = \"car\"\ninstance = 7\n"
                      "position = [1, -3.5, 0]\nyaw_deg = 90\nscale = 2\ntrajectory = \"car.ply\"\n"

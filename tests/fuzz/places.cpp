@@ -26,11 +26,6 @@ void read_mesh(const Input& input) {
     require(is_finite(vertex), "vertices that are finite");
 }
 
-void read_gltf(const Input& input) {
-  gltf_buffer_files(input.file);
-  require_sound(read_gltf_mesh(input.file));
-}
-
 void read_splat_model(const Input& input) {
   const SplatModel model = load_model(input.file);
   require(model.classes.empty() || model.classes.size() == model.size(), "a class a splat");
@@ -40,6 +35,15 @@ void read_splat_model(const Input& input) {
   for (const Disk& disk : model.disks)
     require(is_finite(disk.center) && disk.radius > 0 && std::isfinite(disk.radius),
             "disks that can be");
+}
+
+void read_gltf(const Input& input) {
+  if (has_gltf_splats(input.file)) {
+    read_splat_model(input);
+    return;
+  }
+  gltf_buffer_files(input.file);
+  require_sound(read_gltf_mesh(input.file));
 }
 
 void read_world(const Input& input) {

@@ -27,6 +27,7 @@
 #include "adasplats/jobs/session/scan_range.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/image/point_colors.h"
+#include "adasplats/splats/model/gaussian_glb.h"
 #include "adasplats/splats/model/gaussian_ply.h"
 #include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
@@ -172,7 +173,9 @@ ExportResult export_model(const ExportJob& job, ExportFormat format, Session& se
   PointCloud centers = centers_of(model);
   const std::vector<Rgb> colors = colors_of(centers, labels ? &*labels : nullptr, job.color);
   if (format == ExportFormat::glb) {
-    save_cloud_glb(job.output, centers, colors);
+    model.classes = std::move(centers.classes);
+    model.intensities = std::move(centers.intensities);
+    write_gaussian_glb(job.output, model, colors);
   } else {
     write_gaussian_ply(
         job.output, model, colors,

@@ -57,14 +57,18 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
 
 FileKind kind_of_ply(const std::vector<std::string>& lines) {
   bool has_radius = false, has_normal = false;
+  std::size_t of_gaussians = 0;
   for (const std::string& line : lines) {
     if (line == "end_header") break;
     if (line.starts_with("element face ") && line != "element face 0") return FileKind::mesh;
     const bool is_property = line.starts_with("property ");
     has_radius = has_radius || (is_property && line.ends_with(" radius"));
     has_normal = has_normal || (is_property && line.ends_with(" nx"));
+    for (const char* name : {" f_dc_0", " opacity", " scale_0", " rot_0"})
+      if (is_property && line.ends_with(name)) ++of_gaussians;
   }
-  return has_radius && has_normal ? FileKind::splat_model : FileKind::points;
+  const bool is_model = (has_radius && has_normal) || of_gaussians == 4;
+  return is_model ? FileKind::splat_model : FileKind::points;
 }
 
 std::vector<std::string> words_of(std::string_view line) {

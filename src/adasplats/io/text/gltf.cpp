@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,17 +17,26 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/flat_gaussian.h"
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/base64.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 namespace {
 
 using GltfJson = nlohmann::json;
 
+constexpr const char* kSplatting = "KHR_gaussian_splatting";
+constexpr std::array<const char*, 12> kSplatColumns = {
+    "x",           "y",           "z",       "nx",  "ny",    "nz",
+    "deviation_0", "deviation_1", "opacity", "red", "green", "blue"};
+
 /// Limits against small files that instantiate a mesh many times.
+constexpr std::size_t kMaxSplats = 100'000'000;
 constexpr std::size_t kMaxVertices = 50'000'000;
 constexpr std::size_t kMaxTriangles = 100'000'000;
 
@@ -118,6 +128,17 @@ class GltfMember {
     return GltfMember(*path_, *found, pointer_.empty() ? key : pointer_ + "." + key);
   }
 
+  bool is_object() const { return value_->is_object(); }
+  std::vector<std::string> keys() const {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : value_->items()) keys.push_back(key);
+    return keys;
+  }
+  bool truth() const {
+    if (!value_->is_boolean()) throw error("is not true or false");
+    return value_->get<bool>();
+  }
+
   std::size_t size() const {
     if (!value_->is_array()) throw error("is not an array");
     return value_->size();
@@ -170,10 +191,23 @@ std::uint64_t whole_number_or(const std::optional<GltfMember>& member, std::uint
 }
 
 /// Section 3.6.2.2, "Accessor Data Types".
-enum class Component : std::uint16_t { u8 = 5121, u16 = 5123, u32 = 5125, f32 = 5126 };
+enum class Component : std::uint16_t {
+  i8 = 5120,
+  u8 = 5121,
+  i16 = 5122,
+  u16 = 5123,
+  u32 = 5125,
+  f32 = 5126
+};
 
 std::size_t component_bytes(Component component) {
-  return component == Component::u8 ? 1 : (component == Component::u16 ? 2 : 4);
+  switch (component) {
+    case Component::i8:
+    case Component::u8: return 1;
+    case Component::i16:
+    case Component::u16: return 2;
+    default: return 4;
+  }
 }
 
 /// Elements of an accessor, all within its buffer.
@@ -188,6 +222,22 @@ struct Elements {
     T value;
     std::memcpy(&value, begin + element * stride_bytes + component_index * sizeof(T), sizeof(T));
     return value;
+  }
+  /// Normalized integers are from 0 or -1 to 1 (section 3.6.2.2).
+  double number(std::size_t i, std::size_t k, bool normalized) const {
+    const auto scaled = [&](auto raw, double most) {
+      return normalized ? std::max(static_cast<double>(raw) / most, -1.0)
+                        : static_cast<double>(raw);
+    };
+    switch (component) {
+      case Component::i8: return scaled(value<std::int8_t>(i, k), 127);
+      case Component::u8: return scaled(value<std::uint8_t>(i, k), 255);
+      case Component::i16: return scaled(value<std::int16_t>(i, k), 32767);
+      case Component::u16: return scaled(value<std::uint16_t>(i, k), 65535);
+      case Component::u32: return static_cast<double>(value<std::uint32_t>(i, k));
+      case Component::f32: return static_cast<double>(value<float>(i, k));
+    }
+    return 0;
   }
   std::uint32_t index(std::size_t i) const {
     switch (component) {
@@ -214,6 +264,8 @@ class GltfReader {
     }
     return files;
   }
+
+  Table read_splats();
 
   MeshTable read() {
     add_scene();
@@ -247,6 +299,13 @@ class GltfReader {
   std::string read_buffer(const GltfMember& buffer, std::size_t number) const;
   std::string_view buffer_bytes(std::size_t number);
   Elements elements(const GltfMember& accessor, std::string_view type, std::size_t components);
+  Elements located(const GltfMember& accessor, std::size_t components, Component component);
+  static std::optional<GltfMember> splatting_of(const GltfMember& primitive);
+  std::vector<std::vector<double>> attribute(const GltfMember& attributes, const char* name,
+                                             std::size_t components);
+  void add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh);
+  void read_extras(const GltfMember& node);
+  void add_own_attributes(const GltfMember& attributes, std::size_t before, std::size_t count);
   void add_scene();
   void add_tree(std::size_t root_node);
   void add_mesh(const GltfMember& mesh, const AffineMap& world_from_mesh);
@@ -265,6 +324,11 @@ class GltfReader {
   std::vector<bool> is_node_used_ = std::vector<bool>(nodes_.size());
   std::array<std::vector<double>, 3> coordinates_;
   std::vector<std::uint32_t> triangles_;
+  bool wants_splats_ = false;                               ///< instead of triangles
+  std::vector<std::vector<double>> splats_;                 ///< by kSplatColumns
+  std::map<std::string, std::vector<double>> own_columns_;  ///< of application's attributes
+  std::optional<Vec3d> origin_;
+  std::vector<std::string> comments_;
 };
 
 void GltfReader::require_version_2() const {
@@ -277,8 +341,9 @@ void GltfReader::require_version_2() const {
 void GltfReader::reject_extensions() const {
   for (const GltfMember& required : all("extensionsRequired")) {
     const std::string& name = required.text();
-    const bool looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-                       name.starts_with("EXT_texture_") || name == "KHR_lights_punctual";
+    const bool looks = name == kSplatting || name.starts_with("KHR_materials_") ||
+                       name.starts_with("KHR_texture_") || name.starts_with("EXT_texture_") ||
+                       name == "KHR_lights_punctual";
     if (!looks)
       throw required.error("the extension " + name.substr(0, 60) +
                            " is not supported; export the mesh without it");
@@ -334,14 +399,20 @@ Elements GltfReader::elements(const GltfMember& accessor, std::string_view type,
   if (accessor["type"].text() != type)
     throw accessor["type"].error("found " + accessor["type"].text().substr(0, 20) + ", expected " +
                                  std::string(type));
-  Elements result;
   const std::uint64_t component = accessor["componentType"].whole_number();
   const bool real = component == 5126,
              index = component == 5121 || component == 5123 || component == 5125;
   if (components > 1 ? !real : !index)
     throw accessor["componentType"].error("found " + std::to_string(component) + ", expected " +
                                           (components > 1 ? "5126 (float)" : "5121, 5123 or 5125"));
-  result.component = static_cast<Component>(component);
+  return located(accessor, components, static_cast<Component>(component));
+}
+
+/// The same of any type.
+Elements GltfReader::located(const GltfMember& accessor, std::size_t components,
+                             Component component) {
+  Elements result;
+  result.component = component;
   const GltfMember& view = views_[accessor["bufferView"].index_below(views_.size())];
   const std::string_view buffer = buffer_bytes(view["buffer"].index_below(buffers_.size()));
   const std::uint64_t view_begin = whole_number_or(view.find("byteOffset"), 0);
@@ -412,6 +483,7 @@ void GltfReader::add_tree(std::size_t root_node) {
     if (is_node_used_[number]) throw node.error("occurs twice in the scene");
     is_node_used_[number] = true;
     const AffineMap world_from_node = world_from_parent * local_transform(node);
+    if (wants_splats_) read_extras(node);
     if (const std::optional<GltfMember> mesh = node.find("mesh"))
       add_mesh(meshes_[mesh->index_below(meshes_.size())], world_from_node);
     const std::optional<GltfMember> children = node.find("children");
@@ -426,6 +498,10 @@ void GltfReader::add_mesh(const GltfMember& mesh, const AffineMap& world_from_me
   constexpr std::uint64_t kTriangles = 4, kFan = 6;
   for (const GltfMember& primitive : mesh["primitives"].elements()) {
     const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
+    if (wants_splats_) {
+      if (splatting_of(primitive)) add_splats(primitive, world_from_mesh);
+      continue;
+    }
     if (mode < kTriangles) continue;  // points and lines
     if (mode > kFan)
       throw primitive.error("mode " + std::to_string(mode) + " does not exist in glTF");
@@ -479,7 +555,181 @@ void GltfReader::add_triangles(const GltfMember& primitive, std::size_t first_ve
   }
 }
 
+std::optional<GltfMember> GltfReader::splatting_of(const GltfMember& primitive) {
+  const std::optional<GltfMember> extensions = primitive.find("extensions");
+  return extensions ? extensions->find(kSplatting) : std::nullopt;
+}
+
+/// The values of an attribute by component; none if the points do not have it.
+std::vector<std::vector<double>> GltfReader::attribute(const GltfMember& attributes,
+                                                       const char* name, std::size_t components) {
+  constexpr std::array<std::string_view, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+  const std::optional<GltfMember> found = attributes.find(name);
+  if (!found) return {};
+  const GltfMember& accessor = accessors_[found->index_below(accessors_.size())];
+  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not supported");
+  if (accessor["type"].text() != kTypes.at(components - 1))
+    throw accessor["type"].error("found " + accessor["type"].text().substr(0, 20) + ", expected " +
+                                 std::string(kTypes.at(components - 1)));
+  const std::uint64_t component = accessor["componentType"].whole_number();
+  if (component < 5120 || component > 5126 || component == 5124)
+    throw accessor["componentType"].error("found " + std::to_string(component) +
+                                          ", which does not exist in glTF");
+  const Elements all = located(accessor, components, static_cast<Component>(component));
+  if (all.count > kMaxSplats - splats_[0].size())
+    throw accessor.error("the scene has more than " + std::to_string(kMaxSplats) + " splats");
+  const std::optional<GltfMember> flag = accessor.find("normalized");
+  const bool normalized = flag && flag->truth();
+  std::vector<std::vector<double>> values(components);
+  for (std::size_t k = 0; k < components; ++k) {
+    values[k].reserve(all.count);
+    for (std::size_t i = 0; i < all.count; ++i) values[k].push_back(all.number(i, k, normalized));
+  }
+  return values;
+}
+
+/// KHR_gaussian_splatting, "Ellipse Kernel": scales are linear and not negative, rotations x y z w.
+void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh) {
+  constexpr double kHarmonic0 = 0.28209479177387814, kEven = 1e-3;
+  const GltfMember splatting = *splatting_of(primitive);
+  if (splatting["kernel"].text() != "ellipse")
+    throw splatting["kernel"].error("found " + splatting["kernel"].text().substr(0, 40) +
+                                    ", expected ellipse");
+  if (const std::optional<GltfMember> more = splatting.find("extensions"))
+    if (!more->keys().empty()) throw more->error("compressed or extended splats are not supported");
+  const GltfMember attributes = primitive["attributes"];
+  const auto needed = [&](const std::string& name, std::size_t components) {
+    std::vector<std::vector<double>> values = attribute(attributes, name.c_str(), components);
+    if (values.empty()) throw attributes.error("'" + name + "' is missing");
+    return values;
+  };
+  const std::string prefix = std::string(kSplatting) + ":";
+  const auto positions = needed("POSITION", 3), scales = needed(prefix + "SCALE", 3),
+             rotations = needed(prefix + "ROTATION", 4), opacities = needed(prefix + "OPACITY", 1),
+             colors = attribute(attributes, (prefix + "SH_DEGREE_0_COEF_0").c_str(), 3);
+  const std::size_t count = positions[0].size();
+  for (const auto* values : {&scales, &rotations, &opacities, &colors})
+    if (!values->empty() && values->front().size() != count)
+      throw attributes.error("the attributes have different numbers of elements");
+  // glTF has y up and z forward; ours is z of glTF forward.
+  const Mat3d ours_from_gltf = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};
+  const Mat3d linear = ours_from_gltf * world_from_mesh.linear;
+  const double scale = length(linear.rows[0]);
+  Mat3d turn = linear;
+  for (Vec3d& row : turn.rows) row = row / scale;
+  bool is_even = scale > 0 && std::isfinite(scale);
+  for (int a = 0; a < 3 && is_even; ++a)
+    for (int b = 0; b < 3; ++b)
+      is_even = is_even && std::fabs(dot(turn.rows[a], turn.rows[b]) - (a == b ? 1 : 0)) < kEven;
+  if (!is_even) throw primitive.error("its node scales Gaussians unevenly");
+  const std::size_t before = splats_[0].size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double norm =
+        std::sqrt(rotations[0][i] * rotations[0][i] + rotations[1][i] * rotations[1][i] +
+                  rotations[2][i] * rotations[2][i] + rotations[3][i] * rotations[3][i]);
+    if (!(std::fabs(norm - 1) < 0.1))
+      throw attributes.error("rotation " + std::to_string(i) + " is not a unit quaternion");
+    for (const auto& axis : scales)
+      if (!(axis[i] >= 0) || !std::isfinite(axis[i]))
+        throw attributes.error("scale " + std::to_string(i) +
+                               " is negative or not finite; scales are linear");
+    if (!(opacities[0][i] >= 0 && opacities[0][i] <= 1))
+      throw attributes.error("opacity " + std::to_string(i) + " is not from 0 to 1");
+    const Mat3d axes = rotation_from_quaternion(rotations[3][i] / norm, rotations[0][i] / norm,
+                                                rotations[1][i] / norm, rotations[2][i] / norm);
+    const FlatGaussian flat =
+        flat_gaussian(scale * Vec3d{scales[0][i], scales[1][i], scales[2][i]}, turn * axes);
+    const Vec3d center = ours_from_gltf * (world_from_mesh * Vec3d{positions[0][i], positions[1][i],
+                                                                   positions[2][i]});
+    std::array<double, 3> rgb = {0.72, 0.72, 0.72};
+    for (std::size_t k = 0; k < 3 && !colors.empty(); ++k)
+      rgb[k] = std::clamp(0.5 + kHarmonic0 * colors[k][i], 0.0, 1.0);
+    const double row[12] = {center.x,
+                            center.y,
+                            center.z,
+                            flat.normal.x,
+                            flat.normal.y,
+                            flat.normal.z,
+                            flat.longer,
+                            flat.shorter,
+                            opacities[0][i],
+                            std::round(255 * rgb[0]),
+                            std::round(255 * rgb[1]),
+                            std::round(255 * rgb[2])};
+    for (std::size_t k = 0; k < kSplatColumns.size(); ++k) splats_[k].push_back(row[k]);
+  }
+  add_own_attributes(attributes, before, count);
+}
+
+/// Of the attributes that begin with an underscore those that all primitives have.
+void GltfReader::add_own_attributes(const GltfMember& attributes, std::size_t before,
+                                    std::size_t count) {
+  std::map<std::string, std::vector<double>> own;
+  for (const std::string& name : attributes.keys()) {
+    if (!name.starts_with('_')) continue;
+    const std::size_t index = attributes[name.c_str()].index_below(accessors_.size());
+    if (accessors_[index]["type"].text() != "SCALAR") continue;
+    std::vector<double> values = attribute(attributes, name.c_str(), 1).front();
+    if (values.size() != count)
+      throw attributes.error("the attributes have different numbers of elements");
+    own.emplace(lower_case(name.substr(1)), std::move(values));
+  }
+  if (before == 0) {
+    own_columns_ = std::move(own);
+    return;
+  }
+  std::erase_if(own_columns_, [&](const auto& column) { return !own.contains(column.first); });
+  for (auto& [name, values] : own_columns_) {
+    const std::vector<double>& more = own.at(name);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+}
+
+/// The origin and the comments that exports of splats have.
+void GltfReader::read_extras(const GltfMember& node) {
+  const std::optional<GltfMember> extras = node.find("extras");
+  if (!extras || !extras->is_object()) return;
+  if (const std::optional<GltfMember> origin = extras->find("origin"); origin && !origin_) {
+    const auto o = origin->numbers<3>();
+    origin_ = Vec3d{o[0], o[1], o[2]};
+  }
+  if (const std::optional<GltfMember> comments = extras->find("adasplats"))
+    for (const GltfMember& comment : comments->elements()) comments_.push_back(comment.text());
+}
+
+Table GltfReader::read_splats() {
+  wants_splats_ = true;
+  splats_.resize(kSplatColumns.size());
+  add_scene();
+  Table table;
+  table.rows = splats_[0].size();
+  const Vec3d origin = origin_.value_or(Vec3d{});
+  for (int axis = 0; axis < 3; ++axis)
+    for (double& value : splats_[static_cast<std::size_t>(axis)]) value += origin[axis];
+  for (std::size_t k = 0; k < kSplatColumns.size(); ++k)
+    table.columns.push_back({kSplatColumns[k], std::move(splats_[k])});
+  for (auto& [name, values] : own_columns_) table.columns.push_back({name, std::move(values)});
+  table.comments = std::move(comments_);
+  table.crs = crs_of_comments(path_, table.comments);
+  return table;
+}
+
 }  // namespace
+
+Table read_gltf_splats(const std::filesystem::path& path) { return GltfReader(path).read_splats(); }
+
+bool has_gltf_splats(const std::filesystem::path& path) {
+  constexpr std::size_t kHeaderBytes = 20;  // of the file and of the chunk of JSON
+  InputFile file(path);
+  const auto begin_of = [&](std::uint64_t bytes) {
+    const auto all = static_cast<std::size_t>(std::min(bytes, file.size_bytes()));
+    return std::string_view(reinterpret_cast<const char*>(file.peek(all).data()), all);
+  };
+  std::uint64_t bytes = file.size_bytes();
+  if (const std::string_view header = begin_of(kHeaderBytes); header.starts_with("glTF"))
+    bytes = kHeaderBytes + word_at(header, 12).value_or(0);
+  return begin_of(bytes).find(std::string("\"") + kSplatting + "\"") != std::string_view::npos;
+}
 
 MeshTable read_gltf_mesh(const std::filesystem::path& path) { return GltfReader(path).read(); }
 

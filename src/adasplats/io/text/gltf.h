@@ -21,6 +21,19 @@ namespace adasplats {
 /// (compressed meshes).
 MeshTable read_gltf_mesh(const std::filesystem::path& path);
 
+/// Reads the Gaussian splats of a glTF file (KHR_gaussian_splatting, kernel "ellipse"), of all
+/// nodes of the default scene, as flat ones. Columns: x y z, nx ny nz (the shortest axis),
+/// deviation_0 and deviation_1 (the longer and the shorter of the two others, m), opacity (0 to 1),
+/// red green blue (sRGB from the harmonic of degree 0) and, where all primitives have them,
+/// application's attributes such as _CLASS as "class". World: x forward, y left, z up, plus
+/// "origin" of a node's extras; the comments are the texts in "adasplats" of the extras, which give
+/// the coordinate system, too. Errors: data, as read_gltf_mesh; compressed splats; a node that
+/// scales unevenly; harmonics in linear colours are read as sRGB.
+Table read_gltf_splats(const std::filesystem::path& path);
+
+/// Whether the JSON of a glTF file names the extension of Gaussian splats.
+bool has_gltf_splats(const std::filesystem::path& path);
+
 /// The files with the buffers of a glTF file. Errors: those of read_gltf_mesh.
 std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path);
 

@@ -20,6 +20,7 @@
 #include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/point_format.h"
+#include "adasplats/io/text/gltf.h"
 
 namespace adasplats {
 
@@ -157,7 +158,10 @@ fs::path resolve_cloud_input(const fs::path& input) {
 bool is_splat_model(const fs::path& file) {
   std::error_code failure;
   if (is_city(file)) return true;
-  return fs::is_regular_file(file, failure) && kind_of_file(file) == FileKind::splat_model;
+  if (!fs::is_regular_file(file, failure)) return false;
+  const FileKind kind = kind_of_file(file);
+  return kind == FileKind::splat_model ||
+         (kind == FileKind::mesh && is_gltf(file) && has_gltf_splats(file));
 }
 
 Trajectory load_trajectory(const fs::path& path) {

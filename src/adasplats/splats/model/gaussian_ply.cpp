@@ -9,16 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
-#include "adasplats/scene/soft_disk.h"
+#include "adasplats/splats/model/gaussians.h"
+#include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
 namespace {
-
-/// The constant spherical harmonic, sqrt(1 / (4 pi)).
-constexpr double kHarmonic0 = 0.28209479177387814;
 
 struct Gaussian {
   Vec3f position, normal;
@@ -28,26 +25,14 @@ struct Gaussian {
   std::array<float, 4> rotation;
 };
 
-/// The shortest rotation from the z axis to a unit normal.
-Quaternion rotation_to(Vec3d n) {
-  const double across = std::hypot(n.x, n.y);
-  if (across == 0.0) return n.z > 0 ? Quaternion{1, 0, 0, 0} : Quaternion{0, 1, 0, 0};
-  // The half angles by atan2: exact near both poles, where 1 + z or 1 - z would cancel.
-  const double half = 0.5 * std::atan2(across, n.z);
-  const double share = std::sin(half) / across;
-  return {std::cos(half), -n.y * share, n.x * share, 0};
-}
-
-Gaussian gaussian_of(const Disk& disk, double opacity, const std::array<std::uint8_t, 3>& rgb) {
-  const auto coefficient = [](std::uint8_t value) {
-    return static_cast<float>((value / 255.0 - 0.5) / kHarmonic0);
-  };
-  const double log_sigma = std::log(static_cast<double>(disk.radius) * kGaussianSigmaOverRadius);
+Gaussian gaussian_of(const Disk& disk, double sigma, double opacity,
+                     const std::array<std::uint8_t, 3>& rgb) {
+  const double log_sigma = std::log(sigma);
   const auto along = static_cast<float>(log_sigma);
-  const Quaternion q = rotation_to(vec_cast<double>(disk.normal));
+  const Quaternion q = rotation_from_z(vec_cast<double>(disk.normal));
   return {disk.center,
           disk.normal,
-          {coefficient(rgb[0]), coefficient(rgb[1]), coefficient(rgb[2])},
+          {harmonic_of(rgb[0]), harmonic_of(rgb[1]), harmonic_of(rgb[2])},
           static_cast<float>(std::log(opacity / (1 - opacity))),
           {along, along, static_cast<float>(log_sigma + std::log(kGaussianThickness))},
           {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
@@ -90,16 +75,15 @@ void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& mod
   gaussians.reserve(model.size());
   constexpr double kLeast = 1.0 / 255;  // what renderers skip
   for (std::size_t i = 0; i < model.size(); ++i) {
-    Disk disk = model.disks[i];
-    double opacity = kGaussianOpacity;
-    if (!model.opacities.empty()) {
-      disk.radius /= kRimReach;
-      opacity = std::clamp(static_cast<double>(model.opacities[i]), kLeast, kGaussianOpacity);
-    }
-    gaussians.push_back(gaussian_of(disk, opacity, colors[i]));
+    const Disk& disk = model.disks[i];
+    const bool is_soft = !model.opacities.empty();
+    const double opacity =
+        is_soft ? std::clamp(static_cast<double>(model.opacities[i]), kLeast, kGaussianOpacity)
+                : kGaussianOpacity;
+    gaussians.push_back(gaussian_of(disk, gaussian_sigma(disk, is_soft), opacity, colors[i]));
   }
   const Vec3d o = model.origin;
-  std::vector<std::string> comments = crs_comments(model.crs);
+  std::vector<std::string> comments = comments_of(model);
   comments.insert(comments.begin(), std::string("adasplats.origin ") + exact_text(o.x) + " " +
                                         exact_text(o.y) + " " + exact_text(o.z));
   const Gaussian none{};

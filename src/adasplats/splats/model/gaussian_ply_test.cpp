@@ -11,6 +11,7 @@
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/splats/model/gaussians.h"
 
 namespace adasplats {
 namespace {
@@ -125,7 +126,7 @@ TEST(GaussianPly, FarPlacesAreRelativeToTheirOrigin) {
   model.origin = {448000, 5411000.5, 0};
   const Table table = written(model, GaussianKind::surfels, std::vector<Rgb>(1));
   EXPECT_EQ(value(table, "x", 0), 0);
-  EXPECT_EQ(table.comments, Names{"adasplats.origin 448000 5411000.5 0"});
+  EXPECT_EQ(table.comments, (Names{"adasplats.origin 448000 5411000.5 0", "adasplats.splats 1"}));
 }
 
 TEST(GaussianPly, NoDisksAndWrongColours) {

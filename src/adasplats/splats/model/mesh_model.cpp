@@ -148,7 +148,8 @@ MeshModel load_mesh(const std::filesystem::path& path) {
 }
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  return is_ply(path) ? ply_has_faces(path) : is_gltf(path) || is_obj(path);
+  if (is_ply(path)) return ply_has_faces(path);
+  return is_gltf(path) ? !has_gltf_splats(path) : is_obj(path);
 }
 
 }  // namespace adasplats

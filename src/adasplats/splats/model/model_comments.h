@@ -4,9 +4,11 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/io/base/table.h"
+#include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
 
@@ -20,5 +22,8 @@ inline std::string comment_value(const Table& table, std::string_view key) {
     if (comment.starts_with(key)) return comment.substr(key.size());
   return {};
 }
+
+/// What a splat model states beside its splats.
+std::vector<std::string> comments_of(const SplatModel& model);
 
 }  // namespace adasplats

@@ -15,8 +15,10 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
+#include "adasplats/io/text/gltf.h"
 #include "adasplats/scene/soft_disk.h"
 #include "adasplats/splats/model/calibration_comments.h"
+#include "adasplats/splats/model/gaussians.h"
 #include "adasplats/splats/model/model_comments.h"
 
 namespace adasplats {
@@ -202,6 +204,18 @@ SplatModel opaque(SplatModel model) {
   return model;
 }
 
+std::vector<std::string> comments_of(const SplatModel& model) {
+  std::vector<std::string> comments = {kFormatComment};
+  if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
+  if (!model.label_scheme.empty())
+    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
+  if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
+  for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
+  add_response_comments(model.response, comments);
+  add_calibration_comments(model.calibration, comments);
+  return comments;
+}
+
 void save_model(const std::filesystem::path& path, const SplatModel& model) {
   const bool far = !(model.origin == Vec3d{});
   std::vector<Vec3d> centers;
@@ -240,19 +254,12 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   if (!model.colors.empty())
     for (std::size_t k = 0; k < kRgbColumns.size(); ++k)
       columns.push_back({kRgbColumns[k], ColumnType::u8, &model.colors[0][k], sizeof(ColorBytes)});
-  std::vector<std::string> comments = {kFormatComment};
-  if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
-  if (!model.label_scheme.empty())
-    comments.push_back(std::string(kLabelsComment) + model.label_scheme);
-  if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
-  for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
-  add_response_comments(model.response, comments);
-  add_calibration_comments(model.calibration, comments);
-  write_ply(path, model.size(), columns, comments);
+  write_ply(path, model.size(), columns, comments_of(model));
 }
 
 SplatModel load_model(const std::filesystem::path& path) {
-  const Table table = read_ply(path);
+  const Table table =
+      disks_of_gaussians(path, is_gltf(path) ? read_gltf_splats(path) : read_ply(path));
   const std::array<const Column*, 3> position = {
       &required(table, path, "x"), &required(table, path, "y"), &required(table, path, "z")};
   const std::array<const Column*, 3> normal = {
