@@ -303,6 +303,17 @@ class GltfReader {
   static std::optional<GltfMember> splatting_of(const GltfMember& primitive);
   std::vector<std::vector<double>> attribute(const GltfMember& attributes, const char* name,
                                              std::size_t components);
+  /// By component.
+  struct SplatAttributes {
+    std::vector<std::vector<double>> positions, scales, rotations, opacities, harmonics;
+    std::size_t count() const { return positions[0].size(); }
+    double norm(std::size_t i) const {
+      const auto& q = rotations;
+      return std::sqrt(q[0][i] * q[0][i] + q[1][i] * q[1][i] + q[2][i] * q[2][i] +
+                       q[3][i] * q[3][i]);
+    }
+  };
+  SplatAttributes splat_attributes(const GltfMember& primitive);
   void add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh);
   void read_extras(const GltfMember& node);
   void add_own_attributes(const GltfMember& attributes, std::size_t before, std::size_t count);
@@ -589,8 +600,7 @@ std::vector<std::vector<double>> GltfReader::attribute(const GltfMember& attribu
 }
 
 /// KHR_gaussian_splatting, "Ellipse Kernel": scales are linear and not negative, rotations x y z w.
-void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh) {
-  constexpr double kHarmonic0 = 0.28209479177387814, kEven = 1e-3;
+GltfReader::SplatAttributes GltfReader::splat_attributes(const GltfMember& primitive) {
   const GltfMember splatting = *splatting_of(primitive);
   if (splatting["kernel"].text() != "ellipse")
     throw splatting["kernel"].error("found " + splatting["kernel"].text().substr(0, 40) +
@@ -598,24 +608,39 @@ void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_
   if (const std::optional<GltfMember> more = splatting.find("extensions"))
     if (!more->keys().empty()) throw more->error("compressed or extended splats are not supported");
   const GltfMember attributes = primitive["attributes"];
+  const std::string prefix = std::string(kSplatting) + ":";
   const auto needed = [&](const std::string& name, std::size_t components) {
     std::vector<std::vector<double>> values = attribute(attributes, name.c_str(), components);
     if (values.empty()) throw attributes.error("'" + name + "' is missing");
     return values;
   };
-  const std::string prefix = std::string(kSplatting) + ":";
-  const auto positions = needed("POSITION", 3), scales = needed(prefix + "SCALE", 3),
-             rotations = needed(prefix + "ROTATION", 4), opacities = needed(prefix + "OPACITY", 1),
-             colors = attribute(attributes, (prefix + "SH_DEGREE_0_COEF_0").c_str(), 3);
-  const std::size_t count = positions[0].size();
-  for (const auto* values : {&scales, &rotations, &opacities, &colors})
+  SplatAttributes all = {needed("POSITION", 3), needed(prefix + "SCALE", 3),
+                         needed(prefix + "ROTATION", 4), needed(prefix + "OPACITY", 1),
+                         attribute(attributes, (prefix + "SH_DEGREE_0_COEF_0").c_str(), 3)};
+  const std::size_t count = all.count();
+  for (const auto* values : {&all.scales, &all.rotations, &all.opacities, &all.harmonics})
     if (!values->empty() && values->front().size() != count)
       throw attributes.error("the attributes have different numbers of elements");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(std::fabs(all.norm(i) - 1) < 0.1))
+      throw attributes.error("rotation " + std::to_string(i) + " is not a unit quaternion");
+    for (const auto& axis : all.scales)
+      if (!(axis[i] >= 0) || !std::isfinite(axis[i]))
+        throw attributes.error("scale " + std::to_string(i) +
+                               " is negative or not finite; scales are linear");
+    if (!(all.opacities[0][i] >= 0 && all.opacities[0][i] <= 1))
+      throw attributes.error("opacity " + std::to_string(i) + " is not from 0 to 1");
+  }
+  return all;
+}
+
+void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh) {
+  constexpr double kHarmonic0 = 0.28209479177387814, kEven = 1e-3, kGrey = 0.72;
+  const SplatAttributes all = splat_attributes(primitive);
   // glTF has y up and z forward; ours is z of glTF forward.
   const Mat3d ours_from_gltf = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};
-  const Mat3d linear = ours_from_gltf * world_from_mesh.linear;
-  const double scale = length(linear.rows[0]);
-  Mat3d turn = linear;
+  Mat3d turn = ours_from_gltf * world_from_mesh.linear;
+  const double scale = length(turn.rows[0]);
   for (Vec3d& row : turn.rows) row = row / scale;
   bool is_even = scale > 0 && std::isfinite(scale);
   for (int a = 0; a < 3 && is_even; ++a)
@@ -623,42 +648,27 @@ void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_
       is_even = is_even && std::fabs(dot(turn.rows[a], turn.rows[b]) - (a == b ? 1 : 0)) < kEven;
   if (!is_even) throw primitive.error("its node scales Gaussians unevenly");
   const std::size_t before = splats_[0].size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double norm =
-        std::sqrt(rotations[0][i] * rotations[0][i] + rotations[1][i] * rotations[1][i] +
-                  rotations[2][i] * rotations[2][i] + rotations[3][i] * rotations[3][i]);
-    if (!(std::fabs(norm - 1) < 0.1))
-      throw attributes.error("rotation " + std::to_string(i) + " is not a unit quaternion");
-    for (const auto& axis : scales)
-      if (!(axis[i] >= 0) || !std::isfinite(axis[i]))
-        throw attributes.error("scale " + std::to_string(i) +
-                               " is negative or not finite; scales are linear");
-    if (!(opacities[0][i] >= 0 && opacities[0][i] <= 1))
-      throw attributes.error("opacity " + std::to_string(i) + " is not from 0 to 1");
-    const Mat3d axes = rotation_from_quaternion(rotations[3][i] / norm, rotations[0][i] / norm,
-                                                rotations[1][i] / norm, rotations[2][i] / norm);
-    const FlatGaussian flat =
-        flat_gaussian(scale * Vec3d{scales[0][i], scales[1][i], scales[2][i]}, turn * axes);
-    const Vec3d center = ours_from_gltf * (world_from_mesh * Vec3d{positions[0][i], positions[1][i],
-                                                                   positions[2][i]});
-    std::array<double, 3> rgb = {0.72, 0.72, 0.72};
-    for (std::size_t k = 0; k < 3 && !colors.empty(); ++k)
-      rgb[k] = std::clamp(0.5 + kHarmonic0 * colors[k][i], 0.0, 1.0);
-    const double row[12] = {center.x,
-                            center.y,
-                            center.z,
-                            flat.normal.x,
-                            flat.normal.y,
-                            flat.normal.z,
-                            flat.longer,
-                            flat.shorter,
-                            opacities[0][i],
-                            std::round(255 * rgb[0]),
-                            std::round(255 * rgb[1]),
-                            std::round(255 * rgb[2])};
-    for (std::size_t k = 0; k < kSplatColumns.size(); ++k) splats_[k].push_back(row[k]);
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const auto& q = all.rotations;
+    const double norm = all.norm(i);
+    const Mat3d axes =
+        rotation_from_quaternion(q[3][i] / norm, q[0][i] / norm, q[1][i] / norm, q[2][i] / norm);
+    const FlatGaussian flat = flat_gaussian(
+        scale * Vec3d{all.scales[0][i], all.scales[1][i], all.scales[2][i]}, turn * axes);
+    const Vec3d center =
+        ours_from_gltf *
+        (world_from_mesh * Vec3d{all.positions[0][i], all.positions[1][i], all.positions[2][i]});
+    const auto color = [&](std::size_t k) {
+      const double value = all.harmonics.empty() ? kGrey : 0.5 + kHarmonic0 * all.harmonics[k][i];
+      return std::round(255 * std::clamp(value, 0.0, 1.0));
+    };
+    const std::array<double, kSplatColumns.size()> row = {
+        center.x,      center.y,    center.z,     flat.normal.x,       flat.normal.y,
+        flat.normal.z, flat.longer, flat.shorter, all.opacities[0][i], color(0),
+        color(1),      color(2)};
+    for (std::size_t k = 0; k < row.size(); ++k) splats_[k].push_back(row[k]);
   }
-  add_own_attributes(attributes, before, count);
+  add_own_attributes(primitive["attributes"], before, all.count());
 }
 
 /// Of the attributes that begin with an underscore those that all primitives have.

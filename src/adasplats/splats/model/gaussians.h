@@ -37,8 +37,8 @@ float harmonic_of(std::uint8_t value);
 /// read_gltf_splats(), as disks: columns x y z nx ny nz radius and, unless all are opaque, opacity,
 /// with the colours and all columns of other names. Any other table is returned as it is. A
 /// Gaussian becomes the disk of the same covered area across its shortest axis. Gaussians with an
-/// opacity below 1/255 or without an extent are left out, as by renderers; a note counts them. The
-/// comment "adasplats.origin" is added to the positions. Errors: data (values that are not finite,
+/// opacity below 1/255 or without an extent are left out, as by renderers. The comment
+/// "adasplats.origin" is added to the positions. Errors: data (values that are not finite,
 /// a rotation of length 0, no visible Gaussian).
 Table disks_of_gaussians(const std::filesystem::path& path, Table table);
 
