@@ -23,6 +23,7 @@ struct GlbGaussian {
   GlbColor color;
   std::array<float, 4> rotation;  ///< x y z w
   std::array<float, 3> scales;    ///< m
+  std::array<float, 3> log_scales;
   float opacity = 1;
   std::array<float, 3> harmonics;
   float intensity = 0, drop = 0;
@@ -61,7 +62,10 @@ std::vector<GlbGaussian> gaussians_of(const SplatModel& model,
     const double sigma = gaussian_sigma(disk, is_soft);
     made.scales = {static_cast<float>(sigma), static_cast<float>(sigma),
                    static_cast<float>(kGaussianThickness * sigma)};
-    for (std::size_t k = 0; k < 3; ++k) made.harmonics[k] = harmonic_of(colors[i][k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      made.log_scales[k] = std::log(made.scales[k]);
+      made.harmonics[k] = harmonic_of(colors[i][k]);
+    }
     if (!model.classes.empty()) made.class_id = model.classes[i];
     if (!model.groups.empty()) made.bytes[0] = static_cast<std::uint8_t>(model.groups[i]);
     if (!model.intensities.empty()) {
@@ -107,8 +111,11 @@ void add_attributes(const SplatModel& model, const GlbGaussian& g, GlbPoints& co
   all.push_back({prefix + "SCALE", columns(g.scales)});
   all.push_back({prefix + "OPACITY", {column(g.opacity)}});
   all.push_back({prefix + "SH_DEGREE_0_COEF_0", columns(g.harmonics)});
+  all.push_back({"_LOG_SCALE", columns(g.log_scales)});
+  // The numbers of accessors are for 3dgs_io, which takes nothing else.
   content.primitive = std::string(R"(,"extensions":{")") + kSplatting +
-                      R"(":{"kernel":"ellipse","colorSpace":"srgb_rec709_display"})";
+                      R"(":{"kernel":"ellipse","colorSpace":"srgb_rec709_display",)"
+                      R"("rotation":2,"scale":6,"opacity":4,"sh":[5]})";
   content.extensions = {kSplatting};
   if (!model.classes.empty())
     all.push_back({"_CLASS", {column(g.class_id), column(g.padding)}, false, 1});
