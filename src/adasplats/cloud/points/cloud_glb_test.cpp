@@ -27,10 +27,11 @@ struct Glb {
   T at(const std::string& attribute, std::size_t point, std::size_t component = 0) const {
     const auto& place = json["meshes"][0]["primitives"][0]["attributes"][attribute];
     const auto& accessor = json["accessors"][place.get<std::size_t>()];
-    const auto stride = json["bufferViews"][0]["byteStride"].get<std::size_t>();
+    const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const auto stride = view["byteStride"].get<std::size_t>();
     T value;
     std::memcpy(&value,
-                binary.data() + point * stride + accessor["byteOffset"].get<std::size_t>() +
+                binary.data() + point * stride + view["byteOffset"].get<std::size_t>() +
                     component * sizeof(T),
                 sizeof(T));
     return value;

@@ -62,32 +62,42 @@ std::size_t bytes_of(const GlbAttribute& attribute) {
   return bytes;
 }
 
-/// The members of the document that describe the points. Every attribute begins at a multiple of
-/// four bytes (section 3.6.2.4).
-std::string mesh_members(const GlbPoints& content, std::size_t points, std::size_t stride) {
-  std::string names, accessors;
+/// Of an attribute in the file, with the padding up to a multiple of four (section 3.6.2.4).
+std::size_t padded_bytes(const GlbAttribute& attribute, std::size_t points) {
+  return (points * bytes_of(attribute) + 3) / 4 * 4;
+}
+
+/// The members of the document that describe the points. One buffer view per attribute: simple
+/// readers know no interleaved ones.
+std::string mesh_members(const GlbPoints& content, std::size_t points) {
+  std::string names, accessors, views;
   std::size_t offset = 0;
   for (std::size_t k = 0; k < content.attributes.size(); ++k) {
     const GlbAttribute& attribute = content.attributes[k];
+    const bool is_listed = !attribute.name.empty();
     const std::size_t components =
         attribute.components > 0 ? attribute.components : attribute.columns.size();
     const std::string comma = k > 0 ? "," : "";
-    names += comma + "\"" + attribute.name + "\":" + std::to_string(k);
-    accessors += comma + R"({"bufferView":0,"byteOffset":)" + std::to_string(offset) +
-                 R"(,"componentType":)" +
+    if (is_listed)
+      names += (names.empty() ? "\"" : ",\"") + attribute.name + "\":" + std::to_string(k);
+    accessors += comma + R"({"bufferView":)" + std::to_string(k) + R"(,"componentType":)" +
                  std::to_string(component_of(attribute.columns.front().type)) + R"(,"count":)" +
                  std::to_string(points) + R"(,"type":")" + std::string(type_of(components)) + "\"";
     if (attribute.normalized) accessors += R"(,"normalized":true)";
     if (k == 0) accessors += bounds_text(attribute, points);
     accessors += "}";
-    offset += bytes_of(attribute);
+    views += comma + R"({"buffer":0,"byteOffset":)" + std::to_string(offset) + R"(,"byteLength":)" +
+             std::to_string(points * bytes_of(attribute));
+    if (is_listed)
+      views += R"(,"byteStride":)" + std::to_string(bytes_of(attribute)) + R"(,"target":)" +
+               std::to_string(kArrayBuffer);
+    views += "}";
+    offset += padded_bytes(attribute, points);
   }
-  const std::string bytes = std::to_string(points * stride);
   return R"(,"meshes":[{"primitives":[{"mode":)" + std::to_string(kPointsMode) +
          R"(,"attributes":{)" + names + "}" + content.primitive + R"(}]}],"accessors":[)" +
-         accessors + R"(],"bufferViews":[{"buffer":0,"byteLength":)" + bytes + R"(,"byteStride":)" +
-         std::to_string(stride) + R"(,"target":)" + std::to_string(kArrayBuffer) +
-         R"(}],"buffers":[{"byteLength":)" + bytes + "}]";
+         accessors + R"(],"bufferViews":[)" + views + R"(],"buffers":[{"byteLength":)" +
+         std::to_string(offset) + "}]";
 }
 
 /// The JSON with blanks behind it up to a multiple of four bytes.
@@ -148,15 +158,11 @@ void write_glb_points(const std::filesystem::path& path, std::size_t points,
                       const GlbPoints& content) {
   constexpr std::size_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
   constexpr std::size_t kVersion = 2, kHeaderBytes = 12, kChunkHeaderBytes = 8;
-  std::size_t stride = 0;
-  std::vector<ColumnView> columns;
-  for (const GlbAttribute& attribute : content.attributes) {
-    stride += bytes_of(attribute);
-    columns.insert(columns.end(), attribute.columns.begin(), attribute.columns.end());
-  }
+  std::size_t binary = 0;
+  for (const GlbAttribute& attribute : content.attributes)
+    binary += padded_bytes(attribute, points);
   const std::string json =
-      document(content, points > 0 ? mesh_members(content, points, stride) : std::string());
-  const std::size_t binary = points * stride;
+      document(content, points > 0 ? mesh_members(content, points) : std::string());
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
                             (binary > 0 ? kChunkHeaderBytes + binary : 0);
   if (total > std::numeric_limits<std::uint32_t>::max())
@@ -168,7 +174,10 @@ void write_glb_points(const std::filesystem::path& path, std::size_t points,
   file.write(json);
   if (binary > 0) {
     put_words(file, {binary, kBinary});
-    write_records(file, points, columns);
+    for (const GlbAttribute& attribute : content.attributes) {
+      write_records(file, points, attribute.columns);
+      file.write(std::string(padded_bytes(attribute, points) - points * bytes_of(attribute), '\0'));
+    }
   }
   file.commit();
 }

@@ -21,9 +21,9 @@ using GlbColor = std::array<std::uint8_t, 4>;
 /// sRGB (IEC 61966-2-1) as linear light; opaque.
 std::vector<GlbColor> linear_colors(std::vector<std::array<std::uint8_t, 3>> const& srgb);
 
-/// One attribute of points: its columns have one type, are of the points in order, and together are
-/// a multiple of four bytes.
+/// One attribute of points: its columns have one type and are of the points in order.
 struct GlbAttribute {
+  /// Empty: an accessor that only extensions name. Others are a multiple of four bytes per point.
   std::string name;
   std::vector<ColumnView> columns;
   bool normalized = false;

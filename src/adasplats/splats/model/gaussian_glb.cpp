@@ -27,8 +27,8 @@ struct GlbGaussian {
   float opacity = 1;
   std::array<float, 3> harmonics;
   float intensity = 0, drop = 0;
-  std::uint16_t class_id = 0, padding = 0;
-  std::array<std::uint8_t, 4> bytes{};  ///< group, intensity, drop, padding
+  std::uint16_t class_id = 0, group = 0, padding = 0;
+  std::uint8_t intensity_byte = 0, drop_byte = 0;
 };
 
 /// 1, or what is full scale in models with larger intensities.
@@ -67,15 +67,15 @@ std::vector<GlbGaussian> gaussians_of(const SplatModel& model,
       made.harmonics[k] = harmonic_of(colors[i][k]);
     }
     if (!model.classes.empty()) made.class_id = model.classes[i];
-    if (!model.groups.empty()) made.bytes[0] = static_cast<std::uint8_t>(model.groups[i]);
+    if (!model.groups.empty()) made.group = static_cast<std::uint16_t>(model.groups[i]);
     if (!model.intensities.empty()) {
       // glTF allows no NaN.
       made.intensity = std::isfinite(model.intensities[i]) ? model.intensities[i] : 0.0F;
-      made.bytes[1] = byte_of(made.intensity / full);
+      made.intensity_byte = byte_of(made.intensity / full);
     }
     if (!model.drop_log_odds.empty()) {
       made.drop = model.drop_log_odds[i];
-      made.bytes[2] = byte_of(1 / (1 + std::exp(-made.drop)));
+      made.drop_byte = byte_of(1 / (1 + std::exp(-made.drop)));
     }
   }
   return all;
@@ -90,16 +90,6 @@ std::vector<ColumnView> columns(const Values& values) {
   std::vector<ColumnView> all;
   for (const auto& value : values) all.push_back(column(value));
   return all;
-}
-
-/// One of the bytes, padded by the others.
-GlbAttribute byte_attribute(const char* name, const GlbGaussian& first, std::size_t k,
-                            bool normalized) {
-  const std::uint8_t& padding = first.bytes[3];
-  return {name,
-          {column(first.bytes[k]), column(padding), column(padding), column(padding)},
-          normalized,
-          1};
 }
 
 void add_attributes(const SplatModel& model, const GlbGaussian& g, GlbPoints& content) {
@@ -119,20 +109,21 @@ void add_attributes(const SplatModel& model, const GlbGaussian& g, GlbPoints& co
   content.extensions = {kSplatting};
   if (!model.classes.empty())
     all.push_back({"_CLASS", {column(g.class_id), column(g.padding)}, false, 1});
-  if (!model.groups.empty()) all.push_back(byte_attribute("_GROUP", g, 0, false));
+  if (!model.groups.empty())
+    all.push_back({"_GROUP", {column(g.group), column(g.padding)}, false, 1});
   std::string lidar;
-  const auto add_lidar = [&](const char* name, const char* attribute, std::size_t k) {
+  const auto add_lidar = [&](const char* name, const std::uint8_t& first) {
     lidar +=
         (lidar.empty() ? "\"" : ",\"") + std::string(name) + "\":" + std::to_string(all.size());
-    all.push_back(byte_attribute(attribute, g, k, true));
+    all.push_back({"", {column(first)}, true});
   };
   if (!model.intensities.empty()) {
     all.push_back({"_INTENSITY", {column(g.intensity)}});
-    add_lidar("lidar_intensity_raw", "_LIDAR_INTENSITY", 1);
+    add_lidar("lidar_intensity_raw", g.intensity_byte);
   }
   if (!model.drop_log_odds.empty()) {
     all.push_back({"_DROP", {column(g.drop)}});
-    add_lidar("lidar_raydrop_logit", "_LIDAR_RAYDROP", 2);
+    add_lidar("lidar_raydrop_logit", g.drop_byte);
   }
   if (!lidar.empty()) {
     content.primitive += std::string(",\"") + kLidar + "\":{" + lidar + "}";
