@@ -127,6 +127,8 @@ class Render(ProgramTest):
         self.assertAlmostEqual(range_m, 2, delta=0.02)
         self.run_good("render", world, "-o", self.folder / "film.webp", *SMALL, "--drive",
                       "--trajectory", poses, "--seconds", "0.2", "--frames-per-s", "10")
+        self.run_bad(64, "render", self.folder / "floor.obj", "-o", self.folder / "f.png", *SMALL,
+                     "--time", "3", says=["--time"])
         self.run_bad(64, "render", world, "-o", self.folder / "each2", *SMALL, "--trajectory",
                      poses, "--each-pose", "--time", "3", says=["--time"])
 

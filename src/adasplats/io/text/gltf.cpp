@@ -306,6 +306,7 @@ class GltfReader {
   /// By component.
   struct SplatAttributes {
     std::vector<std::vector<double>> positions, scales, rotations, opacities, harmonics;
+    bool is_linear = false;  ///< the colours
     std::size_t count() const { return positions[0].size(); }
     double norm(std::size_t i) const {
       const auto& q = rotations;
@@ -510,7 +511,11 @@ void GltfReader::add_mesh(const GltfMember& mesh, const AffineMap& world_from_me
   for (const GltfMember& primitive : mesh["primitives"].elements()) {
     const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
     if (wants_splats_) {
-      if (splatting_of(primitive)) add_splats(primitive, world_from_mesh);
+      if (splatting_of(primitive)) {
+        add_splats(primitive, world_from_mesh);
+      } else if (mode >= kTriangles) {
+        throw primitive.error("triangles beside Gaussians, which are no model; split the file");
+      }
       continue;
     }
     if (mode < kTriangles) continue;  // points and lines
@@ -599,6 +604,11 @@ std::vector<std::vector<double>> GltfReader::attribute(const GltfMember& attribu
   return values;
 }
 
+/// Linear light as sRGB (IEC 61966-2-1).
+double srgb_of(double light) {
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
 /// KHR_gaussian_splatting, "Ellipse Kernel": scales are linear and not negative, rotations x y z w.
 GltfReader::SplatAttributes GltfReader::splat_attributes(const GltfMember& primitive) {
   const GltfMember splatting = *splatting_of(primitive);
@@ -617,6 +627,8 @@ GltfReader::SplatAttributes GltfReader::splat_attributes(const GltfMember& primi
   SplatAttributes all = {needed("POSITION", 3), needed(prefix + "SCALE", 3),
                          needed(prefix + "ROTATION", 4), needed(prefix + "OPACITY", 1),
                          attribute(attributes, (prefix + "SH_DEGREE_0_COEF_0").c_str(), 3)};
+  if (const std::optional<GltfMember> space = splatting.find("colorSpace"))
+    all.is_linear = space->text().starts_with("lin_");
   const std::size_t count = all.count();
   for (const auto* values : {&all.scales, &all.rotations, &all.opacities, &all.harmonics})
     if (!values->empty() && values->front().size() != count)
@@ -660,7 +672,8 @@ void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_
         (world_from_mesh * Vec3d{all.positions[0][i], all.positions[1][i], all.positions[2][i]});
     const auto color = [&](std::size_t k) {
       const double value = all.harmonics.empty() ? kGrey : 0.5 + kHarmonic0 * all.harmonics[k][i];
-      return std::round(255 * std::clamp(value, 0.0, 1.0));
+      const double bounded = std::clamp(value, 0.0, 1.0);
+      return std::round(255 * (all.is_linear ? srgb_of(bounded) : bounded));
     };
     const std::array<double, kSplatColumns.size()> row = {
         center.x,      center.y,    center.z,     flat.normal.x,       flat.normal.y,

@@ -28,7 +28,7 @@ MeshTable read_gltf_mesh(const std::filesystem::path& path);
 /// application's attributes such as _CLASS as "class". World: x forward, y left, z up, plus
 /// "origin" of a node's extras; the comments are the texts in "adasplats" of the extras, which give
 /// the coordinate system, too. Errors: data, as read_gltf_mesh; compressed splats; a node that
-/// scales unevenly; harmonics in linear colours are read as sRGB.
+/// scales unevenly; triangles beside the splats.
 Table read_gltf_splats(const std::filesystem::path& path);
 
 /// Whether the JSON of a glTF file names the extension of Gaussian splats.

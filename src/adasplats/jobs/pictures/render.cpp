@@ -125,6 +125,10 @@ void check(const RenderJob& job) {
     throw Error(ErrorKind::usage, "`width` and `height` are out of range");
   }
   check_settings(job);
+  if (job.time_s && std::ranges::none_of(job.models, [](const fs::path& model) {
+        return model.extension() == ".toml";
+      }))
+    throw Error(ErrorKind::usage, "`time` is of the objects of world files");
   if (!job.errors.empty() && job.models.size() != 1)
     throw Error(ErrorKind::usage, "`errors` are of one model");
   if (job.difference && !job.errors.empty())

@@ -169,6 +169,16 @@ std::filesystem::path changed(const TemporaryFolder& folder, const std::filesyst
   return folder.write("changed.glb", bytes);
 }
 
+TEST(GaussianGlb, LinearColoursBecomeSrgb) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "model.glb";
+  const SplatModel model = rich_model(false);
+  write_gaussian_glb(file, model, Colors(model.size(), {55, 128, 188}));
+  const SplatModel found =
+      load_model(changed(folder, file, R"("srgb_rec709_display")", R"("lin_rec709_display")"));
+  EXPECT_EQ(found.colors[0], (ColorBytes{128, 188, 223}));  // IEC 61966-2-1
+}
+
 TEST(GaussianGlb, WrongContentIsNamed) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "model.glb";
