@@ -42,7 +42,8 @@ Lows lows_of(const RecordedObject& object) {
                static_cast<int>(std::floor(point.y / kCell_m))}]
             .push_back(point);
   Lows lows;
-  for (auto& [cell, points] : cells) {
+  for (auto& of_cell : cells) {
+    std::vector<Vec3d>& points = of_cell.second;
     if (points.size() < kMinPoints) continue;
     ++lows.cells;
     const auto low = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 10);

@@ -88,6 +88,7 @@ ColumnView column(const std::uint16_t& v) { return {"", ColumnType::u16, &v, siz
 template <class Values>
 std::vector<ColumnView> columns(const Values& values) {
   std::vector<ColumnView> all;
+  all.reserve(values.size());
   for (const auto& value : values) all.push_back(column(value));
   return all;
 }
