@@ -123,6 +123,11 @@ class Render(ProgramTest):
                       "--each-pose", "--layers", "range")
         last = npy(self.folder / "each" / "000001.range.npy")[1]
         self.assertAlmostEqual(last[27 * 96 + 48], 2, delta=0.02)
+        other = self.folder / "clock.csv"
+        other.write_text(poses.read_text().replace("\n1", "\n99901"))
+        for command in (["render", world, "-o", self.folder / "late.png", *SMALL],
+                        ["simulate", world, "-o", self.folder / "late"]):
+            self.run_warned("same clock", *command, "--trajectory", other)
         range_m, _ = self.middle(world, "--trajectory", poses, "--pose", "1")
         self.assertAlmostEqual(range_m, 2, delta=0.02)
         self.run_good("render", world, "-o", self.folder / "film.webp", *SMALL, "--drive",

@@ -19,7 +19,7 @@ namespace adasplats {
 using GlbColor = std::array<std::uint8_t, 4>;
 
 /// sRGB (IEC 61966-2-1) as linear light; opaque.
-std::vector<GlbColor> linear_colors(std::vector<std::array<std::uint8_t, 3>> const& srgb);
+std::vector<GlbColor> linear_colors(const std::vector<std::array<std::uint8_t, 3>>& srgb);
 
 /// One attribute of points: its columns have one type and are of the points in order.
 struct GlbAttribute {

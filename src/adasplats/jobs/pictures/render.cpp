@@ -26,6 +26,7 @@
 #include "adasplats/jobs/pictures/layer_files.h"
 #include "adasplats/jobs/pictures/panel.h"
 #include "adasplats/jobs/scene/view_choice.h"
+#include "adasplats/jobs/scene/world_clock.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/settings_json.h"
 
@@ -57,7 +58,12 @@ class Panels {
   const ShownPart& part() const { return part_; }
   /// Shows the objects of worlds at this time.
   void show_at(const std::optional<double>& time_s) {
-    for (Panel& panel : panels_) panel.show_at(time_s, session_);
+    for (Panel& panel : panels_) {
+      const World* const world = panel.model() != nullptr ? panel.model()->world() : nullptr;
+      if (world != nullptr && time_s && !job_.time_s && !has_warned_)
+        has_warned_ = warn_of_world_clock(*world, *time_s, *time_s, session_.progress);
+      panel.show_at(time_s, session_);
+    }
   }
   /// The model of the only panel; null if it is of points.
   const ModelScene* only_model() const { return panels_.front().model(); }
@@ -116,6 +122,7 @@ class Panels {
   ShownPart part_;
   std::optional<Vec3d> middle_;
   double seconds_ = 0;
+  bool has_warned_ = false;  ///< of another clock
 };
 
 void check(const RenderJob& job) {

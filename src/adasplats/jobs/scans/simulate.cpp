@@ -30,6 +30,7 @@
 #include "adasplats/jobs/scene/city_scene.h"
 #include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/jobs/scene/rig_sensors.h"
+#include "adasplats/jobs/scene/world_clock.h"
 #include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
@@ -221,10 +222,15 @@ ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolde
                      plan.sensors.front().settings.beam.returns);
   ScanJournal journal(folder);
   ParallelWriteOptions parallel;
-  if (scene.world() != nullptr)
+  if (scene.world() != nullptr) {
+    const std::span<const ScanMotion> scans = plan.sensors.front().scans;
+    if (!scans.empty())
+      warn_of_world_clock(*scene.world(), scans.front().reference.time_s,
+                          scans.back().reference.time_s, session.progress);
     parallel.more_files = [&](std::size_t number, const ScanView& scan) {
       return numbered_boxes(scene, plan, number, scan);
     };
+  }
   parallel.written = [&journal](std::size_t, std::size_t points,
                                 std::span<const FileDigest> files) { journal.note(points, files); };
   ScanRecorder recorder(*writer, parallel, result.scans_resumed, session);
