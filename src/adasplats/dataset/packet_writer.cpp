@@ -45,32 +45,14 @@ class PacketWriter final : public WriterWithPoses {
   PacketWriter(std::filesystem::path folder, const PacketOptions& options, PacketSink sink)
       : WriterWithPoses(std::move(folder)),
         options_(options),
-        sensor_(sensor_of(options)),
-        sender_(options.sender.value_or(factory_sender(sensor_.facts.port))),
-        sink_(std::move(sink)),
         shift_s_(options.shift_s.value_or(0)),
-        turn_s_(1.0 / sensor_.model.rotation_hz),
-        column_s_(turn_s_ / sensor_.model.columns),
-        nothing_(sensor_.lasers()) {
-    if (sink_) return;
-    capture_.emplace(this->folder() / "drive.pcap");
-    sink_ = [this](std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
-                   const std::string& payload) { capture_->add(time_us, from, to, payload); };
-  }
+        stream_(options, sink ? std::move(sink) : capture_sink()) {}
 
   EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
     EncodedScan encoded;
     encoded.pose = {scan.time_s, scan.world_from_sensor};
     encoded.points = scan.size();
-    if (scan.rings.size() != scan.size() || scan.columns.size() != scan.size() ||
-        scan.ranges_m.size() != scan.size())
-      throw std::logic_error("packets need rings, columns and ranges of the scan");
-    encoded.packet_returns.resize(sensor_.lasers() * sensor_.model.columns);
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      const std::size_t ring = scan.rings[i];
-      const std::size_t place = scan.columns[i] * sensor_.lasers() + sensor_.laser_of_ring.at(ring);
-      encoded.packet_returns.at(place) = return_of(scan, i, sensor_.range_offsets_m[ring]);
-    }
+    encoded.packet_returns = stream_.returns_of(scan);
     return encoded;
   }
 
@@ -79,103 +61,34 @@ class PacketWriter final : public WriterWithPoses {
     if (index == 0 && !options_.shift_s && scan.pose.time_s + options_.begin_after_s < 0)
       shift_s_ = kSecondsInHour;
     const double begin_s = scan.pose.time_s + options_.begin_after_s + shift_s_;
-    require_time(begin_s, index);
-    const bool goes_on = end_s_ && std::fabs(begin_s - *end_s_) < 0.5 * column_s_;
-    if (!goes_on) flush();
-    const std::size_t lasers = sensor_.lasers();
-    for (std::uint32_t column = 0; column < sensor_.model.columns; ++column)
-      add_column(begin_s, column, std::span(scan.packet_returns).subspan(column * lasers, lasers));
-    end_s_ = begin_s + turn_s_;
-    ++frame_;
+    stream_.add(begin_s, scan.packet_returns);
     EncodedScan middle;
-    middle.pose = {begin_s + 0.5 * turn_s_ - options_.time_offset_s, scan.pose.world_from_sensor};
+    middle.pose = {begin_s + 0.5 * stream_.turn_s() - options_.time_offset_s,
+                   scan.pose.world_from_sensor};
     WriterWithPoses::append(index, middle);
   }
 
   std::string main_file(std::size_t /*index*/) const override { return ""; }
 
   void finish() override {
-    flush();
+    stream_.flush();
     if (capture_) capture_->finish();
-    const CalibrationFile calibration = calibration_file(sensor_);
+    const CalibrationFile calibration = calibration_file(stream_.sensor());
     write_file(folder() / calibration.name, calibration.text);
     WriterWithPoses::finish();
   }
 
  private:
-  /// A range of the beam as counts; what came back is at least one.
-  PacketReturn return_of(const ScanView& scan, std::size_t i, double offset_m) const {
-    const double range_m = static_cast<double>(scan.ranges_m[i]) - offset_m;
-    const double counts = std::clamp(std::round(range_m / sensor_.facts.quantum_m), 1.0,
-                                     static_cast<double>(sensor_.facts.max_counts));
-    double share = scan.intensities.empty() ? 0.0 : static_cast<double>(scan.intensities[i]);
-    share = std::isnan(share) ? 0.0 : std::clamp(share / options_.full_intensity, 0.0, 1.0);
-    return {static_cast<std::uint32_t>(counts),
-            static_cast<std::uint16_t>(std::lround(65535 * share))};
-  }
-
-  void require_time(double begin_s, std::size_t index) const {
-    const std::string scan =
-        "scan " + std::to_string(index) + " begins at " + std::to_string(begin_s) + " s";
-    if (begin_s < 0)
-      throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot represent");
-    if (end_s_ && *end_s_ - begin_s > kMaxOverlap * turn_s_)
-      throw Error(ErrorKind::data, scan + ", before the last one ended at " +
-                                       std::to_string(*end_s_) +
-                                       " s; use fewer poses or a higher rotation rate");
-  }
-
-  void add_column(double begin_s, std::uint32_t column, std::span<const PacketReturn> returns) {
-    const double late_ns = kNanosecondsInSecond * column_s_ * column;
-    const auto begin_ns = static_cast<std::uint64_t>(
-        std::llround((begin_s - options_.time_offset_s) * kNanosecondsInSecond));
-    columns_.push_back({begin_ns + static_cast<std::uint64_t>(std::llround(late_ns)),
-                        column % sensor_.model.columns,
-                        static_cast<std::uint16_t>(frame_),
-                        {}});
-    returns_.emplace_back(returns.begin(), returns.end());
-    columns_.back().returns = returns_.back();
-    if (columns_.size() == sensor_.facts.columns) send();
-  }
-
-  void send() {
-    const auto column_ns =
-        static_cast<std::uint64_t>(std::llround(column_s_ * kNanosecondsInSecond));
-    const auto offset_ns =
-        static_cast<std::uint64_t>(std::llround(options_.time_offset_s * kNanosecondsInSecond));
-    const std::uint64_t sent_us =
-        (columns_.back().time_ns + column_ns + offset_ns) / kNanosecondsInMicrosecond;
-    sent_us_ = std::max(sent_us_, sent_us);
-    // Packets outside the window of an Ouster are not sent.
-    const bool is_sent = !is_ouster(sensor_.format) ||
-                         std::ranges::any_of(columns_, [&](const PacketColumn& column) {
-                           return sensor_.model.fires_in(column.column);
-                         });
-    if (is_sent)
-      sink_(sent_us_, sender_, everyone(sender_.port),
-            encode_packet(sensor_, columns_, packets_++));
-    columns_.clear();
-    returns_.clear();
-  }
-
-  /// Adds columns without returns until the packet is full.
-  void flush() {
-    for (std::uint32_t more = 0; !columns_.empty(); ++more)
-      add_column(*end_s_ - turn_s_, sensor_.model.columns + more, nothing_);
+  PacketSink capture_sink() {
+    capture_.emplace(folder() / "drive.pcap");
+    return [this](std::uint64_t time_us, const UdpEndpoint& from, const UdpEndpoint& to,
+                  const std::string& payload) { capture_->add(time_us, from, to, payload); };
   }
 
   PacketOptions options_;
-  PacketSensor sensor_;
-  UdpEndpoint sender_;
-  PacketSink sink_;
   std::optional<CaptureWriter> capture_;
   double shift_s_;  ///< added to all times
-  double turn_s_, column_s_;
-  std::vector<PacketReturn> nothing_;
-  std::optional<double> end_s_;  ///< of the last scan
-  std::uint64_t frame_ = 0, packets_ = 0, sent_us_ = 0;
-  std::vector<PacketColumn> columns_;              ///< of the open packet
-  std::deque<std::vector<PacketReturn>> returns_;  ///< of these columns
+  PacketStream stream_;
 };
 
 /// Hesai's packets have no times of columns or beams and no origins; readers use those of the
@@ -225,6 +138,98 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
     reject("its mode " + mode +
            " is not supported, expected 512x10, 512x20, 1024x10, 1024x20, 2048x10 or 4096x5");
   calibration_file(sensor);  // throws if the metadata cannot represent the sensor
+}
+
+PacketStream::PacketStream(const PacketOptions& options, PacketSink sink)
+    : options_(options),
+      sensor_(sensor_of(options)),
+      sender_(options.sender.value_or(factory_sender(sensor_.facts.port))),
+      sink_(std::move(sink)),
+      turn_s_(1.0 / sensor_.model.rotation_hz),
+      column_s_(turn_s_ / sensor_.model.columns),
+      nothing_(sensor_.lasers()) {}
+
+std::vector<PacketReturn> PacketStream::returns_of(const ScanView& scan) const {
+  if (scan.rings.size() != scan.size() || scan.columns.size() != scan.size() ||
+      scan.ranges_m.size() != scan.size())
+    throw std::logic_error("packets need rings, columns and ranges of the scan");
+  std::vector<PacketReturn> returns(sensor_.lasers() * sensor_.model.columns);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const std::size_t ring = scan.rings[i];
+    const std::size_t place = scan.columns[i] * sensor_.lasers() + sensor_.laser_of_ring.at(ring);
+    returns.at(place) = return_of(scan, i, sensor_.range_offsets_m[ring]);
+  }
+  return returns;
+}
+
+void PacketStream::add(double begin_s, std::span<const PacketReturn> returns) {
+  require_time(begin_s);
+  const bool goes_on = end_s_ && std::fabs(begin_s - *end_s_) < 0.5 * column_s_;
+  if (!goes_on) flush();
+  const std::size_t lasers = sensor_.lasers();
+  for (std::uint32_t column = 0; column < sensor_.model.columns; ++column)
+    add_column(begin_s, column, returns.subspan(column * lasers, lasers));
+  end_s_ = begin_s + turn_s_;
+  ++scans_;
+}
+
+/// A range of the beam as counts; what came back is at least one.
+PacketReturn PacketStream::return_of(const ScanView& scan, std::size_t i, double offset_m) const {
+  const double range_m = static_cast<double>(scan.ranges_m[i]) - offset_m;
+  const double counts = std::clamp(std::round(range_m / sensor_.facts.quantum_m), 1.0,
+                                   static_cast<double>(sensor_.facts.max_counts));
+  double share = scan.intensities.empty() ? 0.0 : static_cast<double>(scan.intensities[i]);
+  share = std::isnan(share) ? 0.0 : std::clamp(share / options_.full_intensity, 0.0, 1.0);
+  return {static_cast<std::uint32_t>(counts),
+          static_cast<std::uint16_t>(std::lround(65535 * share))};
+}
+
+void PacketStream::require_time(double begin_s) const {
+  const std::string scan =
+      "scan " + std::to_string(scans_) + " begins at " + std::to_string(begin_s) + " s";
+  if (begin_s < 0)
+    throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot represent");
+  if (end_s_ && *end_s_ - begin_s > kMaxOverlap * turn_s_)
+    throw Error(ErrorKind::data, scan + ", before the last one ended at " +
+                                     std::to_string(*end_s_) +
+                                     " s; use fewer poses or a higher rotation rate");
+}
+
+void PacketStream::add_column(double begin_s, std::uint32_t column,
+                              std::span<const PacketReturn> returns) {
+  const double late_ns = kNanosecondsInSecond * column_s_ * column;
+  const auto begin_ns = static_cast<std::uint64_t>(
+      std::llround((begin_s - options_.time_offset_s) * kNanosecondsInSecond));
+  columns_.push_back({begin_ns + static_cast<std::uint64_t>(std::llround(late_ns)),
+                      column % sensor_.model.columns,
+                      static_cast<std::uint16_t>(scans_),
+                      {}});
+  returns_.emplace_back(returns.begin(), returns.end());
+  columns_.back().returns = returns_.back();
+  if (columns_.size() == sensor_.facts.columns) send();
+}
+
+void PacketStream::send() {
+  const auto column_ns = static_cast<std::uint64_t>(std::llround(column_s_ * kNanosecondsInSecond));
+  const auto offset_ns =
+      static_cast<std::uint64_t>(std::llround(options_.time_offset_s * kNanosecondsInSecond));
+  const std::uint64_t sent_us =
+      (columns_.back().time_ns + column_ns + offset_ns) / kNanosecondsInMicrosecond;
+  sent_us_ = std::max(sent_us_, sent_us);
+  // Packets outside the window of an Ouster are not sent.
+  const bool is_sent =
+      !is_ouster(sensor_.format) || std::ranges::any_of(columns_, [&](const PacketColumn& column) {
+        return sensor_.model.fires_in(column.column);
+      });
+  if (is_sent)
+    sink_(sent_us_, sender_, everyone(sender_.port), encode_packet(sensor_, columns_, packets_++));
+  columns_.clear();
+  returns_.clear();
+}
+
+void PacketStream::flush() {
+  for (std::uint32_t more = 0; !columns_.empty(); ++more)
+    add_column(*end_s_ - turn_s_, sensor_.model.columns + more, nothing_);
 }
 
 std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
