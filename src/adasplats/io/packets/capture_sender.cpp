@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
@@ -20,7 +21,8 @@ namespace {
 
 using SendClock = std::chrono::steady_clock;
 
-sockaddr_in address_of_host(const std::string& host) {
+/// In network order.
+std::uint32_t address_of_host(const std::string& host) {
   addrinfo hints{};
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_DGRAM;
@@ -32,44 +34,37 @@ sockaddr_in address_of_host(const std::string& host) {
   std::copy_n(reinterpret_cast<const char*>(found->ai_addr), sizeof address,
               reinterpret_cast<char*>(&address));
   freeaddrinfo(found);
-  return address;
+  return address.sin_addr.s_addr;
 }
 
-/// A socket for datagrams.
-class SendingSocket {
- public:
-  explicit SendingSocket(const SendOptions& options)
-      : host_(options.host), address_(address_of_host(options.host)) {
-    descriptor_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (descriptor_ < 0) throw system_error(ErrorKind::io, host_, "no socket", errno);
-    const int yes = 1;
-    setsockopt(descriptor_, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes);
-  }
-  ~SendingSocket() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  SendingSocket(const SendingSocket&) = delete;
-  SendingSocket& operator=(const SendingSocket&) = delete;
-
-  void send(std::string_view bytes, std::uint16_t port) {
-    address_.sin_port = htons(port);
-    ssize_t sent = -1;
-    do {
-      sent = sendto(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
-                    reinterpret_cast<const sockaddr*>(&address_), sizeof address_);
-    } while (sent < 0 && errno == EINTR);
-    if (sent < 0)
-      throw system_error(ErrorKind::io, host_ + ":" + std::to_string(port),
-                         std::to_string(bytes.size()) + " bytes cannot be sent", errno);
-  }
-
- private:
-  std::string host_;
-  sockaddr_in address_;
-  int descriptor_ = -1;
-};
-
 }  // namespace
+
+DatagramSender::DatagramSender(std::string host)
+    : host_(std::move(host)), address_(address_of_host(host_)) {
+  descriptor_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor_ < 0) throw system_error(ErrorKind::io, host_, "no socket", errno);
+  const int yes = 1;
+  setsockopt(descriptor_, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes);
+}
+
+DatagramSender::~DatagramSender() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void DatagramSender::send(std::string_view bytes, std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = address_;
+  address.sin_port = htons(port);
+  ssize_t sent = -1;
+  do {
+    sent = sendto(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
+                  reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  } while (sent < 0 && errno == EINTR);
+  if (sent < 0)
+    throw system_error(ErrorKind::io, host_ + ":" + std::to_string(port),
+                       std::to_string(bytes.size()) + " bytes cannot be sent", errno);
+}
 
 void set_destination(const std::string& text, SendOptions& options) {
   const std::size_t colon = text.rfind(':');
@@ -92,7 +87,7 @@ SendResult send_capture(const std::filesystem::path& path, const SendOptions& op
   constexpr auto kLongestWait = std::chrono::milliseconds(100);
   constexpr double kNanosecondsOfSecond = 1e9;
   DatagramReader reader(path);
-  SendingSocket socket(options);
+  DatagramSender socket(options.host);
   SendResult result;
   const SendClock::time_point begin = SendClock::now();
   const auto since_begin_s = [&] {

@@ -5,11 +5,30 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/io/packets/datagram_reader.h"
 
 namespace adasplats {
+
+/// Sends UDP datagrams to a host.
+class DatagramSender {
+ public:
+  /// `host`: a name or an IPv4 address. Errors: no_input (unknown host), io.
+  explicit DatagramSender(std::string host);
+  ~DatagramSender();
+  DatagramSender(const DatagramSender&) = delete;
+  DatagramSender& operator=(const DatagramSender&) = delete;
+
+  /// Errors: io.
+  void send(std::string_view bytes, std::uint16_t port);
+
+ private:
+  std::string host_;
+  std::uint32_t address_ = 0;  ///< in network order
+  int descriptor_ = -1;
+};
 
 /// Destination and speed of sending.
 struct SendOptions {
