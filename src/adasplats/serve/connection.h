@@ -9,6 +9,7 @@
 #include <chrono>
 #include <memory>
 #include <set>
+#include <string_view>
 
 #include "adasplats/serve/http_server.h"
 
@@ -38,7 +39,8 @@ class Connection {
 /// outlive the server.
 struct ServerCore {
   HttpServerOptions options;
-  HttpHandler get;
+  HttpActions act;
+  bool takes_writes;  ///< POST and DELETE
   WebSocketHandler& live;
   std::uint16_t port = 0;
   boost::asio::io_context context{1};
@@ -47,6 +49,9 @@ struct ServerCore {
   ServerClock::time_point stall_deadline() const {
     return ServerClock::now() + options.stall_limit;
   }
+  /// Whether a page of this Origin may write and open the WebSocket. Clients other than browsers
+  /// send none; they have the token.
+  bool is_allowed_origin(std::string_view origin, std::string_view host) const;
 };
 
 /// Handles the HTTP requests of a socket; hands it over if a request asks for the WebSocket.

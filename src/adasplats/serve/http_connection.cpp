@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <boost/asio/dispatch.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
@@ -11,6 +13,7 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <optional>
@@ -42,15 +45,39 @@ HttpReply status_reply(http::status status) {
           std::make_shared<const std::string>(text)};
 }
 
+constexpr bool is_read(http::verb method) {
+  return method == http::verb::get || method == http::verb::head;
+}
+constexpr bool is_write(http::verb method) {
+  return method == http::verb::post || method == http::verb::delete_;
+}
+
+/// The methods that a server has, as in the field Allow.
+const char* methods_of(const ServerCore& core) {
+  return core.takes_writes ? "GET, HEAD, POST, DELETE" : "GET, HEAD";
+}
+
+bool has_allowed_origin(const Request& request, const ServerCore& core) {
+  const std::string_view host = to_std(request[http::field::host]);
+  return std::all_of(request.begin(), request.end(), [&](const auto& field) {
+    return field.name() != http::field::origin ||
+           core.is_allowed_origin(to_std(field.value()), host);
+  });
+}
+
 /// Status of a request that is invalid for any path; ok if it is valid.
 http::status fault_of(const Request& request, bool has_body, const ServerCore& core) {
-  if (request.method() != http::verb::get && request.method() != http::verb::head)
-    return http::status::method_not_allowed;
+  const bool is_writing = core.takes_writes && is_write(request.method());
+  if (!is_read(request.method()) && !is_writing) return http::status::method_not_allowed;
   // Only origin-form (RFC 9112, 3.2.1), because this is not a proxy. Exactly one Host (3.2).
-  if (has_body || !request.target().starts_with('/') || request.count(http::field::host) != 1)
+  if ((has_body && request.method() != http::verb::post) || !request.target().starts_with('/') ||
+      request.count(http::field::host) != 1)
     return http::status::bad_request;
   const std::string_view host = to_std(request[http::field::host]);
   if (!is_own_host(host, {core.options.address, core.port})) return http::status::forbidden;
+  if (is_writing && !has_allowed_origin(request, core)) return http::status::forbidden;
+  if (request.method() == http::verb::post && request.count(http::field::content_length) != 1)
+    return http::status::length_required;
   return http::status::ok;
 }
 
@@ -67,9 +94,10 @@ class HttpConnection final : public Connection,
  private:
   void read_done(ErrorCode error);
   void answer();
-  void answer_path(const std::string& path);
+  void read_body(std::string path);
   void answer_live();
-  HttpReply reply_to(const std::string& path) const;
+  void act(HttpRequest request);
+  HttpAnswer answer_of_this_request();
   void send(HttpReply reply, bool last);
   void send_some();
   void sent(ErrorCode error);
@@ -80,8 +108,10 @@ class HttpConnection final : public Connection,
   asio::ip::tcp::socket socket_;
   bool over_limit_;
   bool ended_ = false;
+  bool keeps_alive_ = false, is_head_ = false;  // of the request
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<http::request_parser<http::string_body>> body_parser_;
   SharedBytes body_;
   std::optional<Response> response_;
   std::optional<http::response_serializer<http::span_body<const char>>> serializer_;
@@ -92,6 +122,8 @@ class HttpConnection final : public Connection,
 void HttpConnection::read() {
   // One deadline for the complete header: bytes that trickle in do not extend it.
   set_deadline(core_->stall_deadline());
+  keeps_alive_ = is_head_ = false;
+  body_parser_.reset();
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(core_->options.header_bytes_limit));
   http::async_read_header(
@@ -114,31 +146,42 @@ void HttpConnection::read_done(ErrorCode error) {
 }
 
 void HttpConnection::answer() {
-  if (over_limit_) return send(status_reply(http::status::service_unavailable), true);
   const Request& request = parser_->get();
+  keeps_alive_ = request.keep_alive();
+  is_head_ = request.method() == http::verb::head;
+  if (over_limit_) return send(status_reply(http::status::service_unavailable), true);
   const http::status fault = fault_of(request, !parser_->is_done(), *core_);
   if (fault != http::status::ok) return send(status_reply(fault), true);
   const std::optional<std::string> path =
       path_after_token(to_std(request.target()), core_->options.token);
-  if (!path) return send(status_reply(http::status::not_found), !request.keep_alive());
-  answer_path(*path);
+  if (!path)
+    return send(status_reply(http::status::not_found), !keeps_alive_ || !parser_->is_done());
+  if (*path == "live" && is_read(request.method())) return answer_live();
+  if (request.method() == http::verb::post) return read_body(*path);
+  act({is_read(request.method()) ? "GET" : "DELETE", *path, {}});
 }
 
-void HttpConnection::answer_path(const std::string& path) {
-  if (path == "live") return answer_live();
-  send(reply_to(path), !parser_->get().keep_alive());
+/// Within the deadline of the header.
+void HttpConnection::read_body(std::string path) {
+  body_parser_.emplace(std::move(*parser_));
+  body_parser_->body_limit(core_->options.message_bytes_limit);
+  http::async_read(
+      socket_, buffer_, *body_parser_,
+      [self = shared_from_this(), path = std::move(path)](ErrorCode error, std::size_t) {
+        if (self->ended_) return;
+        if (error == http::error::body_limit)
+          return self->send(status_reply(http::status::payload_too_large), true);
+        if (error) return self->abort();
+        self->act({"POST", path, std::move(self->body_parser_->get().body())});
+      });
 }
 
 void HttpConnection::answer_live() {
   Request& request = parser_->get();
   if (!beast::websocket::is_upgrade(request))
     return send(status_reply(http::status::upgrade_required), !request.keep_alive());
-  // Clients other than browsers send no Origin; they have the token.
-  const std::string_view host = to_std(request[http::field::host]);
-  for (const auto& field : request) {
-    if (field.name() == http::field::origin && !is_own_origin(to_std(field.value()), host))
-      return send(status_reply(http::status::forbidden), true);
-  }
+  if (!has_allowed_origin(request, *core_))
+    return send(status_reply(http::status::forbidden), true);
   // The client must not send data before the response to the upgrade (RFC 6455, 4.1). The key is 16
   // bytes in base64 (4.2.1).
   const bool has_valid_key = request[http::field::sec_websocket_key].size() == 24;
@@ -149,14 +192,27 @@ void HttpConnection::answer_live() {
   start_websocket(std::move(socket_), core_, parser_->release());
 }
 
-HttpReply HttpConnection::reply_to(const std::string& path) const {
+/// Sends a reply unless another one was sent or the connection has ended.
+HttpAnswer HttpConnection::answer_of_this_request() {
+  return [self = shared_from_this(),
+          is_sent = std::make_shared<std::atomic<bool>>(false)](HttpReply reply) {
+    if (is_sent->exchange(true)) return;
+    asio::dispatch(self->core_->context, [self, reply = std::move(reply)]() mutable {
+      if (self->ended_) return;
+      // The same response as for a wrong token.
+      if (reply.status == 404 && !reply.body) reply = status_reply(http::status::not_found);
+      self->send(std::move(reply), !self->keeps_alive_);
+    });
+  };
+}
+
+void HttpConnection::act(HttpRequest request) {
+  set_deadline(ServerClock::time_point::max());  // until the answer is there
+  const HttpAnswer answer = answer_of_this_request();
   try {
-    HttpReply reply = core_->get(path);
-    // The same response as for a wrong token.
-    if (reply.status == 404) return status_reply(http::status::not_found);
-    return reply;
+    core_->act(std::move(request), answer);
   } catch (...) {
-    return status_reply(http::status::internal_server_error);
+    answer(status_reply(http::status::internal_server_error));
   }
 }
 
@@ -170,13 +226,13 @@ void HttpConnection::send(HttpReply reply, bool last) {
   response_->set(http::field::content_type, reply.content_type);
   set_safety_headers(*response_);
   if (response_->result() == http::status::method_not_allowed)
-    response_->set(http::field::allow, "GET, HEAD");
+    response_->set(http::field::allow, methods_of(*core_));
   if (response_->result() == http::status::upgrade_required) {
     response_->set(http::field::upgrade, "websocket");
     response_->set(http::field::connection, last ? "upgrade, close" : "upgrade");
   }
   response_->content_length(bytes.size());
-  if (parser_->get().method() != http::verb::head) response_->body() = {bytes.data(), bytes.size()};
+  if (!is_head_) response_->body() = {bytes.data(), bytes.size()};
   serializer_.emplace(*response_);
   send_some();
 }

@@ -87,8 +87,9 @@ int new_event() {
 
 class HttpServer::Implementation {
  public:
-  Implementation(HttpServerOptions options, HttpHandler get, WebSocketHandler& live)
-      : core_(new ServerCore{std::move(options), std::move(get), live}),
+  Implementation(HttpServerOptions options, HttpActions act, bool takes_writes,
+                 WebSocketHandler& live)
+      : core_(new ServerCore{std::move(options), std::move(act), takes_writes, live}),
         acceptor_(listening(core_->context, core_->options)),
         pause_(core_->context),
         sweep_(core_->context),
@@ -192,9 +193,23 @@ void HttpServer::Implementation::begin_stop() {
   sweep_.cancel();  // and sweep at the shortest interval from now on
 }
 
+bool ServerCore::is_allowed_origin(std::string_view origin, std::string_view host) const {
+  return is_own_origin(origin, host) ||
+         std::ranges::find(options.allowed_origins, origin) != options.allowed_origins.end();
+}
+
 HttpServer::HttpServer(HttpServerOptions options, HttpHandler get, WebSocketHandler& live) {
   check_token(options.token);
-  implementation_ = std::make_unique<Implementation>(std::move(options), std::move(get), live);
+  HttpActions act = [get = std::move(get)](const HttpRequest& request, const HttpAnswer& answer) {
+    answer(get(request.path));
+  };
+  implementation_ =
+      std::make_unique<Implementation>(std::move(options), std::move(act), false, live);
+}
+HttpServer::HttpServer(HttpServerOptions options, HttpActions act, WebSocketHandler& live) {
+  check_token(options.token);
+  implementation_ =
+      std::make_unique<Implementation>(std::move(options), std::move(act), true, live);
 }
 HttpServer::~HttpServer() = default;
 
@@ -218,12 +233,20 @@ namespace adasplats {
 
 class HttpServer::Implementation {};
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): the signature of the build with Boost
-HttpServer::HttpServer(HttpServerOptions, HttpHandler, WebSocketHandler&) {
+namespace {
+
+[[noreturn]] void throw_no_server() {
   throw Error(ErrorKind::unavailable,
               "this build of adasplats has no local server: it was built without Boost (Asio and "
               "Beast, 1.74 or later); install the package libboost-dev and build again");
 }
+
+}  // namespace
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the signature of the build with Boost
+HttpServer::HttpServer(HttpServerOptions, HttpHandler, WebSocketHandler&) { throw_no_server(); }
+// NOLINTNEXTLINE(performance-unnecessary-value-param): likewise
+HttpServer::HttpServer(HttpServerOptions, HttpActions, WebSocketHandler&) { throw_no_server(); }
 HttpServer::~HttpServer() = default;
 
 std::uint16_t HttpServer::port() const { return 0; }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace adasplats {
 
@@ -26,6 +27,17 @@ struct HttpReply {
 /// the folder itself); status 404 for an unknown path. Called on the server's thread.
 using HttpHandler = std::function<HttpReply(std::string_view path)>;
 
+/// A request of a client that may change something.
+struct HttpRequest {
+  std::string method;  ///< "GET" (also of HEAD), "POST" or "DELETE"
+  std::string path;    ///< as of HttpHandler
+  std::string body;    ///< of POST
+};
+/// Sends the response to a request. Any thread may call it, once; later calls do nothing.
+using HttpAnswer = std::function<void(HttpReply)>;
+/// Receives a request on the server's thread, so it must return quickly; the answer may come later.
+using HttpActions = std::function<void(HttpRequest, HttpAnswer)>;
+
 /// The client of a WebSocket. Any thread may call these; after the connection has ended they do
 /// nothing.
 class WebSocketPeer {
@@ -34,6 +46,8 @@ class WebSocketPeer {
   /// Appends to the queue. If it would exceed `queued_bytes_limit`, closes the connection instead.
   virtual void send_text(std::string text) = 0;
   virtual void send_binary(SharedBytes bytes) = 0;
+  /// Bytes that were queued and not sent yet.
+  virtual std::size_t queued_bytes() const = 0;
   /// Ends the connection with a close code (RFC 6455, 7.4.1) and a reason.
   virtual void close(std::uint16_t code, std::string_view reason) = 0;
 };
@@ -50,14 +64,17 @@ class WebSocketHandler {
 };
 
 struct HttpServerOptions {
-  std::string address = "127.0.0.1";              ///< numeric
-  std::uint16_t port = 0;                         ///< 0: any free port
-  std::string token;                              ///< first part of every path; not empty
-  std::size_t connections_limit = 64;             ///< further ones get 503
-  std::size_t header_bytes_limit = 8 << 10;       ///< of a request
-  std::size_t message_bytes_limit = 16 << 10;     ///< of a WebSocket message from the client
+  std::string address = "127.0.0.1";         ///< numeric
+  std::uint16_t port = 0;                    ///< 0: any free port
+  std::string token;                         ///< first part of every path; not empty
+  std::size_t connections_limit = 64;        ///< further ones get 503
+  std::size_t header_bytes_limit = 8 << 10;  ///< of a request
+  /// Of a WebSocket message from the client, and of the body of a POST.
+  std::size_t message_bytes_limit = 16 << 10;
   std::size_t queued_bytes_limit = 64 << 20;      ///< queued for one WebSocket
   std::chrono::milliseconds stall_limit{30'000};  ///< without progress
+  std::string subprotocol;                        ///< of the WebSocket, for clients that offer it
+  std::vector<std::string> allowed_origins;       ///< of pages of other servers
 };
 
 /// An unpredictable token: 32 hexadecimal digits from the system's random numbers. Errors:
@@ -65,9 +82,10 @@ struct HttpServerOptions {
 std::string random_token();
 
 /// A small HTTP/1.1 server for one page on this machine: GET and HEAD below /TOKEN/, and one
-/// WebSocket at /TOKEN/live. It serves only the responses of `get` and reads no files. Every
+/// WebSocket at /TOKEN/live. It serves only the responses of its handler and reads no files. Every
 /// response forbids caching, sniffing, framing and loading from other servers. Rejects (403)
-/// WebSockets with another Origin, and a Host that is neither the address nor localhost.
+/// WebSockets, POST and DELETE with another Origin, and a Host that is neither the address nor
+/// localhost.
 class HttpServer {
  public:
   /// Listens; requests are answered from run() on. `get` and `live` must outlive the server.
@@ -75,6 +93,9 @@ class HttpServer {
   /// (the address is not numeric, or the token has other characters than letters, digits, '-' and
   /// '_').
   HttpServer(HttpServerOptions options, HttpHandler get, WebSocketHandler& live);
+  /// The same with POST and DELETE. A POST without Content-Length gets 411, one with a longer body
+  /// than message_bytes_limit 413.
+  HttpServer(HttpServerOptions options, HttpActions act, WebSocketHandler& live);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <deque>
 #include <optional>
@@ -52,6 +53,7 @@ class WebSocketConnection final : public Connection,
   // WebSocketPeer: callable from any thread.
   void send_text(std::string text) override;
   void send_binary(SharedBytes bytes) override;
+  std::size_t queued_bytes() const override { return queued_bytes_; }
   void close(std::uint16_t code, std::string_view reason) override;
 
   // Connection: on the server's thread, like everything below.
@@ -105,10 +107,16 @@ WebSocketConnection::WebSocketConnection(asio::ip::tcp::socket socket,
   timeout.idle_timeout = core_->options.stall_limit;
   timeout.keep_alive_pings = true;
   stream_->set_option(timeout);
-  stream_->set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-    response.set(http::field::server, "adasplats");  // instead of Beast and its version
-    set_safety_headers(response);
-  }));
+  const std::string& protocol = core_->options.subprotocol;
+  const bool is_offered =
+      !protocol.empty() &&
+      http::token_list(request_[http::field::sec_websocket_protocol]).exists(protocol);
+  stream_->set_option(websocket::stream_base::decorator(
+      [name = is_offered ? protocol : std::string()](websocket::response_type& response) {
+        response.set(http::field::server, "adasplats");  // instead of Beast and its version
+        if (!name.empty()) response.set(http::field::sec_websocket_protocol, name);
+        set_safety_headers(response);
+      }));
   stream_->read_message_max(core_->options.message_bytes_limit);
   stream_->auto_fragment(false);
 }

@@ -33,6 +33,7 @@ class Listener final : public WebSocketPeer {
   void close(std::uint16_t code, std::string_view /*reason*/) override {
     add([&] { close_code_ = code; });
   }
+  std::size_t queued_bytes() const override { return 0; }
 
   /// The next packet; null after the limit.
   SharedBytes packet(std::chrono::milliseconds limit = 10s) {
