@@ -12,69 +12,15 @@
 #include "adasplats/core/error.h"
 #include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/sensors/sensor_overrides.h"
+#include "adasplats/view/message_values.h"
 
 namespace adasplats {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Maximum position and speed.
-constexpr double kMaxDistance_m = 1e7;
 /// Maximum rays of a scan with its sub-rays, so that one page does not delay the others.
 constexpr std::size_t kMaxRays = 4'000'000;
-/// Maximum deviation of a quaternion's length from 1.
-constexpr double kNormTolerance = 1e-2;
-
-[[noreturn]] void reject(const std::string& message) { throw Error(ErrorKind::usage, message); }
-
-double number_of(const Json& json, const std::string& name, double min, double max) {
-  const double value = json.is_number() ? json.get<double>() : std::nan("");
-  if (value >= min && value <= max) return value;
-  reject(name + ": expected a number from " + Json(min).dump() + " to " + Json(max).dump() +
-         ", found " + json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
-}
-
-bool bool_of(const Json& json, const std::string& name) {
-  if (!json.is_boolean()) reject(name + ": expected true or false");
-  return json.get<bool>();
-}
-
-std::string text_of(const Json& json, const std::string& name) {
-  if (!json.is_string()) reject(name + ": expected a string");
-  return json.get<std::string>();
-}
-
-const Json& member(const Json& json, const std::string& name) {
-  const auto found = json.find(name);
-  if (found == json.end()) reject("'" + name + "' is missing");
-  return *found;
-}
-
-template <std::size_t N>
-std::array<double, N> numbers_of(const Json& json, const std::string& name) {
-  if (!json.is_array() || json.size() != N)
-    reject(name + ": expected " + std::to_string(N) + " numbers");
-  std::array<double, N> numbers{};
-  for (std::size_t i = 0; i < N; ++i)
-    numbers[i] = number_of(json[i], name, -kMaxDistance_m, kMaxDistance_m);
-  return numbers;
-}
-
-Vec3d vector_of(const Json& json, const std::string& name) {
-  const auto [x, y, z] = numbers_of<3>(json, name);
-  return {x, y, z};
-}
-
-/// Maximum time; more than any clock has seconds.
-constexpr double kMaxTime_s = 1e11;
-
-RigidTransform transform_of(const Json& json, Vec3d origin) {
-  const auto [x, y, z, qx, qy, qz, qw] = numbers_of<7>(json, "pose");
-  const double norm = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
-  if (!(std::fabs(norm - 1) <= kNormTolerance)) reject("pose: expected a quaternion of length 1");
-  return {rotation_from_quaternion(qw / norm, qx / norm, qy / norm, qz / norm),
-          Vec3d{x, y, z} + origin};
-}
 
 std::string short_number(double value) {
   std::array<char, 32> text{};
@@ -85,8 +31,8 @@ std::string short_number(double value) {
 double number_of(const Json& json, const Setting& setting) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (is_in_range(setting, value)) return value;
-  reject(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
-         json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
+  reject_message(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
+                 json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
 }
 
 /// Sets the setting of a key from JSON and appends the option of `simulate` for it.
@@ -105,7 +51,7 @@ class SettingFromJson {
       set_word(setting, value);
     } else if constexpr (std::is_same_v<T, int>) {
       const double number = number_of(json_, setting);
-      if (number != std::floor(number)) reject(key_ + ": expected a whole number");
+      if (number != std::floor(number)) reject_message(key_ + ": expected a whole number");
       put(setting, static_cast<int>(number), value);
     } else if constexpr (std::is_same_v<T, double>) {
       // Settings that are infinite by default: 0 and null mean infinite.
@@ -120,7 +66,7 @@ class SettingFromJson {
  private:
   template <class T>
   void set_word(const Setting& setting, T& value) {
-    const std::string word = text_of(json_, key_);
+    const std::string word = message_text(json_, key_);
     for (const auto& [each, meaning] : words_of(value)) {
       if (each != word) continue;
       if (meaning != value) options_.insert(options_.end(), {option_of(setting), word});
@@ -130,7 +76,7 @@ class SettingFromJson {
     std::string known;
     for (const auto& [each, meaning] : words_of(value))
       known += (known.empty() ? "" : ", ") + std::string(each);
-    reject(key_ + ": expected one of " + known);
+    reject_message(key_ + ": expected one of " + known);
   }
 
   template <class T, class Given>
@@ -165,59 +111,65 @@ bool set_by_table(LiveSensor& sensor, const std::string& key, const Json& json) 
 void set(LiveSensor& sensor, const std::string& name, const Json& json) {
   if (set_by_table(sensor, name, json)) return;
   if (name == "noise") {
-    sensor.settings.noise = bool_of(json, name);
+    sensor.settings.noise = message_bool(json, name);
     if (!sensor.settings.noise) sensor.options.emplace_back("--no-noise");
   } else if (name == "rolling_shutter") {
-    sensor.rolling_shutter = bool_of(json, name);
+    sensor.rolling_shutter = message_bool(json, name);
     if (sensor.rolling_shutter) sensor.options.emplace_back("--rolling-shutter");
   } else {
-    reject("unknown setting '" + name.substr(0, 60) + "'");
+    reject_message("unknown setting '" + name.substr(0, 60) + "'");
   }
 }
 
 LiveSensor parse_sensor(const Json& json) {
-  LiveSensor sensor = live_sensor(text_of(member(json, "name"), "name"));
+  LiveSensor sensor = live_sensor(message_text(message_member(json, "name"), "name"));
   const auto settings = json.find("settings");
   if (settings == json.end()) return sensor;
-  if (!settings->is_object()) reject("settings: expected an object");
+  if (!settings->is_object()) reject_message("settings: expected an object");
   for (const auto& [name, value] : settings->items()) set(sensor, name, value);
   if (!(sensor.settings.sensor.min_range_m < sensor.settings.sensor.max_range_m))
-    reject("min_range_m: expected less than max_range_m");
+    reject_message("min_range_m: expected less than max_range_m");
   check(sensor.settings);
   const std::size_t firings = sensor.settings.sensor.rays_per_scan();
   const std::size_t hits = sensor.settings.beam.hits_per_firing();
   if (firings > kMaxRays / hits)
-    reject(std::to_string(firings) + " firings of " + std::to_string(hits) +
-           " rays per scan; expected at most " + std::to_string(kMaxRays) + " rays");
+    reject_message(std::to_string(firings) + " firings of " + std::to_string(hits) +
+                   " rays per scan; expected at most " + std::to_string(kMaxRays) + " rays");
   return sensor;
+}
+
+RigidTransform moved_by(RigidTransform pose, Vec3d shift) {
+  pose.translation = pose.translation + shift;
+  return pose;
 }
 
 LivePose parse_pose(const Json& json, Vec3d origin) {
   LivePose pose;
-  pose.world_from_sensor = transform_of(member(json, "pose"), origin);
+  pose.world_from_sensor =
+      moved_by(message_transform(message_member(json, "pose"), "pose"), origin);
   if (json.contains("velocity_m_s"))
-    pose.velocity_m_s = vector_of(json["velocity_m_s"], "velocity_m_s");
+    pose.velocity_m_s = message_vector(json["velocity_m_s"], "velocity_m_s");
   if (json.contains("yaw_rate_rad_s"))
-    pose.yaw_rate_rad_s = number_of(json["yaw_rate_rad_s"], "yaw_rate_rad_s", -100, 100);
+    pose.yaw_rate_rad_s = message_number(json["yaw_rate_rad_s"], "yaw_rate_rad_s", -100, 100);
   if (json.contains("time_s"))
-    pose.time_s = number_of(json["time_s"], "time_s", -kMaxTime_s, kMaxTime_s);
+    pose.time_s = message_number(json["time_s"], "time_s", -kMaxMessageTime_s, kMaxMessageTime_s);
   return pose;
 }
 
 ObjectMessage parse_object(const Json& json, Vec3d origin) {
   ObjectMessage object;
-  object.id = static_cast<std::size_t>(number_of(member(json, "id"), "id", 0, 1e9));
-  const Json& pose = member(json, "pose");
-  if (!pose.is_null()) object.world_from_object = transform_of(pose, origin);
+  object.id = static_cast<std::size_t>(message_number(message_member(json, "id"), "id", 0, 1e9));
+  const Json& pose = message_member(json, "pose");
+  if (!pose.is_null()) object.world_from_object = moved_by(message_transform(pose, "pose"), origin);
   return object;
 }
 
 PickMessage parse_pick(const Json& json, Vec3d origin) {
   PickMessage pick;
-  pick.id = static_cast<std::int64_t>(number_of(member(json, "id"), "id", 0, 1e15));
-  pick.origin = vector_of(member(json, "origin"), "origin") + origin;
-  pick.direction = vector_of(member(json, "direction"), "direction");
-  if (!(length(pick.direction) > 0)) reject("direction: expected a non-zero vector");
+  pick.id = static_cast<std::int64_t>(message_number(message_member(json, "id"), "id", 0, 1e15));
+  pick.origin = message_vector(message_member(json, "origin"), "origin") + origin;
+  pick.direction = message_vector(message_member(json, "direction"), "direction");
+  if (!(length(pick.direction) > 0)) reject_message("direction: expected a non-zero vector");
   return pick;
 }
 
@@ -242,7 +194,7 @@ std::string LiveSensor::key() const { return name + dump(settings_json(*this)); 
 LiveSensor live_sensor(const std::string& name) {
   const std::vector<std::string> names = lidar_model_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    reject(unknown_lidar_model(name.substr(0, 60)));
+    reject_message(unknown_lidar_model(name.substr(0, 60)));
   LiveSensor sensor;
   sensor.name = name;
   sensor.settings.sensor = load_lidar_model(name);
@@ -268,14 +220,14 @@ ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor) {
 LiveMessage parse_live_message(std::string_view text, Vec3d origin) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw Error(ErrorKind::data, "expected a JSON object");
-  const std::string type = text_of(member(json, "type"), "type");
+  const std::string type = message_text(message_member(json, "type"), "type");
   if (type == "pose") return parse_pose(json, origin);
   if (type == "ready") return ReadyMessage();
   if (type == "sensor") return parse_sensor(json);
-  if (type == "run") return RunMessage{bool_of(member(json, "on"), "on")};
+  if (type == "run") return RunMessage{message_bool(message_member(json, "on"), "on")};
   if (type == "pick") return parse_pick(json, origin);
   if (type == "object") return parse_object(json, origin);
-  reject("unknown type '" + type.substr(0, 60) + "'");
+  reject_message("unknown type '" + type.substr(0, 60) + "'");
 }
 
 std::string error_message(std::string_view what) {

@@ -3,8 +3,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/view/message_values.h"
 #include "adasplats/view/view_scene.h"
 
 namespace adasplats {
@@ -16,10 +16,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kProtocolVersion = 2;
 
 /// A pose in the format of the page: x, y, z relative to `origin`, qx, qy, qz, qw.
-std::array<double, 7> pose_json(const RigidTransform& world_from_sensor, Vec3d origin) {
-  const Vec3d at = world_from_sensor.translation - origin;
-  const Quaternion q = quaternion_from_rotation(world_from_sensor.rotation);
-  return {at.x, at.y, at.z, q.x, q.y, q.z, q.w};
+std::array<double, 7> pose_json(RigidTransform world_from_sensor, Vec3d origin) {
+  world_from_sensor.translation = world_from_sensor.translation - origin;
+  return message_numbers(world_from_sensor);
 }
 
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
