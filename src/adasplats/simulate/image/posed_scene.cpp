@@ -12,7 +12,7 @@ namespace {
 
 /// Whether an object is in pictures of this time.
 bool is_shown(const WorldObject& object, double time_s) {
-  if (object.only_scan) return false;
+  if (object.only_scan || !object.present) return false;
   return !object.only_during ||
          (object.trajectory.front().time_s <= time_s && object.trajectory.back().time_s >= time_s);
 }

@@ -158,6 +158,11 @@ void World::move_object(std::size_t object, Trajectory trajectory) {
   impl_->objects[object].object = std::move(moved);
 }
 
+void World::set_present(std::size_t object, bool present) {
+  if (object >= impl_->objects.size()) throw std::logic_error("World: no such object");
+  impl_->objects[object].object.present = present;
+}
+
 bool World::empty() const { return impl_->objects.empty(); }
 std::size_t World::object_count() const { return impl_->objects.size(); }
 const WorldObject& World::object(std::size_t object) const {

@@ -32,6 +32,7 @@ struct WorldObject {
   /// only if the sensor does (ScanMotion::knots); a scan at rest is a snapshot.
   Trajectory trajectory;
   bool only_during = false;
+  bool present = true;  ///< false: not seen (set_present())
   /// Present only in this scan: the paper's frame number (section "SimKITTI32").
   std::optional<std::uint64_t> only_scan;
   double scale = 1;
@@ -91,6 +92,9 @@ class World {
   /// present stay the same. Not during casts. Errors: as add_object(), and std::logic_error (no
   /// such object).
   void move_object(std::size_t object, Trajectory trajectory);
+  /// Whether scans see an object; true at first. Its primitives keep their numbers. Not during
+  /// casts. Errors: std::logic_error (no such object).
+  void set_present(std::size_t object, bool present);
 
   bool empty() const;
   std::size_t object_count() const;
