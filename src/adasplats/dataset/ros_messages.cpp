@@ -54,12 +54,12 @@ class CdrWriter {
     bytes_.append(value).push_back('\0');
     return *this;
   }
-  CdrWriter& header(double time_s, std::string_view frame) {
+  CdrWriter& time(double time_s) {
     const std::uint64_t time_ns = ros_time_ns(time_s);
-    put(static_cast<std::int32_t>(time_ns / kNanoseconds));
-    put(static_cast<std::uint32_t>(time_ns % kNanoseconds));
-    return text(frame);
+    return put(static_cast<std::int32_t>(time_ns / kNanoseconds))
+        .put(static_cast<std::uint32_t>(time_ns % kNanoseconds));
   }
+  CdrWriter& header(double time_s, std::string_view frame) { return time(time_s).text(frame); }
   /// Reserves an array of bytes and returns its begin.
   char* array(std::size_t size) {
     put(static_cast<std::uint32_t>(size));
@@ -231,6 +231,15 @@ std::string transforms_message(std::span<const RosTransform> transforms) {
     message.put(q.x).put(q.y).put(q.z).put(q.w);
   }
   return message.take();
+}
+
+std::string clock_definition() {
+  return std::string("builtin_interfaces/Time clock\n").append(kSeparator).append(kTime);
+}
+
+std::string clock_message(double time_s) {
+  constexpr std::size_t kBytes = 16;
+  return CdrWriter(kBytes).time(time_s).take();
 }
 
 McapChannel ros_channel(std::string topic, std::string_view type, std::string definition) {

@@ -48,6 +48,11 @@ struct RosTransform {
 /// A TFMessage. Errors: as above.
 std::string transforms_message(std::span<const RosTransform> transforms);
 
+/// A rosgraph_msgs/msg/Clock, the time of a simulation. Errors: as ros_time_ns().
+inline constexpr std::string_view kClockType = "rosgraph_msgs/msg/Clock";
+std::string clock_definition();
+std::string clock_message(double time_s);
+
 /// The channel of a topic with these messages in an MCAP file.
 McapChannel ros_channel(std::string topic, std::string_view type, std::string definition);
 

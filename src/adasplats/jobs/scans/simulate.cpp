@@ -54,14 +54,6 @@ void require_returns(const SimulateResult& result, const ScanScene& scene,
           "are trajectory and model in the same frame? `offset` and `mount` shift the sensor");
 }
 
-/// The smallest usual scale of intensities that the scene does not exceed.
-double scale_of_intensities(const ScanScene& scene) {
-  const auto highest = static_cast<double>(scene.highest_intensity());
-  for (const double scale : {1.0, 255.0})
-    if (highest <= scale) return scale;
-  return 65535.0;
-}
-
 PacketOptions packet_options(const ScanSettings& settings, const DriveOptions& drive) {
   PacketOptions packets;
   packets.sensor = &settings.sensor;

@@ -29,6 +29,13 @@ WorldFile read_scene_file(const std::filesystem::path& file, WorldFiles world_fi
 
 }  // namespace
 
+double scale_of_intensities(const ScanScene& scene) {
+  const auto highest = static_cast<double>(scene.highest_intensity());
+  for (const double scale : {1.0, 255.0})
+    if (highest <= scale) return scale;
+  return 65535.0;
+}
+
 ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
                        Session& session, WorldFiles world_files)
     : executor_(session.executor) {
@@ -69,9 +76,24 @@ void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
   primitive_table_.reset();
 }
 
-void ModelScene::move_object(std::size_t object, Trajectory trajectory) {
+World& ModelScene::objects() {
   if (!world_) throw std::logic_error("ModelScene: no objects");
-  world_->move_object(object, std::move(trajectory));
+  return *world_;
+}
+
+void ModelScene::move_object(std::size_t object, Trajectory trajectory) {
+  objects().move_object(object, std::move(trajectory));
+}
+
+void ModelScene::set_object_present(std::size_t object, bool present) {
+  objects().set_present(object, present);
+}
+
+std::size_t ModelScene::add_object(WorldObject object) {
+  objects().add_object(std::move(object));
+  attributes_ = world_->attributes(model_attributes());
+  primitive_table_.reset();
+  return world_->object_count() - 1;
 }
 
 std::shared_ptr<const PrimitiveTable> ModelScene::primitive_table() const {
@@ -109,10 +131,10 @@ std::unique_ptr<SceneEngine> ModelScene::make_engine(const SceneView& scene, Ses
 }
 
 void ModelScene::show_at(double time_s, Session& session) {
-  if (!world_) throw std::logic_error("ModelScene: no objects");
+  const World& world = objects();
   renderer_.reset();
   posed_engine_.reset();  // it looks into the scene of before
-  posed_ = std::make_unique<PosedScene>(place(), *world_, time_s);
+  posed_ = std::make_unique<PosedScene>(place(), world, time_s);
   const GpuScene* gpu = nullptr;
   posed_engine_ = make_engine(posed_->scene().view, session, &gpu);
 }
@@ -176,18 +198,13 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options,
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
-  if (const auto* mesh = std::get_if<MeshModel>(&model_))
-    return adasplats::middle_box(mesh->mesh.vertices, origin());
-  return adasplats::middle_box(disk_centers(), origin());
+  return adasplats::middle_box(positions(), origin());
 }
 
-ShownPart ModelScene::shown_part() const {
-  if (const auto* mesh = std::get_if<MeshModel>(&model_))
-    return adasplats::shown_part(mesh->mesh.vertices, origin());
-  return adasplats::shown_part(disk_centers(), origin());
-}
+ShownPart ModelScene::shown_part() const { return adasplats::shown_part(positions(), origin()); }
 
-std::vector<Vec3f> ModelScene::disk_centers() const {
+std::vector<Vec3f> ModelScene::positions() const {
+  if (const auto* mesh = std::get_if<MeshModel>(&model_)) return mesh->mesh.vertices;
   const auto& model = std::get<SplatModel>(model_);
   std::vector<Vec3f> centers;
   centers.reserve(model.size());

@@ -63,7 +63,14 @@ class ModelScene final : public ScanScene {
   const World* world() const override { return world_ ? &*world_ : nullptr; }
   /// Gives an object other poses (World::move_object()). Not while rays are cast.
   void move_object(std::size_t object, Trajectory trajectory);
+  /// Shows or hides an object (World::set_present()). Not while rays are cast.
+  void set_object_present(std::size_t object, bool present);
+  /// Adds an object of a geometry of the world and returns its number. The attributes change, so
+  /// simulators must be made again. Errors: those of World::add_object().
+  std::size_t add_object(WorldObject object);
   const AnyModel& model() const { return model_; }
+  /// Centers of the splats or vertices of the mesh, relative to origin().
+  std::vector<Vec3f> positions() const;
   /// Null if the model is a mesh.
   const SplatModel* splats() const { return std::get_if<SplatModel>(&model_); }
   const Executor& executor() const { return executor_; }
@@ -95,8 +102,9 @@ class ModelScene final : public ScanScene {
   ImageScene place() const;
   const SceneEngine& picture_engine() const { return posed_engine_ ? *posed_engine_ : *engine_; }
   std::shared_ptr<ImageRenderer> renderer(const ImageOptions& options) const;
+  /// Errors: std::logic_error (no world).
+  World& objects();
   PrimitiveAttributes model_attributes() const;
-  std::vector<Vec3f> disk_centers() const;
 
   const Executor& executor_;
   AnyModel model_;

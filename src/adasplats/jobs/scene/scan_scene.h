@@ -43,4 +43,7 @@ class ScanScene {
   virtual std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const = 0;
 };
 
+/// The smallest usual scale of intensities that the scene does not exceed: 1, 255 or 65535.
+double scale_of_intensities(const ScanScene& scene);
+
 }  // namespace adasplats
