@@ -163,14 +163,13 @@ void HttpConnection::answer() {
 
 /// Within the deadline of the header.
 void HttpConnection::read_body(std::string path) {
+  if (parser_->content_length().value_or(0) > core_->options.message_bytes_limit)
+    return send(status_reply(http::status::payload_too_large), true);
   body_parser_.emplace(std::move(*parser_));
-  body_parser_->body_limit(core_->options.message_bytes_limit);
   http::async_read(
       socket_, buffer_, *body_parser_,
       [self = shared_from_this(), path = std::move(path)](ErrorCode error, std::size_t) {
         if (self->ended_) return;
-        if (error == http::error::body_limit)
-          return self->send(status_reply(http::status::payload_too_large), true);
         if (error) return self->abort();
         self->act({"POST", path, std::move(self->body_parser_->get().body())});
       });
