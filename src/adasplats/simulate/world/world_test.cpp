@@ -147,6 +147,19 @@ TEST_F(WorldTest, MovingAnObjectEqualsAddingItThere) {
   EXPECT_THROW(moved.move_object(0, {}), Error);
 }
 
+TEST_F(WorldTest, AHiddenObjectIsAsIfItWereFarAway) {
+  World hidden = world();
+  hidden.add_object(object(hidden.add_geometry(wall_mesh(4, 3)), {{0, pose(9, 2, 0.5)}}));
+  const std::vector<Hit> seen = hits_of(hidden, standing());
+  hidden.set_present(0, false);
+  EXPECT_TRUE(
+      std::ranges::none_of(hits_of(hidden, standing()), [](const Hit& h) { return h.valid(); }));
+  EXPECT_TRUE(hidden.boxes(0, 0).empty());
+  hidden.set_present(0, true);
+  EXPECT_EQ(hits_of(hidden, standing()), seen);
+  EXPECT_THROW(hidden.set_present(1, true), std::logic_error);
+}
+
 // Oracle: the ray of each firing, at its time, against the plane where the wall is then.
 TEST_F(WorldTest, MovingWallBesideADrivingSensor) {
   constexpr double kSpeed = 12, kTurn = 0.6, kWallSpeed = -20, kWall_m = 25;
