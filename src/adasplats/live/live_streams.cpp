@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/live/live_streams.h"
+
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/dataset/ros_messages.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::string_view kMap = "map", kVehicle = "base_link";
+/// Channels before those of the points.
+enum LiveChannel : std::uint8_t { kClockChannel, kPosesChannel, kMountsChannel, kPointsChannel };
+constexpr double kClockStep_s = 0.01;
+/// Of a client that is behind; more than a scan of 128 beams.
+constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
+
+std::vector<MessageServer::Channel> channels_of(const LiveRig& rig) {
+  std::vector<MessageServer::Channel> channels;
+  channels.push_back({ros_channel("/clock", kClockType, clock_definition())});
+  channels.push_back({ros_channel("/tf", kTransformsType, transforms_definition())});
+  channels.push_back({ros_channel("/tf_static", kTransformsType, transforms_definition()), true});
+  for (const MountedSensor& sensor : rig.sensors())
+    channels.push_back(
+        {ros_channel("/" + sensor.name + "/points", kPointCloud2Type, point_cloud2_definition())});
+  return channels;
+}
+
+std::string mounts_message(const LiveRig& rig) {
+  std::vector<RosTransform> mounts;
+  for (const MountedSensor& sensor : rig.sensors())
+    mounts.push_back({{rig.time_s(), sensor.mount}, kVehicle, sensor.name});
+  return transforms_message(mounts);
+}
+
+PacketOptions packet_options_of(const LiveRig& rig, std::size_t sensor, std::uint16_t port) {
+  const MountedSensor& mounted = rig.sensors()[sensor];
+  PacketOptions packets;
+  packets.sensor = &mounted.settings.sensor;
+  packets.returns = mounted.settings.beam.returns;
+  packets.has_angular_noise = mounted.settings.noise;
+  packets.is_raw = mounted.settings.frame == PointFrame::raw;
+  packets.full_intensity = scale_of_intensities(rig.scene());
+  packets.time_offset_s = mounted.time_offset_s;
+  packets.sender = factory_sender(port);
+  return packets;
+}
+
+}  // namespace
+
+LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target)
+    : rig_(rig),
+      messages_(std::make_unique<MessageServer>("adasplats", channels_of(rig), kQueueBytes)) {
+  for (const MountedSensor& sensor : rig.sensors())
+    if (rig.time_s() < 0 || rig.time_s() - sensor.time_offset_s < 0)
+      throw Error(ErrorKind::usage, "the drive begins at " + std::to_string(rig.time_s()) +
+                                        " s; messages and packets have no times before 0, also "
+                                        "in the clock of sensor '" +
+                                        sensor.name + "'");
+  messages_->publish(kMountsChannel, ros_time_ns(rig.time_s()), mounts_message(rig));
+  if (!target) return;
+  sender_ = std::make_unique<DatagramSender>(target->host);
+  ports_ = target->ports;
+  for (std::size_t k = 0; k < rig.sensors().size(); ++k) {
+    const auto sink = [this](std::uint64_t time_us, const UdpEndpoint& /*from*/,
+                             const UdpEndpoint& to, std::string payload) {
+      constexpr double kMicrosecond_s = 1e-6;
+      (*schedule_)(
+          kMicrosecond_s * static_cast<double>(time_us),
+          [this, bytes = std::move(payload), port = to.port] { send_packet(bytes, port); });
+    };
+    packets_.push_back(
+        std::make_unique<PacketStream>(packet_options_of(rig, k, target->ports.at(k)), sink));
+  }
+}
+
+void LiveStreams::send_packet(std::string_view payload, std::uint16_t port) {
+  try {
+    sender_->send(payload, port);
+    ++packets_sent_;
+  } catch (const Error&) {
+    ++packets_failed_;
+  }
+}
+
+void LiveStreams::send_points(const LiveScan& live, const Schedule& schedule) {
+  const std::size_t channel = kPointsChannel + live.sensor;
+  if (!messages_->is_wanted(channel)) return;
+  const MountedSensor& sensor = rig_.sensors()[live.sensor];
+  ScanView scan = *live.scan;
+  const double end_s = scan.begin_s() + scan.duration_s;
+  scan.time_s -= sensor.time_offset_s;
+  schedule(end_s, [this, channel, time_ns = ros_time_ns(end_s),
+                   message = point_cloud2_message(scan, sensor.name)] {
+    messages_->publish(channel, time_ns, message);
+  });
+}
+
+void LiveStreams::send_poses(const LiveStep& step, const Schedule& schedule) {
+  const int ticks = static_cast<int>(step.duration_s / kClockStep_s + 0.5);
+  for (int i = 0; i < ticks; ++i) {
+    const double time_s = step.begin_s + step.duration_s * (i + 1) / ticks;
+    schedule(time_s, [this, time_ns = ros_time_ns(time_s), message = clock_message(time_s)] {
+      messages_->publish(kClockChannel, time_ns, message);
+      messages_->publish_time(time_ns);
+    });
+  }
+  for (const TimedPose& pose : step.vehicle) {
+    if (step.number > 0 && pose.time_s == step.begin_s) continue;  // the end of the last step
+    const RosTransform transform = {pose, kMap, kVehicle};
+    schedule(pose.time_s, [this, time_ns = ros_time_ns(pose.time_s),
+                           message = transforms_message({&transform, 1})] {
+      messages_->publish(kPosesChannel, time_ns, message);
+    });
+  }
+}
+
+void LiveStreams::send(const LiveStep& step, const Schedule& schedule) {
+  send_poses(step, schedule);
+  schedule_ = &schedule;
+  for (const LiveScan& live : step.scans) {
+    if (has_packets()) {
+      const ScanView scan = *live.scan;
+      PacketStream& packets = *packets_[live.sensor];
+      packets.add(scan.begin_s(), packets.returns_of(scan));
+    }
+    send_points(live, schedule);
+  }
+}
+
+}  // namespace adasplats

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/live/pacer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kKeptDelays = 100'000;
+
+}  // namespace
+
+Pacer::Pacer() : thread_([this] { run(); }) {}
+
+Pacer::~Pacer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Pacer::add(Clock::time_point due, std::function<void()> action) {
+  bool is_next = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto added = actions_.emplace(due, std::move(action));
+    is_next = added == actions_.begin();
+  }
+  if (is_next) changed_.notify_all();
+}
+
+void Pacer::drain() {
+  std::unique_lock lock(mutex_);
+  drained_.wait(lock, [this] { return actions_.empty() && !is_acting_; });
+}
+
+Lateness Pacer::lateness() const {
+  std::vector<float> late_s;
+  Lateness lateness;
+  {
+    const std::lock_guard lock(mutex_);
+    late_s = late_s_;
+    lateness.actions = count_;
+  }
+  if (late_s.empty()) return lateness;
+  std::ranges::sort(late_s);
+  constexpr double kMost = 0.99;
+  lateness.median_s = static_cast<double>(late_s[late_s.size() / 2]);
+  lateness.p99_s = static_cast<double>(
+      late_s[static_cast<std::size_t>(kMost * static_cast<double>(late_s.size() - 1))]);
+  lateness.max_s = static_cast<double>(late_s.back());
+  return lateness;
+}
+
+void Pacer::run() {
+  std::unique_lock lock(mutex_);
+  while (!stops_) {
+    if (actions_.empty()) {
+      drained_.notify_all();
+      changed_.wait(lock);
+      continue;
+    }
+    const Clock::time_point due = actions_.begin()->first, now = Clock::now();
+    if (due > now) {
+      changed_.wait_until(lock, due);
+      continue;
+    }
+    const std::function<void()> action = std::move(actions_.extract(actions_.begin()).mapped());
+    const auto late_s = std::chrono::duration<float>(now - due).count();
+    if (late_s_.size() < kKeptDelays)
+      late_s_.push_back(late_s);
+    else
+      late_s_[count_ % kKeptDelays] = late_s;
+    ++count_;
+    is_acting_ = true;
+    lock.unlock();
+    action();
+    lock.lock();
+    is_acting_ = false;
+  }
+}
+
+}  // namespace adasplats
