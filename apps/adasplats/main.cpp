@@ -68,6 +68,7 @@ struct Program {
     commands.push_back(make_simulate_command(app));
     commands.push_back(make_render_command(app));
     commands.push_back(make_view_command(app));
+    commands.push_back(make_serve_sensor_command(app));
     commands.push_back(make_export_command(app));
     commands.push_back(make_send_command(app));
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",

@@ -29,6 +29,7 @@ std::unique_ptr<Command> make_fit_sensor_command(CLI::App& program);
 std::unique_ptr<Command> make_sensors_command(CLI::App& program);
 std::unique_ptr<Command> make_compare_command(CLI::App& program);
 std::unique_ptr<Command> make_view_command(CLI::App& program);
+std::unique_ptr<Command> make_serve_sensor_command(CLI::App& program);
 std::unique_ptr<Command> make_export_command(CLI::App& program);
 std::unique_ptr<Command> make_send_command(CLI::App& program);
 std::unique_ptr<Command> make_demo_command(CLI::App& program);

@@ -5,10 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
 #include <cstdlib>
-#include <exception>
 #include <string>
 #include <thread>
 
@@ -21,6 +18,7 @@
 #include "cli/interrupt.h"
 #include "cli/options/option_types.h"
 #include "cli/options/shared_options.h"
+#include "cli/stop_on_signal.h"
 #include "cli/terminal.h"
 #include "commands/view_inputs.h"
 
@@ -37,43 +35,12 @@ constexpr const char* kViewExamples =
     "ends\n"
     "it.\n";
 
-/// Interval at which an interrupt is checked.
-constexpr std::chrono::milliseconds kInterruptCheck{50};
-
 void check_page() {
   if (!page_files().empty()) return;
   throw Error(ErrorKind::unavailable,
               "this program was built without the viewer; install Node.js 18 or newer with npm and "
               "build it again (the build prints what it found)");
 }
-
-/// Stops the server on an interrupt. The caller's thread throws the exception.
-class StopOnSignal {
- public:
-  explicit StopOnSignal(HttpServer& server) : thread_([this, &server] { watch(server); }) {}
-  ~StopOnSignal() {
-    done_ = true;
-    thread_.join();
-  }
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-
- private:
-  void watch(HttpServer& server) {
-    while (!done_) {
-      try {
-        throw_if_interrupted();
-      } catch (const Interrupted&) {
-        server.stop();
-        return;
-      }
-      std::this_thread::sleep_for(kInterruptCheck);
-    }
-  }
-
-  std::atomic<bool> done_ = false;
-  std::thread thread_;
-};
 
 /// Opens an address in the desktop's browser; does nothing without a desktop.
 void open_browser(const std::string& url) {
