@@ -10,6 +10,7 @@ import ast
 import csv
 import json
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -19,7 +20,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "command_line"))
-from support import BUILDING, POLE, ROAD, ProgramTest  # noqa: E402
+from support import BUILDING, POLE, PROGRAM, ROAD, ProgramTest  # noqa: E402
 
 SKIPPED = 77
 PLY_TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I",
@@ -131,6 +132,21 @@ class Exports(ProgramTest):
         broken[positions:positions + 2400] = b"\xff" * 2400
         (self.folder / "broken.glb").write_bytes(broken)
         self.node_refuses("read_glb.mjs", self.folder / "broken.glb")
+
+    def test_live(self):
+        self.write_turning_poses()
+        process = subprocess.Popen(
+            [PROGRAM, "serve-sensor", self.model(), "--trajectory", self.poses, "--sensor",
+             "velodyne-vlp-16", "--paused", "--token", "test"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8")
+        with process:
+            try:
+                url = process.stdout.readline().strip()
+                if not url:
+                    self.skipTest(process.communicate(timeout=20)[1].strip())
+                self.node("read_live.mjs", url, "lidar", 3)
+            finally:
+                process.send_signal(signal.SIGINT)
 
 
 def missing():

@@ -46,7 +46,7 @@ Trajectory drive_of(const LiveJob& job, const ModelScene& scene, Session& sessio
   if (!drive.trajectory.empty() || !drive.at.empty()) {
     const DrivenPoses driven = poses_along(drive, scene, session.executor, session.progress);
     if (drive.trajectory.empty()) return {shifted(driven.poses, drive.offset_m).front()};
-    const Trajectory motion = shifted(driven.motion, drive.offset_m);
+    Trajectory motion = shifted(driven.motion, drive.offset_m);
     if (scene.world() != nullptr)
       warn_of_world_clock(*scene.world(), motion.front().time_s, motion.back().time_s,
                           session.progress);

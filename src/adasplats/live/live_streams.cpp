@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/live/live_streams.h"
 
+#include <cmath>
 #include <utility>
 
 #include "adasplats/core/error.h"
@@ -11,8 +12,8 @@ namespace adasplats {
 namespace {
 
 constexpr std::string_view kMap = "map", kVehicle = "base_link";
-/// Channels before those of the points.
-enum LiveChannel : std::uint8_t { kClockChannel, kPosesChannel, kMountsChannel, kPointsChannel };
+/// Channels; those of the points follow, by sensor.
+constexpr std::size_t kClockChannel = 0, kPosesChannel = 1, kMountsChannel = 2, kPointsChannel = 3;
 constexpr double kClockStep_s = 0.01;
 /// Of a client that is behind; more than a scan of 128 beams.
 constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
@@ -99,9 +100,10 @@ void LiveStreams::send_points(const LiveScan& live, const Schedule& schedule) {
 }
 
 void LiveStreams::send_poses(const LiveStep& step, const Schedule& schedule) {
-  const int ticks = static_cast<int>(step.duration_s / kClockStep_s + 0.5);
-  for (int i = 0; i < ticks; ++i) {
-    const double time_s = step.begin_s + step.duration_s * (i + 1) / ticks;
+  const long ticks = std::lround(step.duration_s / kClockStep_s);
+  for (long i = 1; i <= ticks; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(ticks);
+    const double time_s = step.begin_s + share * step.duration_s;
     schedule(time_s, [this, time_ns = ros_time_ns(time_s), message = clock_message(time_s)] {
       messages_->publish(kClockChannel, time_ns, message);
       messages_->publish_time(time_ns);

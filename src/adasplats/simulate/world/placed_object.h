@@ -60,7 +60,7 @@ struct PlacedObject {
 
   bool is_there(double begin_s, double end_s) const {
     return object.present && (!object.only_during || (object.trajectory.front().time_s <= end_s &&
-                                               object.trajectory.back().time_s >= begin_s));
+                                                      object.trajectory.back().time_s >= begin_s));
   }
   RigidTransform world_from_object(double time_s) const {
     return interpolate(object.trajectory, time_s);
