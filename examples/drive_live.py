@@ -29,7 +29,7 @@ def ahead(pose, distance_m):  # a pose that much farther along its x axis
 begin = json.loads(ask("state"))["ego"]
 obstacle = json.loads(ask("objects", {"like": like, "pose": ahead(begin, 40)}))["id"]
 speed = 12.0
-while speed > 0:
+for _ in range(60):
     state = json.loads(ask("state"))
     ask("ego", {"pose": state["ego"], "velocity_m_s": [speed, 0, 0]})
     ask("step", {"count": 1})
@@ -39,4 +39,6 @@ while speed > 0:
     print(f"{state['time_s']:6.1f} s  {speed:5.1f} m/s  {gap_m:6.2f} m ahead")
     if gap_m < 5 + speed**2 / 12:  # braking with 6 m/s2
         speed = max(0, speed - 6 * state["step_s"])
+    if speed == 0:
+        break
 ask(f"objects/{obstacle}", method="DELETE")

@@ -41,7 +41,7 @@ SUBCOMMANDS = [
     ["evaluate", "truth"],
     ["evaluate", "presence"],
     ["compare"],
-    ["view"],
+    ["view"], ["serve-sensor"],
     ["export"],
     ["send"],
     ["demo"],

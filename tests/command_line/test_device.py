@@ -7,8 +7,8 @@ from support import SUBCOMMANDS, ProgramTest, tree_digest
 
 WITH_DEVICE = [["model"], ["simulate"], ["render"], ["evaluate", "resimulate"],
                ["evaluate", "truth"], ["evaluate", "presence"], ["evaluate", "echoes"],
-               ["fit-drop"], ["simkitti32"], ["compare"], ["view"], ["demo"], ["segment"],
-               ["calibrate"], ["fit-sensor"], ["evaluate", "unit"]]
+               ["fit-drop"], ["simkitti32"], ["compare"], ["view"], ["serve-sensor"], ["demo"],
+               ["segment"], ["calibrate"], ["fit-sensor"], ["evaluate", "unit"]]
 
 
 class DeviceTest(ProgramTest):
