@@ -207,6 +207,36 @@ class Export(ProgramTest):
         self.assertEqual(tree_digest(scans), tree_digest(again))
         self.run_bad(65, "export", scans, "-o", self.folder / "a.mcap", says=["scans.mcap"])
 
+    def test_clouds_of_drivers_are_read_again(self):
+        model = self.model()
+        self.poses.write_text(self.poses.read_text().replace("\n0.", "\n7."))
+        points = {}
+        for driver in ("adasplats", "velodyne", "ouster", "hesai", "nebula"):
+            scans = self.simulate(model, driver, "--format", "mcap", "--rolling-shutter", "--mount",
+                                  "0,0,0.1", "--driver", driver)
+            done = run("export", scans / "scans.mcap", "-o", self.folder / "out.csv", "--points-in",
+                       "sensor", "--sweep-points", "measured")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = self.rows(self.folder / "out.csv")
+            points[driver] = [sorted(float(row[axis]) for row in rows) for axis in "xyz"]
+            for found, expected in zip(points[driver], points["adasplats"]):
+                self.assertEqual(len(found), len(expected), driver)
+                self.assertLess(max(abs(a - b) for a, b in zip(found, expected)), 1e-3, driver)
+
+    def test_what_drivers_do_not_publish(self):
+        model = self.model()
+        before = self.names()
+        bad = lambda *words, says: self.run_bad(64, "simulate", model, "--trajectory", self.poses,
+                                                "-o", self.folder / "scans", *words, says=says)
+        mcap = ["--format", "mcap", "--driver"]
+        bad(*mcap, "ouster", "--sensor", "livox-mid-40", says=["livox-mid-40", "--driver adasplats"])
+        bad("--driver", "ouster", says=["--driver", "--format mcap"])
+        bad(*mcap, "velodyne", "--velocities", says=["--velocities", "--driver"])
+        bad(*mcap, "hesai", "--rolling-shutter", "--points", "deskewed", says=["--points raw"])
+        bad(*mcap, "ouster", "--returns", "2", says=["--returns 1"])
+        bad(*mcap, "ouster", "--rotation-rate", "0.1", says=["4.29 s", "--rotation-rate"])
+        self.assertEqual(self.names(), before)
+
     def test_times_that_messages_do_not_hold(self):
         self.poses.write_text("time,x,y,z,qw,qx,qy,qz\n-1,4,0,2,1,0,0,0\n")
         model = self.model()

@@ -103,6 +103,7 @@ class Manifest(ProgramTest):
             "--format": ([], ["--format", "npy"]),
             "--point-order": (["--format", "semantickitti"],
                               ["--format", "semantickitti", "--point-order", "firing"]),
+            "--driver": (["--format", "mcap"], ["--format", "mcap", "--driver", "hesai"]),
             "--velocities": (["--format", "ply"], ["--format", "ply", "--velocities"]),
             "--seed": ([], ["--seed", "9"]),
         }

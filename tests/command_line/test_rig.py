@@ -394,10 +394,10 @@ class Rig(ProgramTest):
     def test_points_of_every_sensor_are_read_back(self):
         """Each part of rig.toml loads as a drive; the model of all has the hall's surfaces."""
         self.write_rig(body=False)
-        for word in ("ply", "las", "mcap", "pcap"):
+        for word, *driver in (["ply"], ["las"], ["mcap"], ["mcap", "--driver", "hesai"], ["pcap"]):
             if word == "pcap":
                 self.write_rig(("top", "left"), body=False)
-            out = self.simulated("--format", word, "--overwrite")
+            out = self.simulated("--format", word, *driver, "--overwrite")
             for sensor in tomllib.loads((out / "rig.toml").read_text())["sensors"]:
                 words = ["--trajectory", out / sensor["trajectory"], "--time-offset",
                          sensor["time_offset_s"], "--mount=" + ",".join(map(str, sensor["mount"]))]

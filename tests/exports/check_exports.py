@@ -9,6 +9,7 @@ is no Node.js, or where `npm ci` was not run in this folder.
 import ast
 import csv
 import json
+import math
 import shutil
 import signal
 import struct
@@ -29,6 +30,57 @@ PLY_TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i",
 COLORS = {ROAD: (255, 0, 255), BUILDING: (255, 200, 0), POLE: (255, 240, 150)}
 # What the messages leave out.
 NOT_IN_MESSAGES = {"column", "range"}
+
+
+# Types of sensor_msgs/PointField.
+U8, U16, U32, F32, F64 = 2, 4, 6, 7, 8
+POINT = [["x", 0, F32, 1], ["y", 4, F32, 1], ["z", 8, F32, 1]]
+# Names, offsets, types and counts of the fields, from the sources that docs/exports.md names.
+LAYOUTS = {
+    "velodyne": {"topic": "/velodyne_points", "frame": "velodyne", "step": 22,
+                 "fields": POINT + [["intensity", 12, F32, 1], ["ring", 16, U16, 1],
+                                    ["time", 18, F32, 1]]},
+    "ouster": {"topic": "/ouster/points", "frame": "os_lidar", "step": 48,
+               "fields": POINT + [["intensity", 16, F32, 1], ["t", 20, U32, 1],
+                                  ["reflectivity", 24, U16, 1], ["ring", 26, U16, 1],
+                                  ["ambient", 28, U16, 1], ["range", 32, U32, 1]]},
+    "hesai": {"topic": "/lidar_points", "frame": "hesai_lidar", "step": 26, "none": 0,
+              "fields": POINT + [["intensity", 12, F32, 1], ["ring", 16, U16, 1],
+                                 ["timestamp", 18, F64, 1]]},
+    "nebula": {"topic": "/pandar_points", "frame": "hesai", "step": 32, "none": 0,
+               "fields": POINT + [["intensity", 12, U8, 1], ["return_type", 13, U8, 1],
+                                  ["channel", 14, U16, 1], ["azimuth", 16, F32, 1],
+                                  ["elevation", 20, F32, 1], ["distance", 24, F32, 1],
+                                  ["time_stamp", 28, U32, 1]]},
+}
+RINGS, COLUMNS, TURN_S = 16, 180, 0.1  # of support.SENSOR
+HALF = 0.5 ** 0.5
+MOUNTS = {"velodyne": (0, 0, 0, 1), "ouster": (0, 0, 1, 0), "hesai": (0, 0, -HALF, HALF),
+          "nebula": (0, 0, -HALF, HALF)}
+
+
+def cloud_place(driver, ring, column):
+    """Where a driver has the point of a beam."""
+    if driver == "ouster":
+        return ring * COLUMNS + column
+    return column * RINGS + (RINGS - 1 - ring if driver == "velodyne" else ring)
+
+
+def cloud_point(driver, ply, i, begin_s):
+    """A point of a PLY as a driver has it."""
+    x, y, z = (ply[axis][i] for axis in "xyz")
+    ring, since_s = ply["ring"][i], ply["time"][i] + TURN_S / 2
+    if driver == "velodyne":
+        return {"x": x, "y": y, "z": z, "ring": RINGS - 1 - ring, "time": since_s}
+    if driver == "ouster":
+        return {"x": -x, "y": -y, "z": z, "ring": ring, "t": 1e9 * since_s, "ambient": 0,
+                "range": round(1000 * ply["range"][i])}
+    point = {"x": -y, "y": x, "z": z}
+    if driver == "hesai":
+        return point | {"ring": ring, "timestamp": begin_s + since_s}
+    return point | {"channel": ring, "time_stamp": 1e9 * since_s, "distance": math.hypot(x, y, z),
+                    "azimuth": math.atan2(-y, x) % (2 * math.pi), "return_type": 3,
+                    "elevation": math.atan2(z, math.hypot(x, y))}
 
 
 def read_ply(path):
@@ -147,6 +199,46 @@ class Exports(ProgramTest):
                 self.node("read_live.mjs", url, "lidar", 3)
             finally:
                 process.send_signal(signal.SIGINT)
+
+
+    def expected_clouds(self, driver, ply):
+        """The clouds of a driver, from the PLY files of the same simulation."""
+        scans = []
+        with open(ply / "poses.csv", encoding="utf-8") as stream:
+            poses = list(csv.DictReader(stream))
+        for index, pose in enumerate(poses):
+            columns = read_ply(ply / f"{index:06d}.ply")
+            begin_s = Decimal(pose["time"]) - Decimal(TURN_S / 2)
+            points = [None] * (RINGS * COLUMNS)
+            for i, (ring, column) in enumerate(zip(columns["ring"], columns["column"])):
+                points[cloud_place(driver, ring, column)] = cloud_point(driver, columns, i,
+                                                                        float(begin_s))
+            shape = {"velodyne": [COLUMNS, RINGS], "ouster": [RINGS, COLUMNS]}
+            if driver == "nebula":
+                points = [point for point in points if point]
+            scans.append({"time_ns": str(int(begin_s * 10**9)), "points": points,
+                          "shape": shape.get(driver, [1, len(points)])})
+        # A double of seconds since 1970 holds a quarter of a microsecond.
+        tolerances = {"time": 3e-7, "t": 300, "time_stamp": 300, "timestamp": 6e-7,
+                      "distance": 1e-5, "azimuth": 1e-6, "elevation": 1e-6}
+        layout = LAYOUTS[driver] | {"dense": driver == "nebula", "tolerances": tolerances,
+                                    "mount": [0.5, 0, 0.25, *MOUNTS[driver]]}
+        return {"layout": layout, "scans": scans}
+
+    def test_mcap_of_drivers(self):
+        model = self.model()
+        self.write_turning_poses()
+        self.poses.write_text("\n".join(self.poses.read_text().splitlines()[:4]) + "\n")
+        words = ["--rolling-shutter", "--mount", "0.5,0,0.25"]
+        ply = self.simulate(model, "ply", "--format", "ply", *words)
+        for driver in LAYOUTS:
+            with self.subTest(driver):
+                scans = self.simulate(model, driver, "--format", "mcap", "--driver", driver, *words)
+                expected = self.expected_clouds(driver, ply)
+                file = scans / "scans.mcap"
+                self.node("read_mcap.mjs", file, self.write_json("clouds.json", expected))
+                next(filter(None, expected["scans"][0]["points"]))["y"] += 0.01
+                self.node_refuses("read_mcap.mjs", file, self.write_json("other.json", expected))
 
 
 def missing():

@@ -19,6 +19,7 @@ const GETTERS = {
   4: ["getUint16", 2],
   6: ["getUint32", 4],
   7: ["getFloat32", 4],
+  8: ["getFloat64", 8],
 };
 
 /** Bytes of an open file for the reader that jumps to what it needs. */
@@ -162,7 +163,53 @@ function checkPoints({ type, time, content }, scan) {
   }
 }
 
+/** The cloud of a driver: its head as stated, each point at its place, nothing at the others. */
+function checkCloud({ type, content }, { layout, scans }, i) {
+  assert.equal(type, "sensor_msgs/msg/PointCloud2");
+  const { header, fields, data, height, width, point_step, row_step, is_dense } = content;
+  assertTime(nanoseconds(header.stamp), scans[i].time_ns, "time of the cloud");
+  const { frame, fields: expectedFields, step, dense } = layout;
+  assert.deepEqual([header.frame_id, point_step, is_dense], [frame, step, dense]);
+  assert.deepEqual([height, width], scans[i].shape);
+  assert.deepEqual([row_step, data.length], [step * width, step * width * height]);
+  const placed = fields.map(({ name, offset, datatype, count }) => [name, offset, datatype, count]);
+  assert.deepEqual(placed, expectedFields);
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+  scans[i].points.forEach((point, k) => {
+    for (const { name, offset, datatype } of fields) {
+      const found = view[GETTERS[datatype][0]](k * step + offset, true);
+      if (point === null) {
+        if ("xyz".includes(name)) assert.ok(Object.is(found, layout.none ?? NaN), `point ${k}`);
+      } else if (name in point) {
+        const tolerance = layout.tolerances[name] ?? 0;
+        assertNear(found, point[name], tolerance, `${name} of point ${k} of cloud ${i}`);
+      }
+    }
+  });
+}
+
+function checkDriver(messages, expected, how) {
+  const of = (topic) => messages.filter((message) => message.topic === topic);
+  const { topic, frame, mount } = expected.layout;
+  assert.equal(of(topic).length, expected.scans.length, how);
+  assert.equal(messages.length, 2 * expected.scans.length + 1, how);
+  of(topic).forEach((message, i) => checkCloud(message, expected, i));
+  const [{ content }] = of("/tf_static");
+  const [{ header, child_frame_id: child, transform }] = content.transforms;
+  assert.deepEqual([header.frame_id, child], ["base_link", frame]);
+  const { translation: t, rotation: q } = transform;
+  [t.x, t.y, t.z, q.x, q.y, q.z, q.w].forEach((value, k) =>
+    assertNear(value, mount[k], 1e-12, "mount"),
+  );
+  for (const { content: moving } of of("/tf")) {
+    for (const { header: head, child_frame_id: vehicle } of moving.transforms) {
+      assert.deepEqual([head.frame_id, vehicle], ["map", "base_link"]);
+    }
+  }
+}
+
 function check(messages, expected, how) {
+  if (expected.layout) return checkDriver(messages, expected, how);
   const of = (topic) => messages.filter((message) => message.topic === topic);
   assert.equal(messages.length, 2 * expected.scans.length, how);
   expected.scans.forEach((scan, i) => {
@@ -175,5 +222,5 @@ const [file, expectedFile] = process.argv.slice(2);
 const expected = JSON.parse(await readFile(expectedFile, "utf8"));
 check(await readByIndex(file), expected, "by index");
 check(await readAsStream(file), expected, "as a stream");
-const points = expected.scans.reduce((sum, scan) => sum + scan.points, 0);
+const points = expected.scans.reduce((sum, scan) => sum + (scan.points.length ?? scan.points), 0);
 console.log(`${expected.scans.length} scans, ${points} points, every value as expected`);

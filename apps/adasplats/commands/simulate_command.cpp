@@ -72,6 +72,10 @@ class SimulateCommand final : public Command {
         "--velocities", job_.velocities,
         "Add the velocity of the surface at every point (vx, vy, vz; m/s, relative to the "
         "ground, along the axes of the scan's pose); formats ply, npz, pcd, las, laz, mcap");
+    add_choice<CloudDriver>(
+        app, "--driver", job_.driver, choices_of<CloudDriver>(kCloudDrivers),
+        "Format mcap: write the messages of this ROS 2 driver (topic, frame, fields, order), for "
+        "programs that expect a real sensor; 'adasplats' also has classes and instances");
     app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     constexpr int kMaxScans = 1'000'000'000;
     app.add_option("--plan", scans_a_task_,
@@ -143,6 +147,7 @@ class SimulateCommand final : public Command {
       reject({"--sensor", "--mount", "--mount-rotation"},
              "with --rig, whose file has the sensors and their mounts");
     if (!job_.drive.rolling_shutter) reject({"--points"}, "without --rolling-shutter");
+    if (job_.format != ScanFormat::mcap) reject({"--driver"}, "without --format mcap");
     if (!is_tree(job_.format))
       reject({"--point-order"}, "with formats that are not trees of a data set");
     const auto require_positive = [this](const char* name, double value) {

@@ -4,26 +4,35 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
+struct McapOptions {
+  double later_s = 0;       ///< added to all times
+  std::string_view labels;  ///< scheme of the classes; empty: none
+  RigidTransform mount;     ///< vehicle_from_sensor
+  CloudDriver driver = CloudDriver::adasplats;
+  PacketOptions sensor;  ///< of a driver
+};
+
 /// Writes scans to one MCAP file for Foxglove and the tools of ROS 2: on /points, a
-/// sensor_msgs/msg/PointCloud2 per scan in the frame "lidar" (fields: see point_cloud2_message); on
-/// /tf, a tf2_msgs/msg/TFMessage with the poses of that frame in "map", the world (ros_poses_of()).
-/// Atomic; memory: three times the largest scan.
+/// sensor_msgs/msg/PointCloud2 per scan in the frame "lidar" (fields: see point_cloud2_message), or
+/// those of a driver (DriverClouds, topic_of()); on /tf, a tf2_msgs/msg/TFMessage with the poses of
+/// that frame in "map", the world (ros_poses_of()). If the frame is not that of the vehicle, /tf
+/// has "base_link" in "map", and /tf_static the frame in "base_link". The metadata record
+/// kMcapMetadataName names the scheme of classes. Atomic; memory: three times the largest scan.
 class McapWriter {
  public:
-  /// Adds `later_s` to all times. `labels`: the scheme of the classes, in the metadata record
-  /// kMcapMetadataName;
-  /// empty: none. Errors: cannot_create, io.
-  explicit McapWriter(const std::filesystem::path& path, double later_s = 0,
-                      std::string_view labels = {});
+  /// Errors: cannot_create, io, those of DriverClouds.
+  explicit McapWriter(const std::filesystem::path& path, const McapOptions& options = {});
 
   /// The messages of a scan. Thread-safe.
   /// Errors: data (a time that ROS cannot express: ros_time_ns).
@@ -38,7 +47,12 @@ class McapWriter {
  private:
   McapFile file_;
   double later_s_;
-  std::uint16_t transforms_, points_;  ///< channels
+  DriverTopic topic_;
+  DriverClouds clouds_;
+  RigidTransform vehicle_from_sensor_;
+  bool has_vehicle_;                    ///< frame of its own
+  std::uint16_t transforms_, points_;   ///< channels
+  std::optional<std::uint16_t> fixed_;  ///< channel, until its message is written
 };
 
 }  // namespace adasplats

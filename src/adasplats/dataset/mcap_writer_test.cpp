@@ -10,6 +10,7 @@
 
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
+#include "adasplats/dataset/ros_cloud_test.h"
 #include "adasplats/dataset/ros_messages.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/mcap/mcap_records_test.h"
@@ -17,81 +18,22 @@
 namespace adasplats {
 namespace {
 
-/// CDR by the letter: every number at a multiple of its size behind the encapsulation.
-class CdrReader {
- public:
-  explicit CdrReader(std::string_view message) : reader_(message) {
-    EXPECT_EQ(reader_.take(4), std::string_view("\0\1\0\0", 4));
-  }
-  template <class T>
-  T number() {
-    while ((reader_.place() - 4) % sizeof(T) != 0) EXPECT_EQ(reader_.number<char>(), 0);
-    return reader_.number<T>();
-  }
-  std::string text() {
-    std::string text(reader_.take(number<std::uint32_t>()));
-    EXPECT_EQ(text.back(), '\0');
-    text.pop_back();
-    return text;
-  }
-  std::string_view bytes() { return reader_.take(number<std::uint32_t>()); }
-  std::uint64_t time_ns() {
-    const auto seconds = number<std::int32_t>();
-    const auto nanoseconds = number<std::uint32_t>();
-    return static_cast<std::uint64_t>(seconds) * 1'000'000'000 + nanoseconds;
-  }
-  bool at_end() const { return reader_.at_end(); }
+using ros_test::CdrReader;
+using ros_test::Cloud;
 
- private:
-  mcap_test::FieldReader reader_;
-};
-
-struct Field {
-  std::uint32_t offset;
-  std::uint8_t type;
-};
-
-struct Cloud {
-  std::uint64_t time_ns;
-  std::uint32_t points, step;
-  std::map<std::string, Field> fields;
-  std::string data;
-
-  template <class T>
-  T at(std::size_t point, const std::string& name) const {
-    T value;
-    std::memcpy(&value, data.data() + point * step + fields.at(name).offset, sizeof(T));
-    return value;
-  }
-};
-
+/// A cloud of our own layout.
 Cloud cloud_of(std::string_view message) {
-  CdrReader reader(message);
-  Cloud cloud{};
-  cloud.time_ns = reader.time_ns();
-  EXPECT_EQ(reader.text(), "lidar");
-  EXPECT_EQ(reader.number<std::uint32_t>(), 1U) << "height";
-  cloud.points = reader.number<std::uint32_t>();
-  const auto fields = reader.number<std::uint32_t>();
-  for (std::uint32_t k = 0; k < fields; ++k) {
-    const std::string name = reader.text();
-    const auto offset = reader.number<std::uint32_t>();
-    cloud.fields[name] = {offset, reader.number<std::uint8_t>()};
-    EXPECT_EQ(reader.number<std::uint32_t>(), 1U) << "count";
-  }
-  EXPECT_EQ(reader.number<std::uint8_t>(), 0) << "is_bigendian";
-  cloud.step = reader.number<std::uint32_t>();
-  EXPECT_EQ(reader.number<std::uint32_t>(), cloud.step * cloud.points) << "row_step";
-  cloud.data = reader.bytes();
-  EXPECT_EQ(cloud.data.size(), std::size_t{cloud.step} * cloud.points);
-  EXPECT_EQ(reader.number<std::uint8_t>(), 1) << "is_dense";
-  EXPECT_TRUE(reader.at_end());
+  Cloud cloud = ros_test::cloud_of(message);
+  EXPECT_EQ(cloud.frame, "lidar");
+  EXPECT_EQ(cloud.height, 1U);
+  EXPECT_TRUE(cloud.is_dense);
   return cloud;
 }
 
 struct Transform {
   std::uint64_t time_ns;
-  RigidTransform map_from_lidar;
+  std::string frame, child;
+  RigidTransform frame_from_child;
 };
 
 std::vector<Transform> transforms_of(std::string_view message) {
@@ -99,21 +41,21 @@ std::vector<Transform> transforms_of(std::string_view message) {
   std::vector<Transform> transforms(reader.number<std::uint32_t>());
   for (Transform& transform : transforms) {
     transform.time_ns = reader.time_ns();
-    EXPECT_EQ(reader.text(), "map");
-    EXPECT_EQ(reader.text(), "lidar");
+    transform.frame = reader.text();
+    transform.child = reader.text();
     double v[7];
     for (double& value : v) value = reader.number<double>();
     EXPECT_NEAR(std::hypot(v[3], v[4], std::hypot(v[5], v[6])), 1, 1e-12);
-    transform.map_from_lidar = {rotation_from_quaternion(v[6], v[3], v[4], v[5]),
-                                {v[0], v[1], v[2]}};
+    transform.frame_from_child = {rotation_from_quaternion(v[6], v[3], v[4], v[5]),
+                                  {v[0], v[1], v[2]}};
   }
   EXPECT_TRUE(reader.at_end());
   return transforms;
 }
 
-mcap_test::File written(const std::vector<Scan>& scans) {
+mcap_test::File written(const std::vector<Scan>& scans, const McapOptions& options = {}) {
   const TemporaryFolder folder;
-  McapWriter writer(folder.path() / "scans.mcap");
+  McapWriter writer(folder.path() / "scans.mcap", options);
   for (const Scan& scan : scans) writer.write(scan);
   writer.finish();
   return mcap_test::read(read_file(folder.path() / "scans.mcap"));
@@ -141,16 +83,17 @@ void expect_same(const Cloud& cloud, const Scan& scan) {
 
 void expect_pose(const Transform& transform, const RigidTransform& pose) {
   // World coordinates of UTM keep every bit.
-  EXPECT_EQ(transform.map_from_lidar.translation, pose.translation);
+  EXPECT_EQ(transform.frame_from_child.translation, pose.translation);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(transform.map_from_lidar.rotation.rows[r][c], pose.rotation.rows[r][c], 1e-14);
+      EXPECT_NEAR(transform.frame_from_child.rotation.rows[r][c], pose.rotation.rows[r][c], 1e-14);
 }
 
 /// Of scans whose three knots last a tenth of a second around their pose.
 void expect_same(const std::vector<Transform>& transforms, const Scan& scan) {
   ASSERT_EQ(transforms.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(transforms[k].frame + " " + transforms[k].child, "map lidar");
     EXPECT_NEAR(1e-9 * static_cast<double>(transforms[k].time_ns),
                 scan.time_s - 0.05 + 0.05 * static_cast<double>(k), 1e-6);
     expect_pose(transforms[k], scan.knots[k]);
@@ -213,7 +156,7 @@ TEST(McapWriter, FieldsAreAlignedAndTyped) {
   Scan scan = scan_number(3, 2);
   scan.return_indices = {0, 1};
   const Cloud cloud = cloud_of(point_cloud2_message(scan, "lidar"));
-  constexpr std::uint8_t kU8 = 2, kU16 = 4, kF32 = 7;  // sensor_msgs/PointField
+  using ros_test::kF32, ros_test::kU16, ros_test::kU8;
   const std::map<std::uint8_t, std::uint32_t> bytes = {{kU8, 1}, {kU16, 2}, {kF32, 4}};
   EXPECT_EQ(cloud.fields.at("x").offset, 0U);
   EXPECT_EQ(cloud.fields.at("z").offset, 8U);
@@ -222,6 +165,35 @@ TEST(McapWriter, FieldsAreAlignedAndTyped) {
   EXPECT_EQ(cloud.fields.at("return_index").type, kU8);
   EXPECT_EQ(cloud.step % 4, 0U);
   for (const auto& [name, field] : cloud.fields) EXPECT_EQ(field.offset % bytes.at(field.type), 0U);
+}
+
+// Oracle: by hand. A sensor that looks left, 2 m above the vehicle; the axes of Hesai's driver are
+// x right, y forward.
+TEST(McapWriter, TheFrameOfAMountedSensorIsStaticInTheVehicle) {
+  const Scan scan = scan_number(3, 5);
+  const Mat3d left = {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+  McapOptions options;
+  options.mount = {left, {0, 0, 2}};
+  const LidarModel sensor = load_lidar_model("hesai-pandar64");
+  for (const bool is_hesai : {false, true}) {
+    SCOPED_TRACE(is_hesai);
+    if (is_hesai) options.driver = CloudDriver::hesai;
+    options.sensor.sensor = &sensor;
+    const mcap_test::File file = written({scan, scan}, options);
+    EXPECT_EQ(file.topics, (std::vector<std::string>{"/tf", is_hesai ? "/lidar_points" : "/points",
+                                                     "/tf_static"}));
+    ASSERT_EQ(file.messages.size(), 5U) << "one for /tf_static";
+    const std::vector<Transform> fixed = transforms_of(file.messages[0].data);
+    EXPECT_EQ(fixed.front().frame, "base_link");
+    EXPECT_EQ(fixed.front().child, is_hesai ? "hesai_lidar" : "lidar");
+    EXPECT_EQ(ros_test::cloud_of(file.messages[2].data).frame, fixed.front().child);
+    expect_pose(fixed.front(), {is_hesai ? Mat3d{} : left, {0, 0, 2}});
+    const Transform moving = transforms_of(file.messages[1].data)[1];
+    EXPECT_EQ(moving.frame + " " + moving.child, "map base_link");
+    const RigidTransform again = moving.frame_from_child * options.mount;
+    EXPECT_LT(length(again.translation - scan.knots[1].translation), 1e-8);
+    EXPECT_LT(angle_between(again.rotation, scan.knots[1].rotation), 1e-7);
+  }
 }
 
 TEST(McapWriter, EmptyScanAndPositionsAlone) {

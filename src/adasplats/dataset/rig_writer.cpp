@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "adasplats/core/error.h"
+#include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/ros_messages.h"
 #include "adasplats/dataset/scan_values.h"
@@ -20,8 +21,6 @@ namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kMapFrame = "map", kVehicleFrame = "base_link";
 
 Error rig_error(const RigWriterSensor& sensor, const std::string& message) {
   return {ErrorKind::usage, "sensor '" + sensor.name + "' of the rig: " + message};
@@ -141,15 +140,18 @@ class RigMessages final : public RigWriter {
     const std::uint16_t moving = channel("/tf", false), fixed = channel("/tf_static", false);
     std::vector<RosTransform> mounts;
     for (const RigWriterSensor& sensor : sensors()) {
-      if (sensor.name == kMapFrame || sensor.name == kVehicleFrame)
+      if (sensor.name == kRosWorldFrame || sensor.name == kRosVehicleFrame)
         throw rig_error(sensor, "is named as a frame of the vehicle; choose another name");
-      points_.push_back(channel("/" + sensor.name + "/points", true));
-      mounts.push_back({{begin_s, sensor.mount}, kVehicleFrame, sensor.name});
+      points_.push_back(channel(rig_topic(sensor.name, sensor.writing.driver), true));
+      clouds_.emplace_back(sensor.writing.driver, sensor.writing.packets);
+      mounts.push_back({{begin_s, sensor.mount * clouds_.back().sensor_from_points()},
+                        kRosVehicleFrame,
+                        sensor.name});
     }
     merged_.add(ros_time_ns(begin_s),
                 mcap_message(fixed, ros_time_ns(begin_s), transforms_message(mounts)));
     for (const TimedPose& pose : vehicle()) {
-      const RosTransform transform = {pose, kMapFrame, kVehicleFrame};
+      const RosTransform transform = {pose, kRosWorldFrame, kRosVehicleFrame};
       const std::uint64_t time_ns = ros_time_ns(pose.time_s);
       merged_.add(time_ns, mcap_message(moving, time_ns, transforms_message({&transform, 1})));
     }
@@ -162,7 +164,7 @@ class RigMessages final : public RigWriter {
     encoded.points = scan.size();
     encoded.messages.push_back(
         mcap_message(points_[k], ros_time_ns(ros_stamp_s(scan) + later_s_),
-                     point_cloud2_message(in_own_clock(index, scan), sensors()[k].name, later_s_)));
+                     clouds_[k].message(in_own_clock(index, scan), sensors()[k].name, later_s_)));
     return encoded;
   }
   void append(std::size_t index, const EncodedScan& scan) override {
@@ -185,6 +187,7 @@ class RigMessages final : public RigWriter {
   TimeMerge<McapMessage> merged_;
   double later_s_;
   std::vector<std::uint16_t> points_;  ///< channels by sensor
+  std::vector<DriverClouds> clouds_;   ///< by sensor
 };
 
 class RigPackets final : public RigWriter {
@@ -276,6 +279,11 @@ std::vector<UdpEndpoint> rig_senders(const std::vector<RigWriterSensor>& sensors
 double rig_ros_delay_s(const std::vector<RigWriterSensor>& sensors, const Trajectory& vehicle) {
   const double first_s = earliest_s(sensors, vehicle);
   return sensors.front().writing.drive.begin_s >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
+}
+
+std::string rig_topic(const std::string& sensor, CloudDriver driver) {
+  const std::string_view topic = topic_of(driver).topic;
+  return "/" + sensor + std::string(topic.substr(topic.rfind('/')));
 }
 
 void require_rig_format(ScanFormat format) {

@@ -39,11 +39,14 @@ double rig_ros_delay_s(const std::vector<RigWriterSensor>& sensors, const Trajec
 /// (two send from one address and port).
 std::vector<UdpEndpoint> rig_senders(const std::vector<RigWriterSensor>& sensors);
 
+/// The topic of the clouds of a sensor: its name, and the last part of topic_of().
+std::string rig_topic(const std::string& sensor, CloudDriver driver);
+
 /// Throws usage for nuscenes, whose writer and reader have one LiDAR.
 void require_rig_format(ScanFormat format);
 
 /// A writer of scans with rig_scan_number(). All formats write poses.csv, those of the vehicle.
-/// mcap: FOLDER/scans.mcap with a topic /NAME/points per sensor, /tf (base_link in map) and
+/// mcap: FOLDER/scans.mcap with a topic per sensor (rig_topic()), /tf (base_link in map) and
 /// /tf_static (NAME in base_link), all rig_ros_delay_s() later. pcap: FOLDER/drive.pcap, and in
 /// NAME/ the files of make_packet_writer(). Both in the order of the vehicle's clock, if scans of
 /// different sensors are appended in turns. Other formats: the files of make_scan_writer() in

@@ -168,36 +168,46 @@ double ros_stamp_s(const ScanView& scan) {
   return scan.frame == PointFrame::deskewed ? scan.time_s : scan.begin_s();
 }
 
+std::string cloud_message(const RosCloud& cloud, FunctionRef<void(char*)> fill) {
+  const std::size_t points = cloud.height * cloud.width;
+  if (points > std::numeric_limits<std::uint32_t>::max() / cloud.step)
+    throw Error(ErrorKind::data,
+                "a scan with " + std::to_string(points) + " points is too large for one message");
+  constexpr std::size_t kHeadBytes = 1024;
+  CdrWriter message(points * cloud.step + kHeadBytes);
+  message.header(cloud.time_s, cloud.frame);
+  message.put(static_cast<std::uint32_t>(cloud.height));
+  message.put(static_cast<std::uint32_t>(cloud.width));
+  message.put(static_cast<std::uint32_t>(cloud.fields.size()));
+  for (const RosCloudField& field : cloud.fields) {
+    message.text(field.name).put(field.offset).put(point_field_type(field.type));
+    message.put(std::uint32_t{1});
+  }
+  message.put(std::uint8_t{0});  // not big-endian
+  message.put(static_cast<std::uint32_t>(cloud.step));
+  message.put(static_cast<std::uint32_t>(cloud.step * cloud.width));
+  fill(message.array(cloud.step * points));
+  return message.put(static_cast<std::uint8_t>(cloud.is_dense)).take();
+}
+
 std::string point_cloud2_message(const ScanView& scan, std::string_view frame, double later_s) {
   const std::vector<float> from_pose = times_from_pose(scan);
   const std::vector<ColumnView> columns = message_columns(
       scan, scan.frame == PointFrame::deskewed ? std::span(from_pose) : scan.times_s);
-  std::size_t step = 0;
-  for (const ColumnView& column : columns) step += type_bytes(column.type);
-  constexpr std::size_t kAlignment = 4;
+  std::vector<RosCloudField> fields;
+  fields.reserve(columns.size());
+  std::uint32_t step = 0;
+  for (const ColumnView& column : columns) {
+    fields.push_back({column.name, column.type, step});
+    step += static_cast<std::uint32_t>(type_bytes(column.type));
+  }
+  constexpr std::uint32_t kAlignment = 4;
   step = (step + kAlignment - 1) / kAlignment * kAlignment;
-  if (scan.size() > std::numeric_limits<std::uint32_t>::max() / step)
-    throw Error(ErrorKind::data, "a scan with " + std::to_string(scan.size()) +
-                                     " points is too large for one message");
-  constexpr std::size_t kHeadBytes = 1024;
-  CdrWriter message(scan.size() * step + kHeadBytes);
-  message.header(ros_stamp_s(scan) + later_s, frame);
-  message.put(std::uint32_t{1}).put(static_cast<std::uint32_t>(scan.size()));
-  message.put(static_cast<std::uint32_t>(columns.size()));
-  std::uint32_t offset = 0;
-  for (const ColumnView& column : columns) {
-    message.text(column.name).put(offset).put(point_field_type(column.type));
-    message.put(std::uint32_t{1});
-    offset += static_cast<std::uint32_t>(type_bytes(column.type));
-  }
-  message.put(std::uint8_t{0}).put(static_cast<std::uint32_t>(step));  // not big-endian
-  message.put(static_cast<std::uint32_t>(step * scan.size()));
-  char* to = message.array(step * scan.size());
-  for (const ColumnView& column : columns) {
-    spread_column(column, 0, scan.size(), step, to);
-    to += type_bytes(column.type);
-  }
-  return message.put(std::uint8_t{1}).take();  // every point is valid
+  return cloud_message({ros_stamp_s(scan) + later_s, frame, 1, scan.size(), fields, step},
+                       [&](char* to) {
+                         for (std::size_t k = 0; k < columns.size(); ++k)
+                           spread_column(columns[k], 0, scan.size(), step, to + fields[k].offset);
+                       });
 }
 
 Trajectory ros_poses_of(const ScanView& scan) {

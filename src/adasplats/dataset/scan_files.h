@@ -45,6 +45,16 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"nuscenes", ScanFormat::nuscenes},
     {"pcap", ScanFormat::pcap}};
 
+/// Whose clouds the messages of mcap are: ours, with all attributes, or those of the driver of a
+/// sensor (driver_cloud.h).
+enum class CloudDriver : std::uint8_t { adasplats, velodyne, ouster, hesai, nebula };
+inline constexpr std::pair<std::string_view, CloudDriver> kCloudDrivers[] = {
+    {"adasplats", CloudDriver::adasplats},
+    {"velodyne", CloudDriver::velodyne},
+    {"ouster", CloudDriver::ouster},
+    {"hesai", CloudDriver::hesai},
+    {"nebula", CloudDriver::nebula}};
+
 /// Whether the format is the tree of a data set, with points in the order of that data set.
 constexpr bool is_tree(ScanFormat format) {
   return format == ScanFormat::semantickitti ||

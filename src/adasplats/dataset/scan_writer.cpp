@@ -104,8 +104,9 @@ class MessageWriter final : public WriterWithPoses {
   MessageWriter(std::filesystem::path folder, double later_s, const ScanWriterOptions& options)
       : WriterWithPoses(std::move(folder)),
         later_s_(later_s),
-        writer_(this->folder() / "scans.mcap", later_s,
-                options.labels == nullptr ? std::string_view() : options.labels->name()),
+        writer_(this->folder() / "scans.mcap",
+                {later_s, options.labels == nullptr ? std::string_view() : options.labels->name(),
+                 options.mount, options.driver, options.packets}),
         velocities_(options.velocities) {}
 
   EncodedScan encode(std::size_t index, const ScanView& given) const override {

@@ -49,15 +49,16 @@ using BoxesOfScan = std::function<std::vector<ObjectBox>(std::size_t index, doub
 /// World::velocities() of scan number `index`. Must be thread-safe.
 using VelocitiesOfScan = std::function<std::vector<Vec3f>(std::size_t index, const ScanView& scan)>;
 
-/// Information for packets in addition to the scans.
+/// Information for packets and clouds of drivers in addition to the scans.
 struct PacketOptions {
   const LidarModel* sensor = nullptr;  ///< that measured the scans; must outlive the writer
   double begin_after_s =
       0;            ///< begin of the revolution relative to the scan's time; negative: before
   int returns = 1;  ///< maximum per firing
-  bool has_angular_noise = true;  ///< angular noise is simulated
-  bool is_raw = true;             ///< points as measured, without motion compensation
-  double full_intensity = 1.0;    ///< intensity that becomes 255, the maximum
+  ReturnMode mode = ReturnMode::strongest;  ///< clouds of drivers
+  bool has_angular_noise = true;            ///< angular noise is simulated
+  bool is_raw = true;                       ///< points as measured, without motion compensation
+  double full_intensity = 1.0;              ///< intensity that becomes 255, the maximum
   /// Added to the times of the sensor to get those of the capture, less than a minute.
   double time_offset_s = 0;
   /// Added to all times; not set: an hour if the first scan begins before 1970.
@@ -73,7 +74,9 @@ struct ScanWriterOptions {
   DriveSpan drive;                       ///< for file names of data sets, and ros_delay_s()
   BoxesOfScan boxes;                     ///< for data sets with objects; none without a world
   VelocitiesOfScan velocities;           ///< has_velocities(); none: not wanted
-  PacketOptions packets;                 ///< pcap
+  CloudDriver driver = CloudDriver::adasplats;  ///< mcap
+  RigidTransform mount;                         ///< mcap: vehicle_from_sensor
+  PacketOptions packets;                        ///< pcap, and mcap of a driver
 };
 
 /// Writes the scans of one drive to files in a folder. Several threads can encode and write scans

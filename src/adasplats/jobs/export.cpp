@@ -247,7 +247,8 @@ class ScanExport {
 
   ExportResult run() {
     if (format_ == ExportFormat::mcap) {
-      McapWriter writer(job_.output, 0, labels_ ? labels_->name() : std::string());
+      McapWriter writer(job_.output,
+                        {0, labels_ ? labels_->name() : std::string_view(), {}, {}, {}});
       write_scans([&writer](std::size_t, const Scan& scan) { writer.write(scan); });
       writer.finish();
       warn_of_lost(false);

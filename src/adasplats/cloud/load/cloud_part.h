@@ -88,7 +88,11 @@ KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptio
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor = nullptr);
 
-/// The same for columns in memory; `path` is for messages.
+/// Points at exactly 0, 0, 0 in a grid of beams, or at least 100 and a thousandth of all, are
+/// missing returns: they become NaN, as PCL writes them.
+void mark_missing_returns(const Table& table, std::vector<Vec3d>& positions);
+
+/// The same for columns in memory, with points at 0, 0, 0 as they are; `path` is for messages.
 CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
                         const LoadOptions& options, ProgressSink& progress);
 

@@ -52,14 +52,15 @@ class FileSource final : public ScanSource {
 }  // namespace
 
 FileScan read_file_scan(const std::filesystem::path& file) {
-  ProgressSink silent;
   require_points(file);
-  return scan_of_part(part_of_table(file, read_points(file), {}, silent));
+  return scan_of_table(file, read_points(file));
 }
 
 FileScan scan_of_table(const std::filesystem::path& name, const Table& table) {
   ProgressSink silent;
-  return scan_of_part(part_of_table(name, table, {}, silent));
+  CloudPart part = part_of_table(name, table, {}, silent);
+  mark_missing_returns(table, part.world_positions);
+  return scan_of_part(std::move(part));
 }
 
 std::shared_ptr<const ScanSource> scans_in_files() { return std::make_shared<FileSource>(); }

@@ -334,22 +334,6 @@ void read_intensities(const PointFile& file, const Column& column, CloudPart& pa
   std::ranges::fill(intensities, std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Points at exactly 0, 0, 0 in a grid of beams, or at least 100 and a thousandth of all, are
-/// missing returns: they become NaN, as PCL writes them.
-void mark_missing_returns(const PointFile& file, std::vector<Vec3d>& positions) {
-  constexpr std::ptrdiff_t kMany = 100, kShare = 1000;
-  const auto is_nothing = [](Vec3d p) { return p == Vec3d{}; };
-  const std::ptrdiff_t count = std::ranges::count_if(positions, is_nothing);
-  const bool is_grid = std::ranges::any_of(file.table.comments, [](const std::string& comment) {
-    return comment.starts_with("HEIGHT ");
-  });
-  const bool are_many =
-      count >= kMany && kShare * count >= static_cast<std::ptrdiff_t>(positions.size());
-  if (count == std::ssize(positions) || !(is_grid || are_many)) return;
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::ranges::replace_if(positions, is_nothing, Vec3d{kNone, kNone, kNone});
-}
-
 /// What to do with the VIEWPOINT of a PCD whose points are not known to be in the sensor's frame.
 /// CloudCompare stores the shift of its coordinates there, others the pose of the sensor.
 void apply_viewpoint(const PointFile& file, const LoadOptions& options, CloudPart& part) {
@@ -419,13 +403,26 @@ void read_times(const PointFile& file, CloudPart& part) {
 
 }  // namespace
 
+void mark_missing_returns(const Table& table, std::vector<Vec3d>& positions) {
+  constexpr std::ptrdiff_t kMany = 100, kShare = 1000;
+  const auto is_nothing = [](Vec3d p) { return p == Vec3d{}; };
+  const std::ptrdiff_t count = std::ranges::count_if(positions, is_nothing);
+  const bool is_grid = std::ranges::any_of(
+      table.comments, [](const std::string& comment) { return comment.starts_with("HEIGHT "); });
+  const bool are_many =
+      count >= kMany && kShare * count >= static_cast<std::ptrdiff_t>(positions.size());
+  if (count == std::ssize(positions) || !(is_grid || are_many)) return;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::ranges::replace_if(positions, is_nothing, Vec3d{kNone, kNone, kNone});
+}
+
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor) {
   require_points(path);
   const Table table = read_points(path, {options.salvage, executor, options.selection,
                                          options.other_columns == KeptColumns::all});
   CloudPart part = part_of_table(path, table, options, progress);
-  mark_missing_returns({path, table}, part.world_positions);
+  mark_missing_returns(table, part.world_positions);
   if (!part.world_sensors.empty()) return part;
   part.sensor_frame = sensor_frame_of(path, table, part.world_positions);
   if (!part.sensor_frame && options.selection.is_all() && can_lack_pose(path, table)) {

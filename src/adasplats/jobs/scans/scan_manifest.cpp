@@ -204,6 +204,7 @@ Json simulate_content(const SimulateJob& job, std::span<const MountedSensor> sen
     content["ray_drop"] = job.scan.ray_drop_file.string();
   content["vehicle_body"] = settings.vehicle_body;
   if (job.velocities) content["velocities"] = true;
+  if (job.driver != CloudDriver::adasplats) content["driver"] = word_of(job.driver, kCloudDrivers);
   return content;
 }
 

@@ -16,6 +16,7 @@
 #include "adasplats/cloud/load/rig.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
@@ -58,6 +59,7 @@ PacketOptions packet_options(const ScanSettings& settings, const DriveOptions& d
   PacketOptions packets;
   packets.sensor = &settings.sensor;
   packets.returns = settings.beam.returns;
+  packets.mode = settings.beam.mode;
   packets.has_angular_noise = settings.noise;
   packets.is_raw = settings.frame == PointFrame::raw;
   if (drive.rolling_shutter) packets.begin_after_s = -0.5 / settings.sensor.rotation_hz;
@@ -110,7 +112,9 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
     };
   writing.packets = packet_options(simulator.settings(), job.drive);
   const double scale = scale_of_intensities(simulator.scene());
-  if (job.format == ScanFormat::pcap) writing.packets.full_intensity = scale;
+  if (job.format == ScanFormat::pcap || job.format == ScanFormat::mcap)
+    writing.packets.full_intensity = scale;
+  writing.driver = job.driver;
   // As save_cloud_las(): larger ones than 1 keep their numbers.
   constexpr double kMaxOfLas = 65535;
   writing.full_intensity = scale > 1 ? kMaxOfLas : 1;
@@ -123,6 +127,7 @@ std::vector<RigWriterSensor> writer_sensors(const Simulators& simulators, const 
     const MountedSensor& sensor = plan.sensors[k];
     sensors.push_back({sensor.name, sensor.mount, sensor.time_offset_s,
                        writing_options(simulators[k], plan.job, sensor.scans)});
+    sensors.back().writing.mount = sensor.mount;
     if (plan.rig && plan.job.format == ScanFormat::pcap)
       sensors.back().writing.packets.sender = sender_of(*plan.rig, k);
   }
@@ -250,6 +255,10 @@ Plan plan_of(const SimulateJob& job, Session& session) {
                 "`velocities` are stored in ply, npz, pcd, las, laz and mcap, not "
                 "in " +
                     std::string(word_of(job.format, kScanFormats)));
+  if (job.driver != CloudDriver::adasplats && job.format != ScanFormat::mcap)
+    throw Error(ErrorKind::usage, "`driver` selects the layout of messages; use `format` mcap");
+  if (job.driver != CloudDriver::adasplats && job.velocities)
+    throw Error(ErrorKind::usage, "clouds of drivers have no `velocities`; use `driver` adasplats");
   Plan plan{job, {}, {}, {}};
   DriveOptions& drive = plan.job.drive;
   if (job.rig.empty()) {
@@ -265,6 +274,7 @@ Plan plan_of(const SimulateJob& job, Session& session) {
   check_drive(drive);
   for (MountedSensor& sensor : plan.sensors) {
     sensor.settings.fields = fields_of(job.format);
+    require_driver(job.driver, packet_options(sensor.settings, drive));
     if (job.format == ScanFormat::pcap)
       require_packets(sensor.settings.sensor, packet_options(sensor.settings, drive));
   }

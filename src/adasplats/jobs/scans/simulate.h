@@ -30,7 +30,8 @@ struct SimulateJob {
   std::filesystem::path rig;
   std::filesystem::path output;
   ScanFormat format = ScanFormat::semantickitti;
-  PointOrder point_order = PointOrder::kitti;  ///< in files of data sets
+  PointOrder point_order = PointOrder::kitti;   ///< in files of data sets
+  CloudDriver driver = CloudDriver::adasplats;  ///< mcap: whose clouds to write
   bool velocities = false;  ///< of the surface at every point; format: has_velocities()
   bool overwrite = false;
   double tile_memory_gb = 0;  ///< for a city's tiles, 10^9 bytes; 0: 1 on the CPU, 6 on a GPU

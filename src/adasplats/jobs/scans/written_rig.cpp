@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/yaw_pitch_roll.h"
+#include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -42,6 +44,12 @@ DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
   reading.mount_rotation_deg = given.mount_rotation_deg;
   reading.time_offset_s = sensor.time_offset_s;
   if (job.format == ScanFormat::pcap) return reading;
+  if (job.driver != CloudDriver::adasplats) {
+    const RigidTransform frame =
+        sensor.mount * sensor_from_frame(job.driver, *sensor.writing.packets.sensor);
+    reading.mount = frame.translation;
+    reading.mount_rotation_deg = yaw_pitch_roll_deg(frame.rotation);
+  }
   constexpr std::array kTimed = {ScanFormat::ply, ScanFormat::npz, ScanFormat::pcd,
                                  ScanFormat::las, ScanFormat::laz, ScanFormat::mcap};
   // Motion without times remains unstated: such scans cannot be calibrated as a rig.
@@ -51,7 +59,7 @@ DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
   else if (std::ranges::find(kTimed, job.format) != kTimed.end())
     reading.sweep_points = SweepPoints::measured;
   if (job.format == ScanFormat::mcap)
-    reading.topic = "/" + sensor.name + "/points";
+    reading.topic = rig_topic(sensor.name, job.driver);
   else
     reading.scan_times = folder / (sensor.name + ".times");
   reading.points_in = PointsIn::sensor;
