@@ -101,7 +101,7 @@ nlohmann::ordered_json run_live(const LiveJob& job, Session& session,
   ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
   LiveRig rig(scene, std::move(sensors.mounted), drive_of(placed, scene, session),
               session.executor);
-  LiveStreams streams(rig, target);
+  LiveStreams streams(rig, target, job.driver);
   LiveLoop loop(rig, streams, !job.is_paused);
   LiveApi api(rig, streams, loop, std::move(sensors.cameras), session);
   HttpServer server(

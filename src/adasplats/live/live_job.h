@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/function_ref.h"
+#include "adasplats/dataset/scan_files.h"
 #include "adasplats/jobs/scene/drive.h"
 #include "adasplats/jobs/scene/scan_settings.h"
 #include "adasplats/jobs/session/session.h"
@@ -25,8 +26,9 @@ struct LiveJob {
   std::filesystem::path rig;    ///< as of SimulateJob; empty: one sensor, named "lidar"
   /// `trajectory`, `at` or nothing (on open ground), `offset_m`, `mount`; the rest is not used.
   DriveOptions drive;
-  std::string packets_to;  ///< HOST[:PORT]; empty: no packets
-  bool is_paused = false;  ///< at the begin
+  CloudDriver driver = CloudDriver::adasplats;  ///< whose clouds the messages are
+  std::string packets_to;                       ///< HOST[:PORT]; empty: no packets
+  bool is_paused = false;                       ///< at the begin
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;                    ///< 0: any free one
   std::string token;                         ///< empty: a random one

@@ -6,61 +6,57 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/dataset/rig_writer.h"
 #include "adasplats/dataset/ros_messages.h"
 
 namespace adasplats {
 namespace {
 
-constexpr std::string_view kMap = "map", kVehicle = "base_link";
 /// Channels; those of the points follow, by sensor.
 constexpr std::size_t kClockChannel = 0, kPosesChannel = 1, kMountsChannel = 2, kPointsChannel = 3;
 constexpr double kClockStep_s = 0.01;
 /// Of a client that is behind; more than a scan of 128 beams.
 constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
 
-std::vector<MessageServer::Channel> channels_of(const LiveRig& rig) {
+std::vector<MessageServer::Channel> channels_of(const LiveRig& rig, CloudDriver driver) {
   std::vector<MessageServer::Channel> channels;
   channels.push_back({ros_channel("/clock", kClockType, clock_definition())});
   channels.push_back({ros_channel("/tf", kTransformsType, transforms_definition())});
   channels.push_back({ros_channel("/tf_static", kTransformsType, transforms_definition()), true});
   for (const MountedSensor& sensor : rig.sensors())
     channels.push_back(
-        {ros_channel("/" + sensor.name + "/points", kPointCloud2Type, point_cloud2_definition())});
+        {ros_channel(rig_topic(sensor.name, driver), kPointCloud2Type, point_cloud2_definition())});
   return channels;
 }
 
-std::string mounts_message(const LiveRig& rig) {
-  std::vector<RosTransform> mounts;
-  for (const MountedSensor& sensor : rig.sensors())
-    mounts.push_back({{rig.time_s(), sensor.mount}, kVehicle, sensor.name});
-  return transforms_message(mounts);
-}
-
-PacketOptions packet_options_of(const LiveRig& rig, std::size_t sensor, std::uint16_t port) {
-  const MountedSensor& mounted = rig.sensors()[sensor];
+PacketOptions packet_options_of(const LiveRig& rig, const MountedSensor& mounted) {
   PacketOptions packets;
   packets.sensor = &mounted.settings.sensor;
   packets.returns = mounted.settings.beam.returns;
+  packets.mode = mounted.settings.beam.mode;
   packets.has_angular_noise = mounted.settings.noise;
   packets.is_raw = mounted.settings.frame == PointFrame::raw;
   packets.full_intensity = scale_of_intensities(rig.scene());
   packets.time_offset_s = mounted.time_offset_s;
-  packets.sender = factory_sender(port);
   return packets;
 }
 
 }  // namespace
 
-LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target)
+LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target,
+                         CloudDriver driver)
     : rig_(rig),
-      messages_(std::make_unique<MessageServer>("adasplats", channels_of(rig), kQueueBytes)) {
-  for (const MountedSensor& sensor : rig.sensors())
+      messages_(
+          std::make_unique<MessageServer>("adasplats", channels_of(rig, driver), kQueueBytes)) {
+  for (const MountedSensor& sensor : rig.sensors()) {
     if (rig.time_s() < 0 || rig.time_s() - sensor.time_offset_s < 0)
       throw Error(ErrorKind::usage, "the drive begins at " + std::to_string(rig.time_s()) +
                                         " s; messages and packets have no times before 0, also "
                                         "in the clock of sensor '" +
                                         sensor.name + "'");
-  messages_->publish(kMountsChannel, ros_time_ns(rig.time_s()), mounts_message(rig));
+    clouds_.emplace_back(driver, packet_options_of(rig, sensor));
+  }
+  messages_->publish(kMountsChannel, ros_time_ns(rig.time_s()), mounts_message());
   if (!target) return;
   sender_ = std::make_unique<DatagramSender>(target->host);
   ports_ = target->ports;
@@ -72,9 +68,21 @@ LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& 
           kMicrosecond_s * static_cast<double>(time_us),
           [this, bytes = std::move(payload), port = to.port] { send_packet(bytes, port); });
     };
-    packets_.push_back(
-        std::make_unique<PacketStream>(packet_options_of(rig, k, target->ports.at(k)), sink));
+    PacketOptions options = packet_options_of(rig, rig.sensors()[k]);
+    options.sender = factory_sender(target->ports.at(k));
+    packets_.push_back(std::make_unique<PacketStream>(options, sink));
   }
+}
+
+std::string LiveStreams::mounts_message() const {
+  std::vector<RosTransform> mounts;
+  for (std::size_t k = 0; k < clouds_.size(); ++k) {
+    const MountedSensor& sensor = rig_.sensors()[k];
+    mounts.push_back({{rig_.time_s(), sensor.mount * clouds_[k].sensor_from_points()},
+                      kRosVehicleFrame,
+                      sensor.name});
+  }
+  return transforms_message(mounts);
 }
 
 void LiveStreams::send_packet(std::string_view payload, std::uint16_t port) {
@@ -94,7 +102,7 @@ void LiveStreams::send_points(const LiveScan& live, const Schedule& schedule) {
   const double end_s = scan.begin_s() + scan.duration_s;
   scan.time_s -= sensor.time_offset_s;
   schedule(end_s, [this, channel, time_ns = ros_time_ns(end_s),
-                   message = point_cloud2_message(scan, sensor.name)] {
+                   message = clouds_[live.sensor].message(scan, sensor.name, 0)] {
     messages_->publish(channel, time_ns, message);
   });
 }
@@ -111,7 +119,7 @@ void LiveStreams::send_poses(const LiveStep& step, const Schedule& schedule) {
   }
   for (const TimedPose& pose : step.vehicle) {
     if (step.number > 0 && pose.time_s == step.begin_s) continue;  // the end of the last step
-    const RosTransform transform = {pose, kMap, kVehicle};
+    const RosTransform transform = {pose, kRosWorldFrame, kRosVehicleFrame};
     schedule(pose.time_s, [this, time_ns = ros_time_ns(pose.time_s),
                            message = transforms_message({&transform, 1})] {
       messages_->publish(kPosesChannel, time_ns, message);

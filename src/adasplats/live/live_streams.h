@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/io/packets/capture_sender.h"
 #include "adasplats/live/live_rig.h"
@@ -26,12 +27,13 @@ struct PacketTarget {
 
 /// Sends what a rig measures: packets over UDP at the time at which the sensor sends them, and
 /// messages of ROS 2 for a MessageServer: /clock, /tf (base_link in map), /tf_static (sensors in
-/// base_link), and /NAME/points at the end of a revolution.
+/// base_link), and the clouds of a driver at the end of a revolution.
 class LiveStreams {
  public:
   /// Errors: usage (a begin before 0, which messages and packets cannot represent; a sensor
-  /// without packets), no_input (unknown host).
-  LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target);
+  /// without packets or without clouds of the driver), no_input (unknown host).
+  LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target,
+              CloudDriver driver = CloudDriver::adasplats);
 
   MessageServer& messages() { return *messages_; }
   const MessageServer& messages() const { return *messages_; }
@@ -50,11 +52,13 @@ class LiveStreams {
   void send(const LiveStep& step, const Schedule& schedule);
 
  private:
+  std::string mounts_message() const;
   void send_points(const LiveScan& live, const Schedule& schedule);
   void send_poses(const LiveStep& step, const Schedule& schedule);
   void send_packet(std::string_view payload, std::uint16_t port);
 
   const LiveRig& rig_;
+  std::vector<DriverClouds> clouds_;  ///< by sensor
   std::unique_ptr<MessageServer> messages_;
   std::unique_ptr<DatagramSender> sender_;
   std::vector<std::unique_ptr<PacketStream>> packets_;  ///< by sensor

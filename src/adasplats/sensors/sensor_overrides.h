@@ -16,13 +16,9 @@ struct SensorOverrides {
   std::optional<double> max_range_m;
   std::optional<double> rotation_hz;
 
-  void apply(LidarModel& sensor) const {
-    sensor.range_noise_m = range_noise_m.value_or(sensor.range_noise_m);
-    if (range_noise_m) sensor.ring_noise_m.clear();
-    sensor.min_range_m = min_range_m.value_or(sensor.min_range_m);
-    sensor.max_range_m = max_range_m.value_or(sensor.max_range_m);
-    sensor.rotation_hz = rotation_hz.value_or(sensor.rotation_hz);
-  }
+  /// At another rotation rate, spinning sensors of Velodyne and Hesai fire as often as before, so
+  /// they have more or fewer columns; an Ouster has those of its mode.
+  void apply(LidarModel& sensor) const;
 };
 
 /// No LiDAR measures farther in an atmosphere; a larger value is a mistake, such as a wrong unit.
