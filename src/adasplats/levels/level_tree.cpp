@@ -234,6 +234,7 @@ LevelPiece merged_node(const LevelInput& input, const LevelOptions& options,
   const std::vector<LevelSample> samples = maker.inner(block, piece.node.spacing_m);
   piece.elements =
       encode(samples, *options.intensity_range, range_of_errors(input.errors_m), piece.node);
+  if (!input.colors.empty()) piece.colors = encode_colors(samples);
   return piece;
 }
 

@@ -113,10 +113,11 @@ class LevelTree {
   ByteRange error_range_m_;
 };
 
-/// A single node with its elements.
+/// A single node with its elements, and their colours if the input has colours.
 struct LevelPiece {
   LevelNode node;
   std::vector<LevelElement> elements;
+  std::vector<LevelColor> colors;
 };
 
 /// Makes an inner node without children that represents all splats of `input` (at least one),

@@ -100,7 +100,6 @@ std::string mesh_members(const GlbPoints& content, std::size_t points) {
          std::to_string(offset) + "}]";
 }
 
-/// The JSON with blanks behind it up to a multiple of four bytes.
 std::string document(const GlbPoints& content, const std::string& members) {
   std::string json = R"({"asset":{"version":"2.0","generator":"adasplats"},)";
   if (!content.extensions.empty()) {
@@ -112,15 +111,13 @@ std::string document(const GlbPoints& content, const std::string& members) {
   json += R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"points","rotation":)";
   json.append(kNodeRotation).append(R"(,"extras":{)").append(content.extras);
   json += members.empty() ? "}}]" : R"(},"mesh":0}])";
-  json += members + "}";
-  while (json.size() % 4 != 0) json += ' ';
-  return json;
+  return json + members + "}";
 }
 
-void put_words(AtomicFile& file, std::initializer_list<std::size_t> words) {
+void append_words(std::string& bytes, std::initializer_list<std::size_t> words) {
   for (const std::size_t word : words) {
     const auto value = static_cast<std::uint32_t>(word);
-    file.write(&value, sizeof(value));
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));  // NOLINT
   }
 }
 
@@ -154,30 +151,36 @@ std::vector<GlbColor> linear_colors(const std::vector<std::array<std::uint8_t, 3
   return result;
 }
 
-void write_glb_points(const std::filesystem::path& path, std::size_t points,
-                      const GlbPoints& content) {
+std::string glb_start(std::string json, std::size_t binary_bytes) {
   constexpr std::size_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
   constexpr std::size_t kVersion = 2, kHeaderBytes = 12, kChunkHeaderBytes = 8;
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::size_t binary = (binary_bytes + 3) / 4 * 4;
+  std::string start = "glTF";
+  append_words(start, {kVersion,
+                       kHeaderBytes + kChunkHeaderBytes + json.size() +
+                           (binary > 0 ? kChunkHeaderBytes + binary : 0),
+                       json.size(), kJson});
+  start += json;
+  if (binary > 0) append_words(start, {binary, kBinary});
+  return start;
+}
+
+void write_glb_points(const std::filesystem::path& path, std::size_t points,
+                      const GlbPoints& content) {
   std::size_t binary = 0;
   for (const GlbAttribute& attribute : content.attributes)
     binary += padded_bytes(attribute, points);
-  const std::string json =
-      document(content, points > 0 ? mesh_members(content, points) : std::string());
-  const std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
-                            (binary > 0 ? kChunkHeaderBytes + binary : 0);
-  if (total > std::numeric_limits<std::uint32_t>::max())
+  const std::string start = glb_start(
+      document(content, points > 0 ? mesh_members(content, points) : std::string()), binary);
+  if (start.size() + binary > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::data, path.string() + ": " + std::to_string(points) +
                                      " points are more than the 4 GiB of a .glb hold; write a PLY");
   AtomicFile file(path);
-  file.write("glTF");
-  put_words(file, {kVersion, total, json.size(), kJson});
-  file.write(json);
-  if (binary > 0) {
-    put_words(file, {binary, kBinary});
-    for (const GlbAttribute& attribute : content.attributes) {
-      write_records(file, points, attribute.columns);
-      file.write(std::string(padded_bytes(attribute, points) - points * bytes_of(attribute), '\0'));
-    }
+  file.write(start);
+  for (const GlbAttribute& attribute : content.attributes) {
+    write_records(file, points, attribute.columns);
+    file.write(std::string(padded_bytes(attribute, points) - points * bytes_of(attribute), '\0'));
   }
   file.commit();
 }

@@ -44,6 +44,10 @@ struct GlbPoints {
 void write_glb_points(const std::filesystem::path& path, std::size_t points,
                       const GlbPoints& content);
 
+/// What a .glb has in front of its binary chunk's bytes, which the caller pads with zeros to a
+/// multiple of four: headers and the document.
+std::string glb_start(std::string json, std::size_t binary_bytes);
+
 /// [x,y,z] with all digits.
 std::string json_vector(Vec3d v);
 /// A text in quotes; bytes that are no ASCII come from files of any encoding, and become '?'.
