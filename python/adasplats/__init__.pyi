@@ -281,6 +281,7 @@ def export(
     format: Literal[
         "gaussian-3d",
         "gaussian-2d",
+        "3d-tiles",
         "glb",
         "ply",
         "las",

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """export: which input can become what; tests/exports reads the files with other programs."""
 import csv
+import json
 import resource
+import shutil
 import struct
 import unittest
 
@@ -249,9 +251,10 @@ class Export(ProgramTest):
         model = self.model()
         bad = lambda source, name, *words, says: self.run_bad(64, "export", source, "-o",
                                                               self.folder / name, *words, says=says)
-        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "give the format"])
-        bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
-        bad(model, "out", says=["a name without an ending is none of them"])
+        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d, glb or 3d-tiles",
+                                      "give the format"])
+        bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d, glb or 3d-tiles"])
+        bad(self.cloud, "out", says=["a name without an ending is none of them"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])
         bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las, laz, pcd or csv"])
         bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
@@ -263,6 +266,44 @@ class Export(ProgramTest):
                      says=["lost.ply"])
         self.run_bad(73, "export", self.cloud, "-o", self.folder / "no such" / "a.glb")
         self.assertFalse(any(name.startswith("out") for name in self.names()))
+
+    def test_tiles_of_a_model_and_of_a_city(self):
+        model, city = self.model(), self.folder / "city"
+        self.run_good("model", self.cloud, "--labels", "semantickitti", "--tile", "6", "--halo", "20",
+                      "-o", city)
+        for source in (model, city):
+            tiles = self.folder / f"tiles of {source.name}"
+            report = self.report("export", source, "-o", tiles, "--format", "3d-tiles")
+            root = json.loads((tiles / "tileset.json").read_text())["root"]
+            self.assertEqual(root["refine"], "REPLACE")
+            self.assertIn("not georeferenced: the model has no coordinate system", report["place"])
+            again = self.folder / "again"  # a name without an ending
+            self.run_good("export", source, "-o", again, "--threads", "3")
+            self.assertEqual(tree_digest(tiles), tree_digest(again))
+            shutil.rmtree(again)
+        splats = sum(tile["splats"] for tile in json.loads((city / "city.json").read_text())["tiles"])
+        self.assertEqual(report["splats"], splats)
+
+    def test_tiles_that_cannot_be_written(self):
+        city = self.folder / "city"
+        self.run_good("model", self.cloud, "--labels", "semantickitti", "--tile", "6", "--halo", "20",
+                      "-o", city)
+        empty, full = self.folder / "empty.ply", self.folder / "full"
+        columns = "".join(f"property float {name}\n" for name in "x y z nx ny nz radius".split())
+        empty.write_text(f"ply\nformat ascii 1.0\nelement vertex 0\n{columns}end_header\n")
+        full.mkdir()
+        (full / "mine.txt").write_text("mine")
+        lost = max((city / "tiles").iterdir(), key=lambda path: path.stat().st_size)
+        lost.unlink()
+        before = self.names()
+        tiles = ["-o", self.folder / "tiles", "--format", "3d-tiles"]
+        self.run_bad(65, "export", empty, *tiles, says=["empty.ply: has no splats"])
+        self.run_bad(64, "export", self.cloud, *tiles, says=["point cloud", "not as 3d-tiles"])
+        self.run_bad(73, "export", city, "-o", full, "--format", "3d-tiles", says=["full"])
+        self.run_bad(64, "export", city, "-o", city / "tiles", "--format", "3d-tiles", says=["city"])
+        self.run_bad(66, "export", city, *tiles, says=[lost.name])
+        self.assertEqual(self.names(), before)
+        self.assertEqual([path.name for path in full.iterdir()], ["mine.txt"])
 
     def test_points_that_are_not_finite(self):
         sequence = self.simulate(self.model()) / "sequences" / "00"

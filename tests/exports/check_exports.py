@@ -162,6 +162,27 @@ class Exports(ProgramTest):
             })
         return {"scans": scans}
 
+    def test_tiles(self):
+        """A city and the model of the same points: opaque splats, coloured by class."""
+        words = ["--labels", "semantickitti", "--no-refine", "--device", "cpu"]
+        model, city = self.folder / "model.ply", self.folder / "city"
+        self.run_good("model", self.cloud, *words, "-o", model)
+        self.run_good("model", self.cloud, *words[:2], "--tile", "6", "--halo", "20", *words[3:], "-o",
+                      city)
+        rows = read_ply(model)
+        disks = [{"center": [rows[axis][i] for axis in "xyz"], "radius": rows["radius"][i],
+                  "normal": [rows["n" + axis][i] for axis in "xyz"],
+                  "color": COLORS[rows["class"][i]]} for i in range(len(rows["x"]))]
+        expected = self.write_json("disks.json", {"disks": disks})
+        for source in (model, city):
+            tiles = self.folder / f"tiles of {source.name}"
+            self.run_good("export", source, "-o", tiles, "--format", "3d-tiles", "--color", "class")
+            for content in sorted(tiles.rglob("*.glb")):
+                self.node("read_glb.mjs", content)
+            self.node("read_tiles.mjs", tiles, expected)
+        disks[len(disks) // 2]["center"][2] += 0.02
+        self.node_refuses("read_tiles.mjs", tiles, self.write_json("other.json", {"disks": disks}))
+
     def test_mcap_of_simulate(self):
         model = self.model()
         self.write_turning_poses()

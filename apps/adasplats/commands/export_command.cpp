@@ -15,6 +15,7 @@ namespace {
 constexpr const char* kExportExamples =
     "  adasplats export street.ply -o gaussians.ply --format gaussian-3d\n"
     "  adasplats export street.ply -o centers.glb --color intensity\n"
+    "  adasplats export city -o tiles --format 3d-tiles\n"
     "  adasplats export sequences/08 -o drive.mcap --scans 0:100\n"
     "  adasplats export drive.bag -o tree --format semantickitti\n"
     "  adasplats export scans -o drive.mcap\n"
@@ -29,11 +30,12 @@ class ExportCommand final : public Command {
       : Command(program, "export", "Export models, points and scans to formats of other tools",
                 kExportExamples) {
     OptionSet& app = options();
-    require(
-        add_path(app, "INPUT", job_.input,
-                 "Splat model, point file, sequence folder, recording or output of 'simulate'"));
+    require(add_path(
+        app, "INPUT", job_.input,
+        "Splat model, city, point file, sequence folder, recording or output of 'simulate'"));
     require(add_path(app, "-o,--output", job_.output,
-                     "File to write; folder to create for semantickitti, kitti-raw and nuscenes"));
+                     "File to write; folder to create for 3d-tiles, semantickitti, kitti-raw and "
+                     "nuscenes"));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
                                             "File format (default: by the file name)");
@@ -50,12 +52,14 @@ class ExportCommand final : public Command {
     session.report[result.unit] = result.count;
     session.report["points_dropped"] = result.dropped;
     session.report["bytes"] = result.written_bytes;
+    if (!result.place.empty()) session.report["place"] = result.place;
     const double megabytes = static_cast<double>(result.written_bytes) / kBytesPerMegabyte;
     std::string text = job_.output.string() + ": " + grouped(result.count) + " " + result.unit +
                        ", " + fixed(megabytes, 1) + " MB";
     if (result.dropped > 0) {
       text += ", " + grouped(result.dropped) + " points dropped as not finite or too far";
     }
+    if (!result.place.empty()) text += "; " + result.place;
     print(text + "\n");
   }
 

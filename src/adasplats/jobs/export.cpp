@@ -25,6 +25,7 @@
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/tileset.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_glb.h"
@@ -48,7 +49,7 @@ struct KindFormats {
 KindFormats formats_of(InputKind kind) {
   using enum ExportFormat;
   switch (kind) {
-    case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb}};
+    case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb, tiles_3d}};
     case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz, pcd, csv}};
     case InputKind::drive:
       return {"a sequence of scans",
@@ -61,8 +62,10 @@ std::string_view name_of(ExportFormat format) {
   return kExportFormats[static_cast<std::size_t>(format)].first;
 }
 
-/// Whether the output is the folder of a data set.
-bool is_folder(ExportFormat format) { return format >= ExportFormat::semantickitti; }
+/// Whether the output is a folder.
+bool is_folder(ExportFormat format) {
+  return format == ExportFormat::tiles_3d || format >= ExportFormat::semantickitti;
+}
 /// Whether scans are written, each in its sensor frame.
 bool has_scans(ExportFormat format) { return format >= ExportFormat::mcap; }
 
@@ -125,56 +128,56 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
 
 bool has_colors(ExportFormat format) { return format <= ExportFormat::glb; }
 
-std::vector<Rgb> colors_by_height(PointCloud& cloud) {
-  // Heights are what point_colors() shows of positions alone.
-  PointCloud bare;
-  bare.positions.swap(cloud.positions);
-  std::vector<Rgb> colors = point_colors(bare, nullptr, std::nullopt, {});
-  bare.positions.swap(cloud.positions);
-  return colors;
-}
-
-std::vector<Rgb> colors_of(PointCloud& cloud, const LabelScheme* labels,
-                           std::optional<ExportColor> color) {
-  if (!color) return point_colors(cloud, labels, std::nullopt, {});
+/// Nothing: default_color(). Errors: usage (no intensities).
+std::optional<ImageColor> shown_color(const PointCloud& cloud, std::optional<ExportColor> color) {
+  if (!color) return std::nullopt;
   switch (*color) {
-    case ExportColor::semantic: return point_colors(cloud, labels, ImageColor::semantic, {});
+    case ExportColor::semantic: return ImageColor::semantic;
     case ExportColor::intensity:
       if (cloud.intensities.empty() && !cloud.empty())
         throw Error(ErrorKind::usage, "color by intensity: the input has no intensities");
-      return point_colors(cloud, labels, ImageColor::intensity, {});
-    case ExportColor::height: return colors_by_height(cloud);
-    case ExportColor::rgb: return point_colors(cloud, labels, ImageColor::rgb, {});
+      return ImageColor::intensity;
+    case ExportColor::height: return ImageColor::height;
+    case ExportColor::rgb: return ImageColor::rgb;
   }
-  return {};
+  return std::nullopt;
 }
 
-PointCloud centers_of(SplatModel& model) {
+std::vector<Rgb> colors_of(const PointCloud& cloud, const LabelScheme* labels,
+                           std::optional<ExportColor> color) {
+  return point_colors(cloud, labels, shown_color(cloud, color), {});
+}
+
+/// The centers of every `every`-th splat, with what colours show.
+PointCloud centers_of(const SplatModel& model, std::size_t every = 1) {
   PointCloud cloud;
   cloud.origin = model.origin;
   cloud.crs = model.crs;
-  cloud.positions.reserve(model.size());
-  for (const Disk& disk : model.disks) cloud.positions.push_back(disk.center);
-  cloud.classes = std::move(model.classes);
-  cloud.intensities = std::move(model.intensities);
-  for (std::size_t k = 0; !model.colors.empty() && k < kRgbColumns.size(); ++k) {
-    std::vector<std::uint8_t> values;
-    for (const ColorBytes& color : model.colors) values.push_back(color[k]);
-    cloud.others.columns.push_back({kRgbColumns[k], std::move(values)});
+  std::array<std::vector<std::uint8_t>, 3> rgb;
+  for (std::size_t i = 0; i < model.size(); i += every) {
+    cloud.positions.push_back(model.disks[i].center);
+    if (!model.classes.empty()) cloud.classes.push_back(model.classes[i]);
+    if (!model.intensities.empty()) cloud.intensities.push_back(model.intensities[i]);
+    for (std::size_t k = 0; !model.colors.empty() && k < rgb.size(); ++k)
+      rgb[k].push_back(model.colors[i][k]);
   }
+  for (std::size_t k = 0; !model.colors.empty() && k < rgb.size(); ++k)
+    cloud.others.columns.push_back({kRgbColumns[k], std::move(rgb[k])});
   return cloud;
 }
 
+std::optional<LabelScheme> labels_of(const ExportJob& job, const std::string& scheme,
+                                     ProgressSink& progress) {
+  return job.labels.empty() ? load_labels_of_model(scheme, progress)
+                            : load_label_scheme(job.labels);
+}
+
 ExportResult export_model(const ExportJob& job, ExportFormat format, Session& session) {
-  SplatModel model = load_splats(job.input);
-  const std::optional<LabelScheme> labels =
-      job.labels.empty() ? load_labels_of_model(model.label_scheme, session.progress)
-                         : load_label_scheme(job.labels);
-  PointCloud centers = centers_of(model);
-  const std::vector<Rgb> colors = colors_of(centers, labels ? &*labels : nullptr, job.color);
+  const SplatModel model = load_splats(job.input);
+  const std::optional<LabelScheme> labels = labels_of(job, model.label_scheme, session.progress);
+  const std::vector<Rgb> colors =
+      colors_of(centers_of(model), labels ? &*labels : nullptr, job.color);
   if (format == ExportFormat::glb) {
-    model.classes = std::move(centers.classes);
-    model.intensities = std::move(centers.intensities);
     write_gaussian_glb(job.output, model, colors);
   } else {
     write_gaussian_ply(
@@ -183,6 +186,71 @@ ExportResult export_model(const ExportJob& job, ExportFormat format, Session& se
   }
   return {model.size(), "splats"};
 }
+
+/// A model, or a city tile by tile, as 3D Tiles.
+class TilesetExport {
+ public:
+  TilesetExport(const ExportJob& job, Session& session) : job_(job), session_(session) {
+    if (is_city(job.input)) {
+      city_ = load_city_manifest(job.input);
+      common_ = load_model(job.input / kCityCommonFile);
+      common_.origin = city_->origin;
+      for (std::size_t k = 0; k < city_->tiles.size(); ++k)
+        if (city_->tiles[k].splats > 0) tiles_.push_back(k);
+    } else {
+      common_ = opaque(load_model(job.input));
+      if (common_.size() > 0) tiles_.push_back(0);
+    }
+    if (tiles_.empty())
+      throw Error(ErrorKind::data, job.input.string() + ": has no splats, which tiles need");
+  }
+
+  ExportResult run() {
+    OutputFolder folder(job_.output, false, "export", {{"format", "3d-tiles"}});
+    choose_colors();
+    TilesetParts parts{common_.origin, common_.crs, {}};
+    for (const std::size_t k : tiles_)
+      parts.keys.push_back(city_ ? city_->tiles[k].key : TileKey{});
+    ExportResult result{city_ ? city_->splats() : common_.size(), "splats"};
+    result.place = write_tileset(
+        folder.path(), parts, [this](std::size_t k) { return part(k); }, session_);
+    folder.commit();
+    return result;
+  }
+
+ private:
+  SplatModel model_of(std::size_t k) const {
+    return city_ ? load_city_tile(job_.input, *city_, tiles_[k]) : common_;
+  }
+
+  /// The same meaning and range of colours for all tiles.
+  void choose_colors() {
+    constexpr std::size_t kMaxSurveyed = 8'000'000;
+    labels_ = labels_of(job_, common_.label_scheme, session_.progress);
+    const std::size_t every = city_ ? 1 + city_->splats() / kMaxSurveyed : 1;
+    PointCloud survey;
+    for (std::size_t k = 0; k < tiles_.size(); ++k) append(survey, centers_of(model_of(k), every));
+    color_ = shown_color(survey, job_.color)
+                 .value_or(default_color(survey, labels_ ? &*labels_ : nullptr));
+    range_ = shown_range(survey, color_);
+  }
+
+  ColoredDisks part(std::size_t k) const {
+    SplatModel model = model_of(k);
+    std::vector<Rgb> colors =
+        point_colors(centers_of(model), labels_ ? &*labels_ : nullptr, color_, {}, range_);
+    return {std::move(model.disks), std::move(colors)};
+  }
+
+  const ExportJob& job_;
+  Session& session_;
+  std::optional<CityManifest> city_;
+  SplatModel common_;               ///< the model; of a city what its tiles share
+  std::vector<std::size_t> tiles_;  ///< those with splats
+  std::optional<LabelScheme> labels_;
+  ImageColor color_ = ImageColor::height;
+  ValueRange range_;
+};
 
 /// Warns of the columns of a file that glTF has no field for.
 void warn_of_dropped(const fs::path& output, const PointCloud& cloud, ProgressSink& progress) {
@@ -467,6 +535,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
     require_no_input(job.output, read);
     check_output_file(job.output);
   }
+  if (format == ExportFormat::tiles_3d) return TilesetExport(job, session).run();
   if (kind == InputKind::model) return export_model(job, format, session);
   if (has_scans(format)) return ScanExport(job, format, session).run();
   return export_cloud(job, format, session);

@@ -19,6 +19,7 @@ namespace adasplats {
 enum class ExportFormat : std::uint8_t {
   gaussian_3d,
   gaussian_2d,
+  tiles_3d,
   glb,
   ply,
   las,
@@ -33,6 +34,7 @@ enum class ExportFormat : std::uint8_t {
 inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"gaussian-3d", ExportFormat::gaussian_3d},
     {"gaussian-2d", ExportFormat::gaussian_2d},
+    {"3d-tiles", ExportFormat::tiles_3d},
     {"glb", ExportFormat::glb},
     {"ply", ExportFormat::ply},
     {"las", ExportFormat::las},
@@ -69,6 +71,7 @@ struct ExportResult {
   const char* unit = "";    ///< of `count`: "splats", "points" or "scans"
   std::size_t dropped = 0;  ///< points that were not finite or too far
   std::uint64_t written_bytes = 0;
+  std::string place;  ///< of 3d-tiles: where they are on the Earth, or why that is unknown
 };
 
 /// Writes the file, or the folder of a data set. Errors: usage (a format that the input cannot
