@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/arrow/arrow_layout.h"
 #include "adasplats/io/arrow/flat_table.h"
 #include "adasplats/io/bags/unpack.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -18,36 +19,6 @@
 
 namespace adasplats {
 namespace {
-
-constexpr std::string_view kArrowMagic = "ARROW1";
-constexpr std::size_t kBlockBytes = 24, kNodeBytes = 16, kBufferBytes = 16;
-
-// Fields of the tables, in the order of the schemas.
-enum FooterField : std::uint8_t { footer_schema = 1, footer_dictionaries = 2, footer_batches = 3 };
-enum SchemaField : std::uint8_t { schema_endianness = 0, schema_fields = 1 };
-enum FieldField : std::uint8_t {
-  field_name = 0,
-  field_type_kind = 2,
-  field_type = 3,
-  field_dictionary = 4
-};
-enum MessageField : std::uint8_t { message_kind = 1, message_header = 2 };
-enum BatchField : std::uint8_t {
-  batch_rows = 0,
-  batch_nodes = 1,
-  batch_buffers = 2,
-  batch_compression = 3
-};
-
-/// Numbers of the union Type.
-enum TypeKind : std::uint8_t {
-  int_type = 2,
-  float_type = 3,
-  utf8_type = 5,
-  bool_type = 6,
-  large_utf8_type = 20
-};
-constexpr std::uint8_t kRecordBatch = 3;  // of the union MessageHeader
 
 float float_of_half(std::uint16_t half) {
   const std::uint32_t sign = (half & 0x8000U) << 16U, exponent = (half >> 10U) & 31U;
@@ -195,9 +166,8 @@ class ArrowReader {
     std::string_view head = all.part(offset, static_cast<std::uint64_t>(head_bytes));
     body_ = all.part(offset + head.size(), body_bytes);
     end_ = offset + head.size() + body_.size();
-    constexpr std::uint32_t kContinues = 0xffffffff;  // before the size since Arrow 0.15
     const auto begin = FlatBytes(head, batch_).number<std::uint32_t>(0);
-    head.remove_prefix(begin == kContinues ? 8 : 4);
+    head.remove_prefix(begin == kContinues ? 8 : 4);  // since Arrow 0.15
     const FlatBytes message(head, batch_);
     const FlatTable root = FlatTable::root(message);
     if (root.number<std::uint8_t>(message_kind) != kRecordBatch)
