@@ -292,6 +292,8 @@ def export(
         "semantickitti",
         "kitti-raw",
         "nuscenes",
+        "pandaset",
+        "argoverse2",
     ]
     | None = None,
     labels: Path | None = None,
@@ -886,7 +888,7 @@ class Scans:
         *,
         format: Literal[
             "semantickitti", "ply", "npy", "npz", "pcd", "las", "laz", "range-image", "mcap",
-            "kitti-raw", "pandaset", "nuscenes",
+            "kitti-raw", "pandaset", "nuscenes", "argoverse2",
         ] = "semantickitti",
         point_order: Literal["kitti", "firing"] = "kitti",
     ) -> None: ...

@@ -41,9 +41,11 @@ constexpr const char* kExportDoc =
 
 input: a splat model, a point file, a sequence folder or the output of simulate. format:
 'gaussian-3d', 'gaussian-2d', 'glb', 'ply', 'las', 'laz', 'pcd', 'csv' or 'mcap'; None: by the
-extension of output; '3d-tiles', 'semantickitti', 'kitti-raw' and 'nuscenes' create a folder. color: 'class', 'intensity' or 'height'; None: the first of these that the input has. The
+extension of output; '3d-tiles', 'semantickitti', 'kitti-raw', 'nuscenes', 'pandaset' and 'argoverse2' create a
+folder. color: 'class', 'intensity' or 'height'; None: the first of these that the input has. The
 other keywords are those of read(). Returns a dict with the number of elements written,
-points_dropped and bytes; of 3d-tiles also place, where they are on the Earth. Raises TypeError, ValueError, OSError.)";
+points_dropped and bytes; of 3d-tiles also place, where they are on the Earth. Raises TypeError,
+ValueError, OSError.)";
 
 constexpr const char* kFitSensorDoc =
     R"(Calibrate one physical sensor from measured scans: intensities and missing returns.

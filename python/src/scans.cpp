@@ -4,9 +4,12 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "adasplats/core/error.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
+#include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "clouds.h"
 #include "pickles.h"
@@ -59,7 +62,8 @@ attributes that the scene lacks are None.)";
 constexpr const char* kSaveDoc = R"(Write the scans into a folder, which is created if missing.
 
 format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las', 'laz',
-'range-image', 'mcap' (FOLDER/scans.mcap), 'kitti-raw', 'pandaset' or 'nuscenes': docs/formats.md.
+'range-image', 'mcap' (FOLDER/scans.mcap), 'kitti-raw', 'pandaset', 'nuscenes' or 'argoverse2':
+docs/formats.md.
 point_order (formats of data sets): 'kitti', as in their own files, or 'firing', as in Scan.
 Raises TypeError, OSError, ValueError.)";
 
@@ -141,6 +145,12 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   writing.labels = list.labels.get();
   writing.drive = {list.scans.size(), [&](std::size_t i) { return list.scans[i]->time_s; }};
   if (!list.scans.empty()) writing.drive.turn_s = list.scans.front()->duration_s;
+  if (format == ScanFormat::argoverse2) {
+    float highest = 0;
+    for (const auto& scan : list.scans)
+      for (const float value : scan->intensities) highest = std::max(highest, value);
+    writing.full_intensity = intensity_scale_for(double{highest});
+  }
   const auto writer = make_scan_writer(path, format, writing);
   const Executor executor;
   ParallelWriteOptions parallel;

@@ -49,6 +49,7 @@ SUBCOMMANDS = [
 # Commands about the program, which compute nothing.
 ABOUT = [["help"], ["version"], ["completion"], ["man"]]
 ROAD, BUILDING, POLE = 40, 50, 80
+AV2_LOG = "train/00000000-0000-0000-0000-000000000001"
 
 SENSOR = """\
 name = "tiny"

@@ -8,7 +8,7 @@ import shutil
 import struct
 import unittest
 
-from support import ProgramTest, run, tree_digest
+from support import AV2_LOG, ProgramTest, run, tree_digest
 
 
 class Export(ProgramTest):
@@ -138,13 +138,17 @@ class Export(ProgramTest):
                    "--driven-path", "0"]
         whole = self.folder / "whole.csv"
         self.assertEqual(run("export", frames, "-o", whole, *options).returncode, 0)
-        for kind, inside, with_classes in [("semantickitti", "sequences/00", True),
-                                           ("kitti-raw", "1970_01_01/1970_01_01_drive_0001_sync",
-                                            False), ("nuscenes", "", False)]:
+        for kind, inside, kept in [
+                ("semantickitti", "sequences/00", "positions, intensities, classes and instances"),
+                ("kitti-raw", "1970_01_01/1970_01_01_drive_0001_sync", "positions and intensities"),
+                ("nuscenes", "", "positions, intensities and classes"),
+                ("pandaset", "001", "positions, intensities and classes"),
+                ("argoverse2", AV2_LOG, "positions and intensities")]:
             tree = self.folder / kind
             said = run("export", frames, "-o", tree, "--format", kind, *options[:4]).stderr
-            self.assertIn("not exported: fields of the points other than positions", said)
-            self.assertEqual("instances, classes" in said, not with_classes, said)
+            self.assertIn("not exported: fields of the points other than " + kept, said)
+            self.assertEqual("is not recognised" in said, kind in ("nuscenes", "argoverse2"), said)
+            with_classes = kind in ("semantickitti", "pandaset")
             again = self.folder / f"{kind}.csv"
             done = run("export", tree / inside, "-o", again, "--own-body", "0", "--driven-path",
                        "0")

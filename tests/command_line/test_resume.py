@@ -11,7 +11,7 @@ import unittest
 from support import PROGRAM, ProgramTest, tree_digest
 
 FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "laz", "range-image", "mcap",
-           "kitti-raw", "pandaset", "nuscenes"]
+           "kitti-raw", "pandaset", "nuscenes", "argoverse2"]
 SCANS = 161  # of three poses, 0.2 s apart in all, at 800 Hz
 
 
@@ -90,12 +90,15 @@ class Resume(ProgramTest):
                          'trajectory = "way.csv"\n')
         self.place = world
         whole = self.folder / "whole"
-        self.run_good(*self.command(output=whole))
-        self.assertEqual(len(list((whole / "boxes" / "label_2").iterdir())), SCANS)
-        self.end_early(signal.SIGKILL, 60)
-        if not self.output.exists():
-            self.run_good(*self.command())
-        self.assertEqual(tree_digest(self.output), tree_digest(whole))
+        for word in ["semantickitti", "argoverse2"]:
+            command = ["--format", word, "--overwrite"]
+            self.run_good(*self.command(*command, output=whole))
+            self.assertEqual(len(list((whole / "boxes" / "label_2").iterdir())), SCANS)
+            self.end_early(signal.SIGKILL, 60, *command[:2])
+            if not self.output.exists():
+                self.run_good(*self.command(*command[:2]))
+            self.assertEqual(tree_digest(self.output), tree_digest(whole))
+            shutil.rmtree(self.output)
 
     def test_other_jobs_are_rejected(self):
         self.assertTrue(self.end_early(signal.SIGINT, 40))

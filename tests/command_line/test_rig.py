@@ -457,6 +457,7 @@ class Rig(ProgramTest):
         self.run_bad(64, *words, "--sensor", "velodyne-vlp-16", says=["--sensor", "--rig"])
         self.run_bad(64, *words, "--mount", "0,0,1", says=["--mount", "--rig"])
         self.run_bad(64, *words, "--format", "nuscenes", says=["nuscenes", "LIDAR_TOP"])
+        self.run_bad(64, *words, "--format", "argoverse2", says=["argoverse2", "up_lidar"])
         good = self.rig.read_text()
         for old, new, code, says in (
                 ('sensor = "small.toml"\n', "", 64, ["'right'", "no key sensor"]),

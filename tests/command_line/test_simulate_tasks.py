@@ -15,7 +15,7 @@ from support import PROGRAM, ProgramTest, tree_digest
 
 SCANS = 41  # of three poses, 0.2 s apart in all, at 200 Hz
 FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "laz", "range-image", "kitti-raw",
-           "pandaset", "nuscenes"]
+           "pandaset", "nuscenes", "argoverse2"]
 
 
 class SimulateTasks(ProgramTest):

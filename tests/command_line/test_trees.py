@@ -8,7 +8,7 @@ import struct
 import unittest
 
 from pictures import npy
-from support import ProgramTest, run
+from support import AV2_LOG, ProgramTest, run
 
 
 def turned(q, v):
@@ -136,7 +136,8 @@ class Trees(ProgramTest):
     def test_trees_are_drives(self):
         """Oracle: the six scans that were simulated."""
         for word, folder, kind in (("pandaset", "001", "PandaSet sequence"),
-                                   ("nuscenes", "", "nuScenes scene")):
+                                   ("nuscenes", "", "nuScenes scene"),
+                                   ("argoverse2", AV2_LOG, "Argoverse 2 log")):
             tree = self.tree(word) / folder
             report = self.folder / f"{word}.json"
             said = self.run_drive("info", tree, "--report", report).stdout
@@ -145,12 +146,34 @@ class Trees(ProgramTest):
             self.assertEqual(facts["scans"], 6)
             self.assertGreater(facts["points"], 100)
             self.assertAlmostEqual(facts["times_s"]["median_step"], 0.1, delta=0.06)
-            self.assertIn("building" if word == "pandaset" else "static.manmade", said)
+            if word != "argoverse2":  # it has no classes
+                self.assertIn("building" if word == "pandaset" else "static.manmade", said)
             model = self.folder / f"{word}.ply"
             self.run_drive("model", tree, "--scans", "0:6:2", "-o", model)
             held = self.run_drive("evaluate", "resimulate", model, tree, "--scans", "1:6:2")
             self.assertIn("beams", held.stdout)
             self.run_bad(64, "info", tree, "--topic", "x", says=["--topic", kind])
+
+    def test_times_that_argoverse2_cannot_hold(self):
+        """An error before the first scan, which leaves nothing behind."""
+        out = self.folder / "out"
+        words = ["simulate", self.place, "-o", out, "--sensor", self.sensor, "--format",
+                 "argoverse2", "--trajectory"]
+        rows = self.poses.read_text().splitlines()
+        late = self.folder / "late.csv"
+        late.write_text("\n".join([rows[0]] + [row.replace("10", "-10", 1) for row in rows[1:2]]) +
+                        "\n")
+        self.run_bad(65, *words, late, says=["argoverse2", "scan 0", "-100 s"])
+        late.write_text("\n".join([rows[0], rows[1], rows[2].replace("100.1", "100.0000000001")]) +
+                        "\n")
+        self.run_bad(65, *words, late, says=["argoverse2", "scan 1", "that of scan 0"])
+        self.assertFalse(out.exists())
+        self.run_good(*words, self.poses)
+        self.run_bad(73, *words, late, says=["out"])
+        sequence = self.simulate(self.place, "kitti") / "sequences" / "00"
+        (sequence / "times.txt").unlink()
+        self.run_bad(65, "export", sequence, "-o", self.folder / "log", "--format", "argoverse2",
+                     says=["times.txt"])
 
     def test_scenes_and_labels_that_are_not_there(self):
         tree = self.tree("nuscenes")

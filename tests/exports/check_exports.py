@@ -221,6 +221,22 @@ class Exports(ProgramTest):
             finally:
                 process.send_signal(signal.SIGINT)
 
+    def test_argoverse2_of_simulate(self):
+        model = self.model()
+        self.write_turning_poses()
+        near = self.poses.read_text().splitlines(keepends=True)[:-1]
+        self.poses.write_text("".join(near))
+        words = ["--range-noise", "0.02", "--rolling-shutter", "--points", "deskewed"]
+        ply, npy = (self.simulate(model, kind, "--format", kind, *words) for kind in ("ply", "npy"))
+        tree = self.simulate(model, "argoverse2", "--format", "argoverse2", "--point-order",
+                             "firing", *words)
+        expected = self.expected_scans(ply, npy)
+        self.assertGreater(max(expected["scans"][0]["fields"]["time"]), 0.01)
+        log, = (tree / "train").iterdir()
+        self.node("read_arrow.mjs", log, self.write_json("scans.json", expected))
+        expected["scans"][0]["fields"]["ring"][3] += 1
+        self.node_refuses("read_arrow.mjs", log, self.write_json("other.json", expected))
+
 
     def expected_clouds(self, driver, ply):
         """The clouds of a driver, from the PLY files of the same simulation."""

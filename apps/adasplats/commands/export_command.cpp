@@ -34,8 +34,7 @@ class ExportCommand final : public Command {
         app, "INPUT", job_.input,
         "Splat model, city, point file, sequence folder, recording or output of 'simulate'"));
     require(add_path(app, "-o,--output", job_.output,
-                     "File to write; folder to create for 3d-tiles, semantickitti, kitti-raw and "
-                     "nuscenes"));
+                     "File to write; folder to create for 3d-tiles and the layouts of data sets"));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
                                             "File format (default: by the file name)");

@@ -46,7 +46,7 @@ class KittiRawWriter final : public WriterWithPoses {
  public:
   KittiRawWriter(const std::filesystem::path& folder, const ScanWriterOptions& options)
       : WriterWithPoses(folder), order_(options.order) {
-    date_ = date_and_time(options.drive.begin_s, folder.string()).substr(0, 10);
+    date_ = date_and_time(options.drive.begin_s(), folder.string()).substr(0, 10);
     std::ranges::replace(date_, '-', '_');
     drive_ = date_ + "/" + date_ + "_drive_0001_sync/";
   }

@@ -31,8 +31,8 @@ using NuscenesPoint = std::array<float, 5>;
 /// Number of scans per sample: nuScenes has two samples per second.
 std::size_t sample_step(const DriveSpan& drive) {
   constexpr double kSample_s = 0.5;
-  if (!(drive.apart_s > kSample_s / 1e6)) return 1;
-  return static_cast<std::size_t>(std::max(1L, std::lround(kSample_s / drive.apart_s)));
+  if (!(drive.apart_s() > kSample_s / 1e6)) return 1;
+  return static_cast<std::size_t>(std::max(1L, std::lround(kSample_s / drive.apart_s())));
 }
 
 std::string nuscenes_points(const ScanView& scan, std::span<const std::uint32_t> order,

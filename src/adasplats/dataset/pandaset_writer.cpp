@@ -39,7 +39,7 @@ class PandaSetWriter final : public WriterWithPoses {
   PandaSetWriter(const std::filesystem::path& folder, const ScanWriterOptions& options)
       : WriterWithPoses(folder), options_(options) {
     constexpr std::size_t kMinDigits = 2;
-    const std::size_t last = std::max<std::size_t>(options.drive.scans, 1) - 1;
+    const std::size_t last = std::max<std::size_t>(options.drive.times_s.size(), 1) - 1;
     digits_ = std::max(kMinDigits, std::to_string(last).size());
   }
 

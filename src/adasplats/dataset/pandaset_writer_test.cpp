@@ -120,7 +120,7 @@ TEST(PandaSetWriter, NamesSort) {
   options.drive = {101, [](std::size_t) { return 0.0; }};
   const auto writer = make_scan_writer(folder.path(), ScanFormat::pandaset, options);
   EXPECT_EQ(writer->main_file(7), "001/lidar/007.pkl.gz");
-  options.drive.scans = 100;
+  options.drive.times_s.resize(100);
   EXPECT_EQ(make_scan_writer(folder.path(), ScanFormat::pandaset, options)->main_file(7),
             "001/lidar/07.pkl.gz");
 }

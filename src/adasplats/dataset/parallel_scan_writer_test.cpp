@@ -29,6 +29,7 @@ ScanWriterOptions writing_options() {
   options.packets.sensor = &sensor;
   options.image_size = {64, 8};
   options.labels = &semantickitti_labels();
+  options.drive = {kDriveScans, [](std::size_t i) { return scan_number(i, 0).time_s; }};
   return options;
 }
 

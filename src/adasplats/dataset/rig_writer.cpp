@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
 #include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/ros_messages.h"
@@ -31,7 +32,7 @@ double earliest_s(const std::vector<RigWriterSensor>& sensors, const Trajectory&
   double earliest_s = vehicle.front().time_s;
   for (const RigWriterSensor& sensor : sensors) {
     const DriveSpan& drive = sensor.writing.drive;
-    const double begin_s = drive.begin_s - 0.5 * drive.turn_s;
+    const double begin_s = drive.begin_s() - 0.5 * drive.turn_s;
     earliest_s = std::min({earliest_s, begin_s, begin_s - sensor.time_offset_s});
   }
   return earliest_s;
@@ -75,7 +76,7 @@ class RigFolders final : public RigWriter {
     for (const RigWriterSensor& sensor : sensors()) {
       const double offset_s = sensor.time_offset_s;
       ScanWriterOptions writing = sensor.writing;
-      writing.drive.begin_s -= offset_s;
+      for (double& time_s : writing.drive.times_s) time_s -= offset_s;
       if (writing.boxes)
         writing.boxes = [boxes = sensor.writing.boxes, offset_s](std::size_t i, double time_s) {
           return boxes(i, time_s + offset_s);
@@ -278,7 +279,7 @@ std::vector<UdpEndpoint> rig_senders(const std::vector<RigWriterSensor>& sensors
 
 double rig_ros_delay_s(const std::vector<RigWriterSensor>& sensors, const Trajectory& vehicle) {
   const double first_s = earliest_s(sensors, vehicle);
-  return sensors.front().writing.drive.begin_s >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
+  return sensors.front().writing.drive.begin_s() >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
 }
 
 std::string rig_topic(const std::string& sensor, CloudDriver driver) {
@@ -287,10 +288,11 @@ std::string rig_topic(const std::string& sensor, CloudDriver driver) {
 }
 
 void require_rig_format(ScanFormat format) {
-  if (format == ScanFormat::nuscenes)
-    throw Error(ErrorKind::usage,
-                "nuscenes is written and read with one LiDAR, LIDAR_TOP; use another `format` for "
-                "a rig, such as mcap");
+  if (format == ScanFormat::nuscenes || format == ScanFormat::argoverse2)
+    throw Error(ErrorKind::usage, std::string(word_of(format, kScanFormats)) +
+                                      " is written and read with one LiDAR, " +
+                                      (format == ScanFormat::nuscenes ? "LIDAR_TOP" : "up_lidar") +
+                                      "; use another `format` for a rig, such as mcap");
 }
 
 std::unique_ptr<ScanWriter> make_rig_writer(const fs::path& folder, ScanFormat format,

@@ -245,9 +245,9 @@ TEST(RoundTrip, DrivesThatBeginAtZeroAreShiftedByASecond) {
   DriveSpan moving = at_zero;
   moving.turn_s = 0.1;
   EXPECT_EQ(ros_delay_s(moving), 1);
-  moving.begin_s = 0.05;
+  moving.times_s.front() = 0.05;
   EXPECT_EQ(ros_delay_s(moving), 0);
-  moving.begin_s = -7;
+  moving.times_s.front() = -7;
   EXPECT_EQ(ros_delay_s(moving), 0) << "that is an error, as ever";
 }
 

@@ -160,6 +160,7 @@ ScanFields fields_of(ScanFormat format) {
   if (format == ScanFormat::semantickitti || format == ScanFormat::kitti_raw)
     fields.ranges = fields.columns = fields.times = false;
   if (format == ScanFormat::pandaset) fields.ranges = false;
+  if (format == ScanFormat::argoverse2) fields.ranges = fields.classes = fields.instances = false;
   if (format == ScanFormat::pcap) fields.classes = fields.instances = fields.times = false;
   if (format == ScanFormat::nuscenes) fields.ranges = fields.times = false;
   return fields;
@@ -174,6 +175,7 @@ ScanBytes scan_bytes(ScanFormat format) {
     // At least half of the uncompressed size: the last bits of coordinates are noise.
     case ScanFormat::pandaset: return {20, 56, 0, 0};
     case ScanFormat::nuscenes: return {20, 21, 0, 0};
+    case ScanFormat::argoverse2: return {18, 18, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
     case ScanFormat::pcap: return {0, 0, 3, 13};  // channels of Velodyne, of Ouster, and headers
     case ScanFormat::ply:
@@ -236,6 +238,7 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::kitti_raw:
     case ScanFormat::pandaset:
     case ScanFormat::nuscenes:
+    case ScanFormat::argoverse2:
     case ScanFormat::pcap: throw std::logic_error("encode_scan_files: not a point format");
   }
   return files;

@@ -28,6 +28,7 @@ enum class ScanFormat : std::uint8_t {
   kitti_raw,
   pandaset,
   nuscenes,
+  argoverse2,
   pcap
 };
 inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
@@ -43,6 +44,7 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"kitti-raw", ScanFormat::kitti_raw},
     {"pandaset", ScanFormat::pandaset},
     {"nuscenes", ScanFormat::nuscenes},
+    {"argoverse2", ScanFormat::argoverse2},
     {"pcap", ScanFormat::pcap}};
 
 /// Whose clouds the messages of mcap are: ours, with all attributes, or those of the driver of a

@@ -97,6 +97,12 @@ std::vector<ColumnView> scan_columns(const ScanView& given, std::span<const floa
   return columns;
 }
 
+double intensity_scale_for(double highest) {
+  for (const double scale : {1.0, 255.0})
+    if (highest <= scale) return scale;
+  return 65535.0;
+}
+
 std::string scan_name(std::size_t index) {
   const std::string digits = std::to_string(index);
   return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;

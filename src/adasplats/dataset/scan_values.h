@@ -35,6 +35,9 @@ std::vector<float> times_from_pose(const ScanView& scan);
 /// column `time`. Attributes without a value for every point are omitted.
 std::vector<ColumnView> scan_columns(const ScanView& scan, std::span<const float> times);
 
+/// The smallest usual full scale of intensities that covers the highest one: 1, 255 or 65535.
+double intensity_scale_for(double highest);
+
 /// Name of scan `index` in data sets, such as "000042".
 std::string scan_name(std::size_t index);
 

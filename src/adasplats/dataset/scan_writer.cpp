@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adasplats/core/words.h"
+#include "adasplats/dataset/av2_writer.h"
 #include "adasplats/dataset/kitti_raw_writer.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/nuscenes_writer.h"
@@ -137,8 +138,8 @@ class MessageWriter final : public WriterWithPoses {
 }  // namespace
 
 double ros_delay_s(const DriveSpan& drive) {
-  const double first_s = drive.begin_s - 0.5 * drive.turn_s;
-  return drive.begin_s >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
+  const double first_s = drive.begin_s() - 0.5 * drive.turn_s;
+  return drive.begin_s() >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
 }
 
 void ScanWriter::write(std::size_t index, const ScanView& scan) {
@@ -158,6 +159,7 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::kitti_raw) return make_kitti_raw_writer(folder, options);
   if (format == ScanFormat::pandaset) return make_pandaset_writer(folder, options);
   if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
+  if (format == ScanFormat::argoverse2) return make_av2_writer(folder, options);
   if (format == ScanFormat::pcap) return make_packet_writer(folder, options);
   if (format == ScanFormat::mcap)
     return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive), options);

@@ -25,18 +25,20 @@ namespace adasplats {
 
 /// Properties of a drive that file names need before the scans exist.
 struct DriveSpan {
-  double begin_s = 0;     ///< time of the first scan, since 1970
-  double apart_s = 0;     ///< from the first scan to the second; 0: only one scan
-  std::size_t scans = 0;  ///< number of scans in the drive
-  double turn_s = 0;      ///< duration of a revolution during motion; 0: sensor at rest
+  std::vector<double> times_s;  ///< of the scans, since 1970
+  double turn_s = 0;            ///< duration of a revolution during motion; 0: sensor at rest
 
   DriveSpan() = default;
-  /// For `count` scans; time_of(i) is the time of scan i, called at most twice.
+  /// For `count` scans; time_of(i) is the time of scan i.
   template <class TimeOf>
-  DriveSpan(std::size_t count, TimeOf&& time_of)
-      : begin_s(count == 0 ? 0 : time_of(0)),
-        apart_s(count < 2 ? 0 : time_of(1) - begin_s),
-        scans(count) {}
+  DriveSpan(std::size_t count, TimeOf&& time_of) {
+    times_s.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) times_s.push_back(time_of(i));
+  }
+
+  double begin_s() const { return times_s.empty() ? 0 : times_s.front(); }
+  /// From the first scan to the second; 0: only one scan.
+  double apart_s() const { return times_s.size() < 2 ? 0 : times_s[1] - times_s[0]; }
 };
 
 /// Shift of the times of a drive in ROS messages, which cannot be negative, in whole seconds: 0
@@ -68,7 +70,7 @@ struct PacketOptions {
 
 struct ScanWriterOptions {
   ImageSize image_size;                  ///< of range images (image_size_of)
-  double full_intensity = 1.0;           ///< LAS: intensity that becomes the maximum
+  double full_intensity = 1.0;           ///< LAS, Argoverse 2: intensity that becomes the maximum
   const LabelScheme* labels = nullptr;   ///< names and colours of classes; must outlive the writer
   PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
   DriveSpan drive;                       ///< for file names of data sets, and ros_delay_s()
@@ -115,10 +117,11 @@ class ScanWriter {
 /// A writer into `folder`, which must exist. semantickitti: FOLDER/sequences/00 as
 /// SemanticKittiWriter and FOLDER/poses/00.txt, points in `options.order`; range_image: files of
 /// write_range_image(); mcap: FOLDER/scans.mcap as McapWriter, and poses.csv, both ros_delay_s()
-/// later; kitti_raw, pandaset, nuscenes: as make_kitti_raw_writer(), make_pandaset_writer() and
-/// make_nuscenes_writer(); pcap: make_packet_writer(); else NNNNNN.EXT of scan_files.h. All but
-/// semantickitti also write poses.csv. Errors: cannot_create, io; mcap, kitti_raw: data (times that
-/// they cannot represent).
+/// later; kitti_raw, pandaset, nuscenes, argoverse2: as make_kitti_raw_writer(),
+/// make_pandaset_writer(), make_nuscenes_writer() and make_av2_writer(); pcap:
+/// make_packet_writer(); else NNNNNN.EXT of scan_files.h. All but semantickitti also write
+/// poses.csv. Errors: cannot_create, io; mcap, kitti_raw, argoverse2: data (times that they cannot
+/// represent).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

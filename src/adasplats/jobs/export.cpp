@@ -18,7 +18,9 @@
 #include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
 #include "adasplats/dataset/mcap_writer.h"
+#include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/output/output_check.h"
@@ -53,7 +55,8 @@ KindFormats formats_of(InputKind kind) {
     case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz, pcd, csv}};
     case InputKind::drive:
       return {"a sequence of scans",
-              {mcap, glb, ply, las, laz, pcd, csv, semantickitti, kitti_raw, nuscenes}};
+              {mcap, glb, ply, las, laz, pcd, csv, semantickitti, kitti_raw, nuscenes, pandaset,
+               argoverse2}};
   }
   return {};
 }
@@ -68,6 +71,25 @@ bool is_folder(ExportFormat format) {
 }
 /// Whether scans are written, each in its sensor frame.
 bool has_scans(ExportFormat format) { return format >= ExportFormat::mcap; }
+
+/// Whether the format holds the times of points.
+bool has_times(ExportFormat format) {
+  return format == ExportFormat::mcap || format == ExportFormat::pandaset ||
+         format == ExportFormat::argoverse2;
+}
+/// Whether the format holds the rings of points.
+bool has_rings(ExportFormat format) {
+  return format == ExportFormat::nuscenes || format == ExportFormat::argoverse2;
+}
+
+/// Whether the format holds the classes of points.
+bool has_classes(ExportFormat format) {
+  return format != ExportFormat::kitti_raw && format != ExportFormat::argoverse2;
+}
+/// Whether the format holds the instances of points.
+bool has_instances(ExportFormat format) {
+  return format == ExportFormat::mcap || format == ExportFormat::semantickitti;
+}
 
 /// Empty for folders.
 std::string_view ending_of(ExportFormat format) {
@@ -308,6 +330,10 @@ class ScanExport {
  public:
   ScanExport(const ExportJob& job, ExportFormat format, Session& session)
       : job_(job), format_(format), session_(session), sequence_(opened()) {
+    if (format_ == ExportFormat::argoverse2 && !sequence_.has_times)
+      throw Error(ErrorKind::data, job_.input.string() +
+                                       ": has no times of scans (times.txt), by which argoverse2 "
+                                       "names its files");
     chosen_ = chosen_scans({job.load.first_scan, job.load.scan_count, job.load.scan_stride},
                            sequence_.scans.size(), job.input);
     labels_ = label_scheme_for(job.labels, std::span(&job.input, 1));
@@ -330,8 +356,7 @@ class ScanExport {
   KittiSequence opened() const {
     if (is_kitti_sequence(job_.input) && !lacks_poses(job_.input)) {
       KittiSequence sequence = open_kitti_sequence(job_.input);
-      if (format_ == ExportFormat::nuscenes)
-        sequence.beams = recognize_beams(sequence, session_.executor);
+      if (has_rings(format_)) sequence.beams = recognize_beams(sequence, session_.executor);
       return sequence;
     }
     auto drive = open_drive(drive_of(job_.input, job_.load), session_.executor, session_.progress);
@@ -365,7 +390,7 @@ class ScanExport {
                                                : read_kitti_scan(sequence_, index);
     const TimedPose& pose = sequence_.trajectory[index];
     Scan scan;
-    if (format_ == ExportFormat::nuscenes) scan.rings = rings_of(kitti, index);
+    if (has_rings(format_)) scan.rings = rings_of(kitti, index);
     scan.world_from_sensor = pose.world_from_sensor;
     scan.time_s = pose.time_s;
     scan.positions = std::move(kitti.positions);
@@ -373,7 +398,7 @@ class ScanExport {
     scan.classes = std::move(kitti.classes);
     scan.instances = std::move(kitti.instances);
     scan.rays = scan.size();
-    if (format_ == ExportFormat::mcap) set_times(kitti.times_s, scan);
+    if (has_times(format_)) set_times(kitti.times_s, scan);
     std::vector<std::uint8_t> keep(scan.size(), 1);
     for (std::size_t i = 0; i < scan.size(); ++i) keep[i] = is_finite(scan.positions[i]) ? 1 : 0;
     const auto bad = static_cast<std::size_t>(std::ranges::count(keep, 0));
@@ -416,7 +441,7 @@ class ScanExport {
   }
 
   void write_folder() {
-    nlohmann::ordered_json content;
+    auto content = nlohmann::ordered_json::object();
     if (labels_) content["labels"] = {{"name", scheme_reference(job_.labels, *labels_)}};
     OutputFolder folder(job_.output, false, "export", content);
     ScanWriterOptions options;
@@ -426,21 +451,31 @@ class ScanExport {
                      [this](std::size_t i) { return sequence_.trajectory[chosen_[i]].time_s; }};
     const std::string& sensor = sequence_.beams.sensor;
     if (!sensor.empty()) options.image_size.rings = load_lidar_model(sensor).rings();
-    const auto writer = make_scan_writer(folder.path(), scan_format(), options);
-    bool has_classes = false;
+    if (format_ == ExportFormat::argoverse2)
+      options.full_intensity = intensity_scale_for(highest_intensity());
+    const auto writer =
+        make_scan_writer(folder.path(), value_of(name_of(format_), kScanFormats), options);
+    bool with_classes = false;
     write_scans([&](std::size_t k, const Scan& scan) {
-      has_classes = has_classes || !scan.classes.empty();
+      with_classes = with_classes || !scan.classes.empty();
+      if (format_ == ExportFormat::argoverse2)
+        clipped_ += static_cast<std::size_t>(std::ranges::count_if(
+            scan.intensities, [&](float value) { return value > options.full_intensity; }));
       require_classes(k, scan);
       writer->write(k, scan);
     });
     writer->finish();
-    warn_of_lost(has_classes);
+    warn_of_lost(with_classes);
     folder.commit();
   }
 
-  ScanFormat scan_format() const {
-    if (format_ == ExportFormat::kitti_raw) return ScanFormat::kitti_raw;
-    return format_ == ExportFormat::nuscenes ? ScanFormat::nuscenes : ScanFormat::semantickitti;
+  /// Of the first, middle and last scan.
+  double highest_intensity() const {
+    float highest = 0;
+    for (const std::size_t k : {std::size_t{0}, chosen_.size() / 2, chosen_.size() - 1})
+      for (const float value : read_kitti_points(sequence_, chosen_[k]).intensities)
+        if (value > highest) highest = value;
+    return highest;
   }
 
   /// Either all scans have classes or none.
@@ -453,23 +488,36 @@ class ScanExport {
                                      "classes, unlike the scans before");
   }
 
+  /// The fields of points that are exported, in words.
+  std::string kept_fields() const {
+    std::vector<std::string> kept = {"positions", "intensities"};
+    if (has_times(format_) && has_times_) kept.emplace_back("times");
+    if (has_rings(format_) && has_rings_) kept.emplace_back("rings");
+    if (has_classes(format_)) kept.emplace_back("classes");
+    if (has_instances(format_)) kept.emplace_back("instances");
+    std::string text;
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      text += (k == 0 ? "" : k + 1 < kept.size() ? ", " : " and ") + kept[k];
+    return text;
+  }
+
   /// In one line what is dropped.
-  void warn_of_lost(bool has_classes) {
+  void warn_of_lost(bool with_classes) {
     std::string lost;
-    const auto add = [&lost](const char* what) {
-      lost += (lost.empty() ? "" : ", ") + std::string(what);
+    const auto add = [&lost](const std::string& what) {
+      lost += (lost.empty() ? "" : ", ") + what;
     };
-    const bool keeps_times = format_ == ExportFormat::mcap && has_times_;
     if (!is_kitti_sequence(job_.input))
-      add(keeps_times ? "fields of the points other than positions, intensities, times, classes "
-                        "and instances"
-                      : "fields of the points other than positions, intensities, classes and "
-                        "instances");
-    if (has_classes && format_ == ExportFormat::kitti_raw) add("classes");
-    if (has_classes && format_ == ExportFormat::nuscenes)
+      add("fields of the points other than " + kept_fields());
+    else if (with_classes && !has_instances(format_) && format_ != ExportFormat::nuscenes)
+      add(has_classes(format_) ? "instances" : "classes and instances");
+    if (with_classes && !labels_ && format_ == ExportFormat::pandaset)
+      add("names of classes (their scheme is unknown: give --labels)");
+    if (clipped_ > 0) add(std::to_string(clipped_) + " intensities above the scale");
+    if (with_classes && format_ == ExportFormat::nuscenes)
       add(labels_ ? "classes of the scans between samples, their own numbers and instances"
                   : "classes (their scheme is unknown: give --labels)");
-    if (format_ == ExportFormat::nuscenes && !has_rings_)
+    if (has_rings(format_) && !has_rings_)
       session_.progress.warn(job_.output.string() +
                              ": the sensor is not recognised; the ring of all points of its scans "
                              "is 0");
@@ -484,7 +532,8 @@ class ScanExport {
   std::optional<LabelScheme> labels_;
   std::optional<bool> has_classes_;
   bool has_rings_ = true;
-  bool has_times_ = true;  ///< of the points of all scans
+  bool has_times_ = true;    ///< of the points of all scans
+  std::size_t clipped_ = 0;  ///< intensities that become 255
   ExportResult result_{0, "scans"};
 };
 
@@ -510,13 +559,12 @@ ExportResult write_export(const ExportJob& job, Session& session) {
                     ", which stores classes and intensities; it is for gaussian-3d, "
                     "gaussian-2d and glb");
   }
-  const bool states_scheme =
-      format == ExportFormat::semantickitti || format == ExportFormat::nuscenes;
+  const bool states_scheme = is_folder(format) && has_classes(format);
   if (!job.labels.empty() && !has_colors(format) && !states_scheme) {
-    throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
-                                      (format == ExportFormat::kitti_raw
-                                           ? ", which has no classes"
-                                           : ", which holds the numbers of classes as they are"));
+    throw Error(ErrorKind::usage,
+                "labels have no effect on " + std::string(name_of(format)) +
+                    (!has_classes(format) ? ", which has no classes"
+                                          : ", which holds the numbers of classes as they are"));
   }
   if (!job.cloud_option.empty() &&
       (kind == InputKind::model ||

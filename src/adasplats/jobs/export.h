@@ -29,7 +29,9 @@ enum class ExportFormat : std::uint8_t {
   mcap,
   semantickitti,
   kitti_raw,
-  nuscenes
+  nuscenes,
+  pandaset,
+  argoverse2
 };
 inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"gaussian-3d", ExportFormat::gaussian_3d},
@@ -44,7 +46,9 @@ inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"mcap", ExportFormat::mcap},
     {"semantickitti", ExportFormat::semantickitti},
     {"kitti-raw", ExportFormat::kitti_raw},
-    {"nuscenes", ExportFormat::nuscenes}};
+    {"nuscenes", ExportFormat::nuscenes},
+    {"pandaset", ExportFormat::pandaset},
+    {"argoverse2", ExportFormat::argoverse2}};
 /// What colours show.
 enum class ExportColor : std::uint8_t { semantic, intensity, height, rgb };
 inline constexpr std::pair<std::string_view, ExportColor> kExportColors[] = {

@@ -33,6 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLasersOfUnit = 32;
+constexpr std::size_t kMaxLasersOfOne = 256;            ///< of a log of one LiDAR
 constexpr const char* kUnitModel = "velodyne-vlp-32c";  // both LiDARs
 
 /// The beam of each laser number, topmost 0 in the frame of its LiDAR: points of a laser lie on
@@ -63,8 +64,19 @@ struct Av2Sweep {
   std::vector<std::size_t> lasers;
 };
 
-/// `unit`: that LiDAR alone.
-Av2Sweep read_av2_sweep(const fs::path& file, std::optional<std::size_t> unit) {
+/// The LiDARs of a log, and which of them is read; nothing: both.
+struct Av2Units {
+  std::array<RigidTransform, 2> vehicle_from_unit;
+  std::optional<std::size_t> chosen;
+  bool is_one = false;  ///< of any model, whose lasers are its rings: both have the same mount
+
+  /// Mount of the frame of scans.
+  RigidTransform mount() const {
+    return chosen || is_one ? vehicle_from_unit[chosen.value_or(0)] : RigidTransform{};
+  }
+};
+
+Av2Sweep read_av2_sweep(const fs::path& file, const Av2Units& units) {
   const ArrowTable table = read_arrow_file(file);
   const Column& x = av2_column(file, table, "x");
   const Column& y = av2_column(file, table, "y");
@@ -72,18 +84,19 @@ Av2Sweep read_av2_sweep(const fs::path& file, std::optional<std::size_t> unit) {
   const Column& intensity = av2_column(file, table, "intensity");
   const Column& laser = av2_column(file, table, "laser_number");
   const Column& offset_ns = av2_column(file, table, "offset_ns");
-  constexpr double kMaxOffset_s = 1;
+  const std::size_t lasers = units.is_one ? kMaxLasersOfOne : 2 * kLasersOfUnit;
   Av2Sweep sweep;
   for (std::size_t row = 0; row < table.numbers.rows; ++row) {
     const double number = laser.as_double(row);
     const double offset_s = kNanosecond_s * offset_ns.as_double(row);
     const std::string where = " of point " + std::to_string(row) + " (from 0) is ";
-    if (!(number >= 0 && number < 2 * kLasersOfUnit) || number != std::trunc(number))
-      throw av2_fault(file, "laser_number" + where + exact_text(number) + ", expected 0 to 63");
-    if (!(std::fabs(offset_s) <= kMaxOffset_s))
+    if (!(number >= 0 && number < static_cast<double>(lasers)) || number != std::trunc(number))
+      throw av2_fault(file, "laser_number" + where + exact_text(number) + ", expected 0 to " +
+                                std::to_string(lasers - 1));
+    if (!(std::fabs(offset_s) <= kAv2MaxOffset_s))
       throw av2_fault(file, "offset_ns" + where + exact_text(offset_ns.as_double(row)) +
                                 ", expected at most a second (1e9)");
-    if (unit && static_cast<std::size_t>(number) / kLasersOfUnit != *unit) continue;
+    if (units.chosen && static_cast<std::size_t>(number) / kLasersOfUnit != *units.chosen) continue;
     sweep.points.positions.push_back({x.as_double(row), y.as_double(row), z.as_double(row)});
     sweep.points.intensities.push_back(static_cast<float>(intensity.as_double(row)));
     sweep.points.times.push_back(offset_s);
@@ -94,20 +107,11 @@ Av2Sweep read_av2_sweep(const fs::path& file, std::optional<std::size_t> unit) {
 
 class Av2Points final : public ScanSource {
  public:
-  explicit Av2Points(std::optional<std::size_t> unit) : unit_(unit) {}
-  FileScan read(const fs::path& file) const override { return read_av2_sweep(file, unit_).points; }
+  explicit Av2Points(const Av2Units& units) : units_(units) {}
+  FileScan read(const fs::path& file) const override { return read_av2_sweep(file, units_).points; }
 
  private:
-  std::optional<std::size_t> unit_;
-};
-
-/// The LiDARs of a log, and which of them is read; nothing: both.
-struct Av2Units {
-  std::array<RigidTransform, 2> vehicle_from_unit;
-  std::optional<std::size_t> chosen;
-
-  /// Mount of the frame of scans.
-  RigidTransform mount() const { return chosen ? vehicle_from_unit[*chosen] : RigidTransform{}; }
+  Av2Units units_;
 };
 
 /// Reads sweeps, with the beams of their points.
@@ -121,7 +125,7 @@ class Av2Reader final : public ScanReader {
   }
 
   KittiScan read(const fs::path& file) const override {
-    Av2Sweep sweep = read_av2_sweep(file, units_.chosen);
+    Av2Sweep sweep = read_av2_sweep(file, units_);
     const TimedPose& pose = poses_.at(file);
     const RigidTransform scan_from_vehicle = units_.mount().inverse();
     KittiScan scan;
@@ -143,7 +147,7 @@ class Av2Reader final : public ScanReader {
   std::vector<double> residuals_rad(const fs::path& file) const {
     constexpr std::size_t kEvery = 17;
     constexpr double kNear_m = 8;  // coordinates of 16 bits are too coarse for near points
-    const Av2Sweep sweep = read_av2_sweep(file, units_.chosen);
+    const Av2Sweep sweep = read_av2_sweep(file, units_);
     const TimedPose& pose = poses_.at(file);
     std::vector<double> angles_rad;
     for (std::size_t i = 0; i < sweep.lasers.size(); i += kEvery) {
@@ -163,16 +167,18 @@ class Av2Reader final : public ScanReader {
   struct AtFiring {
     RigidTransform vehicle_from_unit;  ///< vehicle at the stamp of the sweep
     Vec3d point, origin;
-    std::uint16_t beam, ring;
+    std::uint16_t beam = 0, ring = 0;
   };
 
   AtFiring at_firing(const TimedPose& pose, double time_s, Vec3d point, std::size_t laser) const {
-    const std::size_t unit = laser / kLasersOfUnit;
-    const std::uint16_t beam = kBeamOfLaser[laser % kLasersOfUnit];
+    const std::size_t unit = units_.is_one ? 0 : laser / kLasersOfUnit;
     AtFiring at;
     at.vehicle_from_unit = pose.world_from_sensor.inverse() * interpolate(track_, time_s) *
                            units_.vehicle_from_unit[unit];
     at.point = at.vehicle_from_unit.inverse() * point;
+    at.ring = static_cast<std::uint16_t>(laser);
+    if (units_.is_one) return at;
+    const std::uint16_t beam = kBeamOfLaser[laser % kLasersOfUnit];
     if (is_finite(point)) at.origin = cones_.origin_of(beam, at.point);
     at.beam = beam;
     // down_lidar is mounted upside down: its topmost beam points down.
@@ -238,10 +244,26 @@ double require_beams(const DriveInput& drive, const Av2Reader& reader,
   throw Error(ErrorKind::data, drive.folder.string() + text.data());
 }
 
+/// What is recognised of the two LiDARs: require_beams().
+std::string recognised_units(const DriveInput& drive, const Av2Reader& reader,
+                             const std::vector<fs::path>& files, const Av2Units& units) {
+  const double median_rad = require_beams(drive, reader, files);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "%s%s%s; points %.3f deg from the cones of their beams, each at its own time)",
+                units.chosen ? drive.topic.c_str() : "up_lidar and down_lidar",
+                units.chosen ? " (" : " (two ", kUnitModel, median_rad / kDegree);
+  return text.data();
+}
+
 Av2Units units_of_log(const DriveInput& drive) {
   Av2Units units{read_av2_mounts(drive.folder), {}};
   const auto* const chosen = std::ranges::find(kAv2Sensors, drive.topic);
-  if (chosen != kAv2Sensors.end())
+  const auto& [up, down] = units.vehicle_from_unit;
+  constexpr double kSame = 1e-6;  // m, rad
+  units.is_one = length(up.translation - down.translation) < kSame &&
+                 angle_between(up.rotation, down.rotation) < kSame;
+  if (!units.is_one && chosen != kAv2Sensors.end())
     units.chosen = static_cast<std::size_t>(chosen - kAv2Sensors.begin());
   return units;
 }
@@ -277,18 +299,14 @@ KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
     pose_of_file.emplace(file, pose);
   }
   sequence.trajectory = mounted(std::move(sequence.trajectory), units.mount());
-  const IntensityScale scale = scale_of_scans(Av2Points(units.chosen), sequence.scans);
+  const IntensityScale scale = scale_of_scans(Av2Points(units), sequence.scans);
   const auto reader =
       std::make_shared<Av2Reader>(poses.track, std::move(pose_of_file), units, scale);
-  const double median_rad = require_beams(drive, *reader, sequence.scans);
   sequence.reader = reader;
+  sequence.beams.recognised = units.is_one
+                                  ? "one LiDAR, up_lidar (beams start at its origin)"
+                                  : recognised_units(drive, *reader, sequence.scans, units);
   add_boxes(drive, {}, sequence, executor, progress);
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "%s%s%s; points %.3f deg from the cones of their beams, each at its own time)",
-                units.chosen ? drive.topic.c_str() : "up_lidar and down_lidar",
-                units.chosen ? " (" : " (two ", kUnitModel, median_rad / kDegree);
-  sequence.beams.recognised = text.data();
   sequence.facts.points_in = "vehicle's frame (as Argoverse 2 has them)";
   sequence.facts.poses = "of city_SE3_egovehicle at the stamps of the sweeps";
   sequence.facts.motion = "already compensated in the points (frame of the stamp of the sweep)";

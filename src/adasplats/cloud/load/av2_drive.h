@@ -23,10 +23,11 @@ bool is_av2_log(const std::filesystem::path& folder);
 /// calibration/egovehicle_SE3_sensor.feather) was at the point's own time (offset_ns). Times: s in
 /// the clock of the stamps. Scans are the points of both LiDARs in the vehicle frame, with lasers
 /// 0-31 of up_lidar and 32-63 of down_lidar, each topmost first; or with a `topic` (kAv2Sensors)
-/// those of one LiDAR in its own frame, with lasers 0-31.
-/// Errors: usage (`mount` and `time_offset`, which the log defines), no_input and data with the
-/// file (missing files or columns, sweeps without a pose, invalid rotations or laser numbers,
-/// points that are not on the beams of their lasers).
+/// those of one LiDAR in its own frame, with lasers 0-31. If both have the same mount, the log is
+/// of one LiDAR of any model: scans are in its frame, laser_number (0 to 255) is the laser, and
+/// beams start at its origin. Errors: usage (`mount` and `time_offset`, which the log defines),
+/// no_input and data with the file (missing files or columns, sweeps without a pose, invalid
+/// rotations or laser numbers, points that are not on the beams of their lasers).
 KittiSequence open_av2_drive(const DriveInput& drive, const Executor& executor,
                              ProgressSink& progress);
 

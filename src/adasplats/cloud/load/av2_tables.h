@@ -17,6 +17,7 @@
 namespace adasplats {
 
 inline constexpr double kNanosecond_s = 1e-9;
+inline constexpr double kAv2MaxOffset_s = 1;  ///< of a point from the stamp of its sweep
 
 Error av2_fault(const std::filesystem::path& file, const std::string& what);
 

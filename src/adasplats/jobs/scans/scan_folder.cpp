@@ -39,8 +39,8 @@ ParallelWriteOptions recorder_options(ParallelWriteOptions options, const Sessio
   return options;
 }
 
-/// The number at the beginning of a file's name, which is that of its scan; nothing for other
-/// files.
+/// The number at the beginning of a file's name, which is that of its scan or its time; nothing for
+/// other files.
 std::optional<std::size_t> scan_of_file(const std::string& name) {
   const std::string file = fs::path(name).filename().string();
   return parse_number<std::size_t>(file.substr(0, file.find_first_not_of("0123456789")));
@@ -114,7 +114,8 @@ std::size_t keep_written_scans(ScanWriter& writer, const ResumableFolder& folder
     // The files of a scan are recorded together, the main one last: if it is there, all are.
     const std::string main_file = writer.main_file(sensor.number(i));
     if (main_file.empty() || !folder.recorded().contains(main_file)) return i;
-    if (!folder.has(files[i])) return i;
+    const std::size_t number = *scan_of_file(main_file);
+    if (!folder.has(files[number]) || (number != i && !folder.has(files[i]))) return i;
     writer.keep(sensor.number(i), scans[i].reference);
   }
   return scans.size();

@@ -21,6 +21,7 @@
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/rig_writer.h"
+#include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/folder_task.h"
 #include "adasplats/jobs/output/output_folder.h"
@@ -117,7 +118,8 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
   writing.driver = job.driver;
   // As save_cloud_las(): larger ones than 1 keep their numbers.
   constexpr double kMaxOfLas = 65535;
-  writing.full_intensity = scale > 1 ? kMaxOfLas : 1;
+  const bool has_bytes = job.format == ScanFormat::argoverse2;
+  writing.full_intensity = has_bytes || scale == 1 ? scale : kMaxOfLas;
   return writing;
 }
 
@@ -224,9 +226,11 @@ ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolde
     if (!scans.empty())
       warn_of_world_clock(*scene.world(), scans.front().reference.time_s,
                           scans.back().reference.time_s, session.progress);
-    parallel.more_files = [&](std::size_t number, const ScanView& scan) {
-      return numbered_boxes(scene, plan, number, scan);
-    };
+    // PandaSet's devkit mistakes any folder for a sequence; the cuboids are the same boxes.
+    if (plan.job.format != ScanFormat::pandaset)
+      parallel.more_files = [&](std::size_t number, const ScanView& scan) {
+        return numbered_boxes(scene, plan, number, scan);
+      };
   }
   parallel.written = [&journal](std::size_t, std::size_t points,
                                 std::span<const FileDigest> files) { journal.note(points, files); };

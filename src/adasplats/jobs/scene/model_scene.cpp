@@ -8,6 +8,7 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
+#include "adasplats/dataset/scan_values.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/simulate/image/point_colors.h"
 
@@ -30,10 +31,7 @@ WorldFile read_scene_file(const std::filesystem::path& file, WorldFiles world_fi
 }  // namespace
 
 double scale_of_intensities(const ScanScene& scene) {
-  const auto highest = static_cast<double>(scene.highest_intensity());
-  for (const double scale : {1.0, 255.0})
-    if (highest <= scale) return scale;
-  return 65535.0;
+  return intensity_scale_for(double{scene.highest_intensity()});
 }
 
 ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
