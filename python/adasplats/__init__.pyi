@@ -282,6 +282,7 @@ def export(
         "gaussian-3d",
         "gaussian-2d",
         "3d-tiles",
+        "usd",
         "glb",
         "ply",
         "las",

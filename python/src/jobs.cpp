@@ -40,7 +40,7 @@ constexpr const char* kExportDoc =
     R"(Write a splat model, points or the scans of a sequence for other programs.
 
 input: a splat model, a point file, a sequence folder or the output of simulate. format:
-'gaussian-3d', 'gaussian-2d', 'glb', 'ply', 'las', 'laz', 'pcd', 'csv' or 'mcap'; None: by the
+'gaussian-3d', 'gaussian-2d', 'glb', 'usd', 'ply', 'las', 'laz', 'pcd', 'csv' or 'mcap'; None: by the
 extension of output; '3d-tiles', 'semantickitti', 'kitti-raw', 'nuscenes', 'pandaset' and 'argoverse2' create a
 folder. color: 'class', 'intensity' or 'height'; None: the first of these that the input has. The
 other keywords are those of read(). Returns a dict with the number of elements written,

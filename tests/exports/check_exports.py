@@ -10,6 +10,7 @@ import ast
 import csv
 import json
 import math
+import math
 import shutil
 import signal
 import struct
@@ -205,6 +206,29 @@ class Exports(ProgramTest):
         broken[positions:positions + 2400] = b"\xff" * 2400
         (self.folder / "broken.glb").write_bytes(broken)
         self.node_refuses("read_glb.mjs", self.folder / "broken.glb")
+
+    def test_usd(self):
+        model = self.model()
+        self.run_good("export", model, "-o", self.folder / "model.usda")
+        self.run_good("export", model, "-o", self.folder / "gaussians.ply", "--format",
+                      "gaussian-3d")
+        splats, classes = read_ply(self.folder / "gaussians.ply"), read_ply(model)["class"]
+        names = {ROAD: "road", BUILDING: "building", POLE: "pole"}
+        expected = {}
+        for i, class_id in enumerate(classes):
+            of = expected.setdefault(names[class_id], {
+                "positions": [], "orientations": [], "scales": [], "opacities": [],
+                "radiance:sphericalHarmonicsCoefficients": []})
+            of["positions"] += [splats[axis][i] for axis in "xyz"]
+            of["orientations"] += [splats[f"rot_{k}"][i] for k in range(4)]
+            of["scales"] += [math.exp(splats[f"scale_{k}"][i]) for k in range(3)]
+            of["opacities"].append(1 / (1 + math.exp(-splats["opacity"][i])))
+            of["radiance:sphericalHarmonicsCoefficients"] += [splats[f"f_dc_{k}"][i]
+                                                              for k in range(3)]
+        file = self.folder / "model.usda"
+        self.node("read_usd.mjs", file, self.write_json("splats.json", expected))
+        expected["road"]["positions"][5] += 0.01
+        self.node_refuses("read_usd.mjs", file, self.write_json("other.json", expected))
 
     def test_live(self):
         self.write_turning_poses()

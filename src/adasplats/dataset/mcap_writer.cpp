@@ -49,9 +49,9 @@ std::vector<McapMessage> McapWriter::messages(const ScanView& scan) const {
 
 void McapWriter::append(std::span<const McapMessage> messages) {
   if (fixed_ && !messages.empty()) {
-    constexpr double kNanosecond_s = 1e-9;
+    constexpr double kMessageUnit_s = 1e-9;
     const std::uint64_t time_ns = messages.front().time_ns;
-    const RosTransform mount = {{kNanosecond_s * static_cast<double>(time_ns),
+    const RosTransform mount = {{kMessageUnit_s * static_cast<double>(time_ns),
                                  vehicle_from_sensor_ * clouds_.sensor_from_points()},
                                 kRosVehicleFrame,
                                 topic_.frame};

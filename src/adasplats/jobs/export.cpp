@@ -32,6 +32,7 @@
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_glb.h"
 #include "adasplats/splats/model/gaussian_ply.h"
+#include "adasplats/splats/model/gaussian_usd.h"
 #include "adasplats/splats/model/mesh_model.h"
 #include "adasplats/splats/model/splat_model.h"
 
@@ -51,7 +52,7 @@ struct KindFormats {
 KindFormats formats_of(InputKind kind) {
   using enum ExportFormat;
   switch (kind) {
-    case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb, tiles_3d}};
+    case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb, usd, tiles_3d}};
     case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz, pcd, csv}};
     case InputKind::drive:
       return {"a sequence of scans",
@@ -95,6 +96,7 @@ bool has_instances(ExportFormat format) {
 std::string_view ending_of(ExportFormat format) {
   if (is_folder(format)) return {};
   const bool gaussian = format == ExportFormat::gaussian_3d || format == ExportFormat::gaussian_2d;
+  if (format == ExportFormat::usd) return "usda";
   return gaussian ? "ply" : name_of(format);
 }
 
@@ -199,7 +201,9 @@ ExportResult export_model(const ExportJob& job, ExportFormat format, Session& se
   const std::optional<LabelScheme> labels = labels_of(job, model.label_scheme, session.progress);
   const std::vector<Rgb> colors =
       colors_of(centers_of(model), labels ? &*labels : nullptr, job.color);
-  if (format == ExportFormat::glb) {
+  if (format == ExportFormat::usd) {
+    write_gaussian_usd(job.output, model, colors, labels ? &*labels : nullptr);
+  } else if (format == ExportFormat::glb) {
     write_gaussian_glb(job.output, model, colors);
   } else {
     write_gaussian_ply(
