@@ -73,8 +73,8 @@ void LiveLoop::loop() {
       lock.lock();
     } else if (!running_ && steps_left_ == 0) {
       changed_.wait(lock);
-    } else if (running_ && !begins_ && Clock::now() < last_due_) {
-      changed_.wait_until(lock, last_due_);
+    } else if (running_ && !begins_ && Clock::now() < last_begin_) {
+      changed_.wait_until(lock, last_begin_);
     } else {
       lock.unlock();
       step();
@@ -97,12 +97,15 @@ void LiveLoop::step() {
     }
     const Clock::time_point now = Clock::now();
     if (running_) {
+      const auto duration = std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double>(step.duration_s));
       if (!begins_ && now > next_due_) ++late_steps_;
-      last_due_ = begins_ ? now : std::max(now, next_due_);
+      // The first one waits, so that a step that takes longer than usual is not late.
+      const Clock::time_point due = begins_ ? now + duration : std::max(now, next_due_);
       begins_ = false;
-      next_due_ = last_due_ + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(step.duration_s));
-      send(step, last_due_, 1);
+      last_begin_ = due - duration;
+      next_due_ = due + duration;
+      send(step, due, 1);
     } else {
       send(step, now, streams_.has_packets() ? 1 : 0);
       pacer_.drain();

@@ -20,9 +20,9 @@
 namespace adasplats {
 
 /// Steps a rig on a thread of its own: in real time, or a number of steps as fast as they can be
-/// made (with packets at most in real time, since receivers lose bursts). In real time, a step is
-/// simulated while the one before is being sent; if it takes longer than it lasts, the clock of the
-/// simulation falls behind and no step is skipped.
+/// made (with packets at most in real time, since receivers lose bursts). In real time, up to two
+/// steps are simulated ahead of what is being sent; if steps take longer than they last, the clock
+/// of the simulation falls behind and no step is skipped.
 class LiveLoop {
  public:
   /// What a user wants to do between two steps.
@@ -68,7 +68,8 @@ class LiveLoop {
   bool begins_ = true;  ///< real time: no step was made since set_running()
   std::size_t steps_left_ = 0;
   StepsDone steps_done_;
-  Clock::time_point last_due_, next_due_;  ///< begin of sending
+  Clock::time_point last_begin_;  ///< when the sending of the step before the last one begins
+  Clock::time_point next_due_;    ///< when that of the next one begins
   std::uint64_t late_steps_ = 0;
   std::string error_;
   mutable std::mutex mutex_;  ///< for the members below
