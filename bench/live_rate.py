@@ -60,6 +60,8 @@ def measure(arguments, sensor, rate):
     with subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, encoding="utf-8") as server:
         url = server.stdout.readline().strip()
+        if not url:
+            raise RuntimeError(f"no server: {command}")
         receiver.start()
         begin = ask(url, "run", {"on": True})
         started = time.monotonic()

@@ -21,13 +21,11 @@ def ask(path, body=None, method=None):
         return answer.read()
 
 
-def ahead(pose, distance_m):  # a pose that much farther along its x axis
-    x, y, z, qx, qy, qz, qw = pose
-    return [x + distance_m * (1 - 2 * (qy**2 + qz**2)), y + distance_m * 2 * (qx * qy + qw * qz), z, qx, qy, qz, qw]
-
-
-begin = json.loads(ask("state"))["ego"]
-obstacle = json.loads(ask("objects", {"like": like, "pose": ahead(begin, 40)}))["id"]
+state = json.loads(ask("state"))
+x, y, _, qx, qy, qz, qw = state["ego"]
+z = next(one["pose"][2] for one in state["objects"] if one["name"] == like)
+ahead = [x + 40 * (1 - 2 * (qy**2 + qz**2)), y + 40 * 2 * (qx * qy + qw * qz), z, qx, qy, qz, qw]
+obstacle = json.loads(ask("objects", {"like": like, "pose": ahead}))["id"]
 speed = 12.0
 for _ in range(60):
     state = json.loads(ask("state"))

@@ -255,9 +255,9 @@ class Export(ProgramTest):
         model = self.model()
         bad = lambda source, name, *words, says: self.run_bad(64, "export", source, "-o",
                                                               self.folder / name, *words, says=says)
-        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d, glb or 3d-tiles",
+        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d, glb, usd or 3d-tiles",
                                       "give the format"])
-        bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d, glb or 3d-tiles"])
+        bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d, glb, usd or 3d-tiles"])
         bad(self.cloud, "out", says=["a name without an ending is none of them"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])
         bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las, laz, pcd or csv"])
@@ -281,8 +281,9 @@ class Export(ProgramTest):
             root = json.loads((tiles / "tileset.json").read_text())["root"]
             self.assertEqual(root["refine"], "REPLACE")
             self.assertIn("not georeferenced: the model has no coordinate system", report["place"])
-            again = self.folder / "again"  # a name without an ending
-            self.run_good("export", source, "-o", again, "--threads", "3")
+            again = self.folder / "again"
+            self.run_bad(64, "export", source, "-o", again, says=["without an ending"])
+            self.run_good("export", source, "-o", again, "--format", "3d-tiles", "--threads", "3")
             self.assertEqual(tree_digest(tiles), tree_digest(again))
             shutil.rmtree(again)
         splats = sum(tile["splats"] for tile in json.loads((city / "city.json").read_text())["tiles"])

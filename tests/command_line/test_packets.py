@@ -238,6 +238,8 @@ class Packets(ProgramTest):
         self.run_bad(64, *simulate, "velodyne-vlp-16", "--returns", "2", says=["--returns 1"])
         self.run_bad(64, *simulate, "velodyne-vlp-16", "--max-range", "200", says=["131.07"])
         self.run_bad(64, *simulate, "ouster-os1-64", "--rotation-rate", "9", says=["1024x10"])
+        self.run_bad(64, *simulate, "velodyne-vlp-16", "--rotation-rate", "0.001",
+                     says=["fires at fixed times"])
         self.write_poses([BEGIN_S + 0.05 * k for k in range(3)])
         self.run_bad(65, *simulate, "velodyne-vlp-16", says=["before the last one ended"])
         self.assertFalse((self.folder / "no").exists())

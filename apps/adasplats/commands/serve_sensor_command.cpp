@@ -56,8 +56,8 @@ class ServeSensorCommand final : public Command {
         ->type_name("HOST[:PORT]")
         ->basic();
     add_choice<CloudDriver>(app, "--driver", job_.driver, choices_of<CloudDriver>(kCloudDrivers),
-                            "Messages of this ROS 2 driver (fields, order, axes) instead of ours, "
-                            "which also have classes and instances");
+                            "Send point clouds in the layout of this ROS 2 driver; 'adasplats' "
+                            "also has classes and instances");
     add_switch(app, "--paused", job_.is_paused, "Wait for requests to run or step")->basic();
     app.add_option("--port", job_.port, "Port of the server; 0: any free one")
         ->capture_default_str()

@@ -174,13 +174,26 @@ SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std:
   return part;
 }
 
+void SameAttributes::check(const fs::path& folder, const CityTile& tile, const SplatModel& part) {
+  if (part.size() == 0) return;
+  const std::array has = {part.classes.empty(), part.groups.empty(), part.intensities.empty(),
+                          part.colors.empty()};
+  if (has_.value_or(has) != has)
+    throw Error(ErrorKind::data, (folder / model_file_of(tile.key)).string() +
+                                     ": has other attributes (classes, groups, intensities, "
+                                     "colours) than the tiles before it");
+  has_ = has;
+}
+
 SplatModel load_city(const fs::path& folder) {
+  SameAttributes attributes;
   const CityManifest city = load_city_manifest(folder);
   SplatModel all = load_model(folder / kCityCommonFile);
   all.origin = city.origin;
   for (std::size_t k = 0; k < city.tiles.size(); ++k) {
     if (city.tiles[k].splats == 0) continue;
     const SplatModel part = load_city_tile(folder, city, k);
+    attributes.check(folder, city.tiles[k], part);
     append_to(all.disks, part.disks);
     append_to(all.classes, part.classes);
     append_to(all.groups, part.groups);

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,17 @@ TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>&
 /// (their number or box contradicts the manifest), those of load_model.
 SplatModel load_city_tile(const std::filesystem::path& folder, const CityManifest& city,
                           std::size_t k);
+
+/// Whether the tiles of a city have the same attributes, which programs that change a tile may
+/// lose.
+class SameAttributes {
+ public:
+  /// Throws data if a tile has other attributes than the ones before.
+  void check(const std::filesystem::path& folder, const CityTile& tile, const SplatModel& part);
+
+ private:
+  std::optional<std::array<bool, 4>> has_;
+};
 
 /// The city as one model, tile by tile. Errors: data (a number of splats contradicts the manifest),
 /// those of load_model.

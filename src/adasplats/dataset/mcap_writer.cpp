@@ -22,7 +22,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const McapOptions& opt
       topic_(topic_of(options.driver)),
       clouds_(options.driver, options.sensor),
       vehicle_from_sensor_(options.mount),
-      has_vehicle_(!is_identity(options.mount * clouds_.sensor_from_points())),
+      has_vehicle_(options.driver != CloudDriver::adasplats || !is_identity(options.mount)),
       transforms_(file_.add_channel(ros_channel("/tf", kTransformsType, transforms_definition()))),
       points_(file_.add_channel(
           ros_channel(std::string(topic_.topic), kPointCloud2Type, point_cloud2_definition()))) {

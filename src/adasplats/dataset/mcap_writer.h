@@ -26,7 +26,7 @@ struct McapOptions {
 /// Writes scans to one MCAP file for Foxglove and the tools of ROS 2: on /points, a
 /// sensor_msgs/msg/PointCloud2 per scan in the frame "lidar" (fields: see point_cloud2_message), or
 /// those of a driver (DriverClouds, topic_of()); on /tf, a tf2_msgs/msg/TFMessage with the poses of
-/// that frame in "map", the world (ros_poses_of()). If the frame is not that of the vehicle, /tf
+/// that frame in "map", the world (ros_poses_of()). With a mount or the clouds of a driver, /tf
 /// has "base_link" in "map", and /tf_static the frame in "base_link". The metadata record
 /// kMcapMetadataName names the scheme of classes. Atomic; memory: three times the largest scan.
 class McapWriter {

@@ -42,7 +42,7 @@ std::vector<UdpEndpoint> rig_senders(const std::vector<RigWriterSensor>& sensors
 /// The topic of the clouds of a sensor: its name, and the last part of topic_of().
 std::string rig_topic(const std::string& sensor, CloudDriver driver);
 
-/// Throws usage for nuscenes, whose writer and reader have one LiDAR.
+/// Throws usage for nuscenes and argoverse2, whose writers and readers have one LiDAR.
 void require_rig_format(ScanFormat format);
 
 /// A writer of scans with rig_scan_number(). All formats write poses.csv, those of the vehicle.

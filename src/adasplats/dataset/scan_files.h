@@ -47,8 +47,8 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"argoverse2", ScanFormat::argoverse2},
     {"pcap", ScanFormat::pcap}};
 
-/// Whose clouds the messages of mcap are: ours, with all attributes, or those of the driver of a
-/// sensor (driver_cloud.h).
+/// Layout of the point clouds in MCAP: ours, with all attributes, or that of the driver of a sensor
+/// (driver_cloud.h).
 enum class CloudDriver : std::uint8_t { adasplats, velodyne, ouster, hesai, nebula };
 inline constexpr std::pair<std::string_view, CloudDriver> kCloudDrivers[] = {
     {"adasplats", CloudDriver::adasplats},

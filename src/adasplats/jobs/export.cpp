@@ -140,8 +140,9 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
   std::string ending = lower_case(job.output.extension().string());
   if (!ending.empty()) ending.erase(0, 1);
   std::vector<ExportFormat> meant;
-  std::ranges::copy_if(possible, std::back_inserter(meant),
-                       [&ending](ExportFormat format) { return ending_of(format) == ending; });
+  std::ranges::copy_if(possible, std::back_inserter(meant), [&ending](ExportFormat format) {
+    return !is_folder(format) && ending_of(format) == ending;
+  });
   if (meant.size() == 1) return meant.front();
   const std::string of_ending =
       ending.empty() ? "a name without an ending" : "the ending ." + ending;
@@ -255,7 +256,12 @@ class TilesetExport {
     labels_ = labels_of(job_, common_.label_scheme, session_.progress);
     const std::size_t every = city_ ? 1 + city_->splats() / kMaxSurveyed : 1;
     PointCloud survey;
-    for (std::size_t k = 0; k < tiles_.size(); ++k) append(survey, centers_of(model_of(k), every));
+    SameAttributes attributes;
+    for (std::size_t k = 0; k < tiles_.size(); ++k) {
+      const SplatModel model = model_of(k);
+      if (city_) attributes.check(job_.input, city_->tiles[tiles_[k]], model);
+      append(survey, centers_of(model, every));
+    }
     color_ = shown_color(survey, job_.color)
                  .value_or(default_color(survey, labels_ ? &*labels_ : nullptr));
     range_ = shown_range(survey, color_);
@@ -435,8 +441,9 @@ class ScanExport {
   /// The laser of each point, topmost 0; empty if one is unknown.
   std::vector<std::uint16_t> rings_of(const KittiScan& scan, std::size_t index) {
     std::vector<std::uint16_t> rings;
-    for (std::size_t i = 0; i < scan.positions.size(); ++i)
-      rings.push_back(beam_of(sequence_, index, scan, i).laser);
+    for (std::size_t i = 0; i < scan.positions.size(); ++i)  // beams without a return are left out
+      rings.push_back(is_finite(scan.positions[i]) ? beam_of(sequence_, index, scan, i).laser
+                                                   : std::uint16_t{0});
     if (std::ranges::find(rings, kNoLaser) != rings.end()) {
       has_rings_ = false;
       rings.clear();
@@ -465,7 +472,7 @@ class ScanExport {
       if (format_ == ExportFormat::argoverse2)
         clipped_ += static_cast<std::size_t>(std::ranges::count_if(
             scan.intensities, [&](float value) { return value > options.full_intensity; }));
-      require_classes(k, scan);
+      if (has_classes(format_)) require_classes(k, scan);
       writer->write(k, scan);
     });
     writer->finish();
@@ -560,8 +567,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
   if (job.color && !has_colors(format)) {
     throw Error(ErrorKind::usage,
                 "color has no effect on " + std::string(name_of(format)) +
-                    ", which stores classes and intensities; it is for gaussian-3d, "
-                    "gaussian-2d and glb");
+                    "; it is for gaussian-3d, gaussian-2d, 3d-tiles, usd and glb");
   }
   const bool states_scheme = is_folder(format) && has_classes(format);
   if (!job.labels.empty() && !has_colors(format) && !states_scheme) {

@@ -22,6 +22,7 @@ namespace {
 
 using ApiJson = nlohmann::ordered_json;
 
+constexpr int kBadRequest = 400, kNotFound = 404, kConflict = 409, kInternal = 500, kTooMany = 503;
 constexpr double kMaxSteps = 1e6;
 constexpr double kMaxTurn_rad_s = 100;
 
@@ -41,7 +42,6 @@ HttpReply error_reply(std::string_view what, int status) {
 /// Calls `call` and answers with what it returns, or its error.
 template <class Call>
 void answer_with(const HttpAnswer& answer, const Call& call) {
-  constexpr int kBadRequest = 400, kNotFound = 404, kInternal = 500;
   try {
     answer(call());
   } catch (const Error& error) {
@@ -113,7 +113,6 @@ void LiveApi::handle(const HttpRequest& request, const HttpAnswer& answer) {
 
 template <class Call>
 void LiveApi::on_loop(const HttpAnswer& answer, Call call) {
-  constexpr int kTooMany = 503;
   const bool waits = loop_.post([answer, call = std::move(call)] { answer_with(answer, call); });
   if (!waits) answer(error_reply("too many requests are waiting", kTooMany));
 }
@@ -121,7 +120,7 @@ void LiveApi::on_loop(const HttpAnswer& answer, Call call) {
 void LiveApi::change(const HttpAnswer& answer, std::function<void()> change) {
   on_loop(answer, [this, change = std::move(change)] {
     change();
-    return json_reply(state());
+    return json_reply(brief_state());
   });
 }
 
@@ -132,7 +131,7 @@ void LiveApi::handle_read(const std::string& path, const HttpAnswer& answer) {
   if (path.empty()) return answer(reply_of(std::string(live_page()), "text/html; charset=utf-8"));
   if (path == "page.js")
     return answer(reply_of(std::string(live_script()), "text/javascript; charset=utf-8"));
-  if (path == "state") return change(answer, [] {});
+  if (path == "state") return on_loop(answer, [this] { return json_reply(state()); });
   if (folder == "images") return send_picture(rest, answer);
   if (folder == "scans") return answer(scan(rest));
   if (folder == "calibration") return answer(calibration(rest));
@@ -156,7 +155,14 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
     const ApiJson json = body_of(request);
     require_members(json, {"on"});
     const bool on = message_bool(message_member(json, "on"), "on");
-    return change(answer, [this, on] { loop_.set_running(on); });
+    return on_loop(answer, [this, on] {
+      try {
+        loop_.set_running(on);
+      } catch (const Error& error) {
+        return error_reply(error.what(), kConflict);
+      }
+      return json_reply(brief_state());
+    });
   }
   if (path == "ego") {
     const ApiJson json = body_of(request);
@@ -188,16 +194,13 @@ void LiveApi::post_step(const HttpRequest& request, const HttpAnswer& answer) {
   const auto begin = [this, answer, steps = static_cast<std::size_t>(count)] {
     try {
       loop_.make_steps(steps, [this, answer](const std::string& error) {
-        answer_with(answer, [&] {
-          if (!error.empty()) throw Error(ErrorKind::data, error);
-          return json_reply(state());
-        });
+        answer(error.empty() ? json_reply(state()) : error_reply(error, kInternal));
       });
     } catch (const Error& error) {
-      answer(error_reply(error.what(), 409));
+      answer(error_reply(error.what(), kConflict));
     }
   };
-  if (!loop_.post(begin)) answer(error_reply("too many requests are waiting", 503));
+  if (!loop_.post(begin)) answer(error_reply("too many requests are waiting", kTooMany));
 }
 
 void LiveApi::send_picture(const std::string& name, const HttpAnswer& answer) {
@@ -244,6 +247,14 @@ HttpReply LiveApi::calibration(const std::string& name) const {
                   "text/plain; charset=utf-8");
 }
 
+std::string LiveApi::brief_state() const {
+  return ApiJson{{"time_s", rig_.time_s()},
+                 {"steps", rig_.steps()},
+                 {"running", loop_.is_running()},
+                 {"ego", message_numbers(rig_.vehicle())}}
+      .dump();
+}
+
 std::string LiveApi::state() const {
   constexpr double kMilliseconds = 1e3;
   ApiJson json = {{"time_s", rig_.time_s()},
@@ -257,7 +268,9 @@ std::string LiveApi::state() const {
     ApiJson one = {{"name", sensor.name},
                    {"model", sensor.settings.sensor.name},
                    {"rotation_hz", sensor.settings.sensor.rotation_hz},
-                   {"mount", message_numbers(sensor.mount)}};
+                   {"mount", message_numbers(sensor.mount)},
+                   {"topic", streams_.topic(k)},
+                   {"vehicle_from_points", message_numbers(streams_.vehicle_from_points(k))}};
     if (streams_.has_packets()) one["port"] = streams_.port(k);
     json["sensors"].push_back(std::move(one));
   }

@@ -25,6 +25,8 @@ class LiveApi {
   void handle(const HttpRequest& request, const HttpAnswer& answer);
   /// What GET state answers. On the simulating thread, or after its end.
   std::string state() const;
+  /// What most writes answer.
+  std::string brief_state() const;
 
  private:
   void handle_read(const std::string& path, const HttpAnswer& answer);
@@ -34,7 +36,7 @@ class LiveApi {
   HttpReply scan(const std::string& file) const;
   HttpReply calibration(const std::string& name) const;
   std::size_t sensor_of(const std::string& name) const;
-  /// Answers with state(), after `change` on the simulating thread.
+  /// Answers with brief_state(), after `change` on the simulating thread.
   void change(const HttpAnswer& answer, std::function<void()> change);
   template <class Call>
   void on_loop(const HttpAnswer& answer, Call call);

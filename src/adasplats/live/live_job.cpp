@@ -72,6 +72,10 @@ std::optional<PacketTarget> packet_target(const LiveJob& job,
   if (port == 0)
     port = sensors.size() > 1 ? kFirstPort
                               : written_sensor(sensors.front().settings.sensor).facts.port;
+  constexpr std::size_t kLastPort = 65535;
+  if (port + sensors.size() - 1 > kLastPort)
+    throw Error(ErrorKind::usage, "there are not enough ports from " + std::to_string(port) +
+                                      " on for " + std::to_string(sensors.size()) + " sensors");
   for (std::size_t k = 0; k < sensors.size(); ++k) target.ports.push_back(port++);
   return target;
 }
@@ -88,6 +92,14 @@ HttpServerOptions server_options(const LiveJob& job) {
   return options;
 }
 
+struct StopLoop {
+  explicit StopLoop(LiveLoop& live_loop) : loop(live_loop) {}
+  ~StopLoop() { loop.stop(); }
+  StopLoop(const StopLoop&) = delete;
+  StopLoop& operator=(const StopLoop&) = delete;
+  LiveLoop& loop;
+};
+
 }  // namespace
 
 nlohmann::ordered_json run_live(const LiveJob& job, Session& session,
@@ -102,12 +114,14 @@ nlohmann::ordered_json run_live(const LiveJob& job, Session& session,
   LiveRig rig(scene, std::move(sensors.mounted), drive_of(placed, scene, session),
               session.executor);
   LiveStreams streams(rig, target, job.driver);
-  LiveLoop loop(rig, streams, !job.is_paused);
+  LiveLoop loop(rig, streams, false);
   LiveApi api(rig, streams, loop, std::move(sensors.cameras), session);
   HttpServer server(
       server_options(job),
       [&api](const HttpRequest& request, const HttpAnswer& answer) { api.handle(request, answer); },
       streams.messages());
+  const StopLoop stop(loop);  // before the others end
+  if (!job.is_paused) loop.post([&loop] { loop.set_running(true); });
   LiveAddress address{server, {}};
   for (std::size_t k = 0; k < rig.sensors().size(); ++k)
     address.sensors.push_back(

@@ -52,12 +52,15 @@ void LiveLoop::set_running(bool running) {
   if (running && steps_left_ > 0)
     throw Error(ErrorKind::usage, "steps are being made; wait for their end");
   if (running && !running_) begins_ = true;
+  if (running) error_.clear();
   running_ = running;
+  if (!running && steps_left_ > 0) end_steps("stopped by a request");
 }
 
 void LiveLoop::make_steps(std::size_t count, StepsDone done) {
   if (running_) throw Error(ErrorKind::usage, "the simulation runs; stop it first (run)");
   if (steps_left_ > 0) throw Error(ErrorKind::usage, "other steps are being made");
+  error_.clear();
   steps_left_ = count;
   steps_done_ = std::move(done);
 }
@@ -65,16 +68,20 @@ void LiveLoop::make_steps(std::size_t count, StepsDone done) {
 void LiveLoop::loop() {
   std::unique_lock lock(mutex_);
   while (!stops_) {
-    if (!commands_.empty()) {
+    // Those that come meanwhile wait for the next step.
+    for (std::size_t left = commands_.size(); left > 0 && !stops_; --left) {
       const Command command = std::move(commands_.front());
       commands_.pop_front();
       lock.unlock();
       command();
       lock.lock();
-    } else if (!running_ && steps_left_ == 0) {
+    }
+    if (stops_) return;
+    if (!running_ && steps_left_ == 0 && !commands_.empty()) continue;
+    if (!running_ && steps_left_ == 0) {
       changed_.wait(lock);
     } else if (running_ && !begins_ && Clock::now() < last_begin_) {
-      changed_.wait_until(lock, last_begin_);
+      if (commands_.empty()) changed_.wait_until(lock, last_begin_);
     } else {
       lock.unlock();
       step();
@@ -90,6 +97,7 @@ void LiveLoop::end_steps(const std::string& error) {
 
 void LiveLoop::step() {
   try {
+    if (!running_ || begins_) pacer_.drain();  // of what was made while it ran
     const LiveStep step = rig_.step();
     {
       const std::lock_guard lock(mutex_);
@@ -107,7 +115,9 @@ void LiveLoop::step() {
       next_due_ = due + duration;
       send(step, due, 1);
     } else {
-      send(step, now, streams_.has_packets() ? 1 : 0);
+      // As fast as possible, in the order of time.
+      constexpr double kFast = 1e-6;
+      send(step, now, streams_.has_packets() ? 1 : kFast);
       pacer_.drain();
       if (--steps_left_ == 0) end_steps("");
     }

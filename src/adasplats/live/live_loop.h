@@ -50,6 +50,7 @@ class LiveLoop {
   std::uint64_t late_steps() const { return late_steps_; }
   /// Why the simulation stopped; empty: it did not.
   const std::string& error() const { return error_; }
+  /// False also ends steps that are being made. Errors: usage (true while steps are being made).
   void set_running(bool running);
   /// Errors: usage (it runs, or makes other steps).
   void make_steps(std::size_t count, StepsDone done);

@@ -13,8 +13,8 @@
 namespace adasplats {
 namespace {
 
-/// Most objects that may be added.
-constexpr std::size_t kMaxSpawned = 10'000;
+/// Most objects at a time.
+constexpr std::size_t kMaxObjects = 10'000;
 
 double turn_of(const MountedSensor& sensor) { return 1 / sensor.settings.sensor.rotation_hz; }
 
@@ -41,16 +41,17 @@ LiveRig::LiveRig(ModelScene& scene, std::vector<MountedSensor> sensors, Trajecto
   if (const World* const world = scene_.world())
     for (std::size_t i = 0; i < world->object_count(); ++i) {
       const WorldObject& object = world->object(i);
-      objects_.emplace(next_id_++, Placed{i, object.name, std::nullopt});
+      objects_.emplace(next_id_++, Placed{i, object.name, false, std::nullopt});
       next_instance_ = std::max<std::uint16_t>(next_instance_, object.instance + 1);
     }
   make_simulators();
 }
 
 void LiveRig::make_simulators() {
-  simulators_.clear();
+  std::vector<std::unique_ptr<ScanSimulator>> made;
   for (const MountedSensor& sensor : sensors_)
-    simulators_.push_back(std::make_unique<ScanSimulator>(scene_, sensor.settings, executor_));
+    made.push_back(std::make_unique<ScanSimulator>(scene_, sensor.settings, executor_));
+  simulators_ = std::move(made);
 }
 
 RigidTransform LiveRig::vehicle_at(double time_s) const {
@@ -151,6 +152,8 @@ LiveRig::Placed& LiveRig::placed(std::uint64_t id) {
 std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
   motion.from.time_s = time_s_;
   const World* const world = scene_.world();
+  if (objects_.size() >= kMaxObjects)
+    throw Error(ErrorKind::usage, "the world has too many objects; remove some");
   const auto is_like = [&](const Placed& one) { return one.like == like; };
   if (const auto found = std::ranges::find_if(free_, is_like); found != free_.end()) {
     Placed again = *found;
@@ -164,8 +167,8 @@ std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
   std::size_t model = 0;
   while (model < count && world->object(model).name != like) ++model;
   if (model == count) throw Error(ErrorKind::usage, "like: the world has no object '" + like + "'");
-  if (objects_.size() >= kMaxSpawned || next_instance_ == 0)
-    throw Error(ErrorKind::usage, "the world has too many objects; remove some");
+  if (next_instance_ == 0)
+    throw Error(ErrorKind::usage, "there are no more instance numbers; spawn removed kinds again");
   WorldObject copy = world->object(model);
   copy.name = like + " " + std::to_string(next_id_);
   copy.instance = next_instance_++;
@@ -174,8 +177,13 @@ std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
   copy.only_scan.reset();
   copy.present = true;
   const std::size_t number = scene_.add_object(std::move(copy));
-  make_simulators();  // the tables of attributes are longer
-  objects_.emplace(next_id_, Placed{number, like, motion});
+  try {
+    make_simulators();  // the tables of attributes are longer
+  } catch (...) {
+    scene_.set_object_present(number, false);
+    throw;
+  }
+  objects_.emplace(next_id_, Placed{number, like, true, motion});
   return next_id_++;
 }
 
@@ -188,7 +196,7 @@ void LiveRig::remove(std::uint64_t id) {
   Placed& object = placed(id);
   scene_.set_object_present(object.number, false);
   // An object of the world file may be absent at times, so it is not used again.
-  if (object.motion) free_.push_back(object);
+  if (object.is_copy) free_.push_back(object);
   objects_.erase(id);
 }
 

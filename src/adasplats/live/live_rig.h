@@ -82,6 +82,7 @@ class LiveRig {
   struct Placed {
     std::size_t number;  ///< in the world
     std::string like;
+    bool is_copy = false;                 ///< that spawn() made
     std::optional<UniformMotion> motion;  ///< none: that of the world file
   };
 

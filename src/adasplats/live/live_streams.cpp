@@ -46,6 +46,7 @@ PacketOptions packet_options_of(const LiveRig& rig, const MountedSensor& mounted
 LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& target,
                          CloudDriver driver)
     : rig_(rig),
+      driver_(driver),
       messages_(
           std::make_unique<MessageServer>("adasplats", channels_of(rig, driver), kQueueBytes)) {
   for (const MountedSensor& sensor : rig.sensors()) {
@@ -74,20 +75,21 @@ LiveStreams::LiveStreams(const LiveRig& rig, const std::optional<PacketTarget>& 
   }
 }
 
+std::string LiveStreams::topic(std::size_t sensor) const {
+  return rig_topic(rig_.sensors()[sensor].name, driver_);
+}
+
 std::string LiveStreams::mounts_message() const {
   std::vector<RosTransform> mounts;
-  for (std::size_t k = 0; k < clouds_.size(); ++k) {
-    const MountedSensor& sensor = rig_.sensors()[k];
-    mounts.push_back({{rig_.time_s(), sensor.mount * clouds_[k].sensor_from_points()},
-                      kRosVehicleFrame,
-                      sensor.name});
-  }
+  for (std::size_t k = 0; k < clouds_.size(); ++k)
+    mounts.push_back(
+        {{rig_.time_s(), vehicle_from_points(k)}, kRosVehicleFrame, rig_.sensors()[k].name});
   return transforms_message(mounts);
 }
 
 void LiveStreams::send_packet(std::string_view payload, std::uint16_t port) {
   try {
-    sender_->send(payload, port);
+    sender_->send(payload, port, WhenFull::fail);
     ++packets_sent_;
   } catch (const Error&) {
     ++packets_failed_;
@@ -117,8 +119,11 @@ void LiveStreams::send_poses(const LiveStep& step, const Schedule& schedule) {
       messages_->publish_time(time_ns);
     });
   }
-  for (const TimedPose& pose : step.vehicle) {
-    if (step.number > 0 && pose.time_s == step.begin_s) continue;  // the end of the last step
+  for (TimedPose pose : step.vehicle) {
+    // The next step begins at the time of the last pose, where a request may have put the vehicle;
+    // tf2 keeps one pose of a time.
+    constexpr double kJustBefore_s = 1e-6;
+    if (pose.time_s == step.vehicle.back().time_s) pose.time_s -= kJustBefore_s;
     const RosTransform transform = {pose, kRosWorldFrame, kRosVehicleFrame};
     schedule(pose.time_s, [this, time_ns = ros_time_ns(pose.time_s),
                            message = transforms_message({&transform, 1})] {

@@ -42,6 +42,11 @@ class LiveStreams {
   const PacketSensor& packet_sensor(std::size_t sensor) const {
     return packets_.at(sensor)->sensor();
   }
+  std::string topic(std::size_t sensor) const;
+  /// The pose of the frame of a sensor's points in that of the vehicle.
+  RigidTransform vehicle_from_points(std::size_t sensor) const {
+    return rig_.sensors()[sensor].mount * clouds_[sensor].sensor_from_points();
+  }
   std::uint16_t port(std::size_t sensor) const { return ports_.at(sensor); }
   std::uint64_t packets_sent() const { return packets_sent_; }
   std::uint64_t packets_failed() const { return packets_failed_; }
@@ -58,6 +63,7 @@ class LiveStreams {
   void send_packet(std::string_view payload, std::uint16_t port);
 
   const LiveRig& rig_;
+  CloudDriver driver_;
   std::vector<DriverClouds> clouds_;  ///< by sensor
   std::unique_ptr<MessageServer> messages_;
   std::unique_ptr<DatagramSender> sender_;

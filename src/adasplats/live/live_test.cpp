@@ -347,10 +347,10 @@ TEST(LiveApi, ChangesTheWorld) {
   const Json spawned = setup.json("POST", "objects", R"({"like": "wall", )" + pose + "}");
   EXPECT_EQ(spawned["id"], 2);
   EXPECT_EQ(
-      setup.json("POST", "objects/2", "{" + pose + R"(, "velocity_m_s": [1, 0, 0]})")["objects"]
-          .size(),
-      2U);
-  EXPECT_EQ(setup.json("DELETE", "objects/2")["objects"].size(), 1U);
+      setup.json("POST", "objects/2", "{" + pose + R"(, "velocity_m_s": [1, 0, 0]})")["steps"], 0);
+  EXPECT_EQ(setup.json("GET", "state")["objects"].size(), 2U);
+  EXPECT_EQ(setup.json("DELETE", "objects/2")["steps"], 0);
+  EXPECT_EQ(setup.json("GET", "state")["objects"].size(), 1U);
   const Json driven = setup.json(
       "POST", "ego", "{" + pose + R"(, "velocity_m_s": [10, 0, 0], "yaw_rate_rad_s": 0})");
   EXPECT_EQ(driven["ego"][0], 5002);
@@ -440,9 +440,45 @@ TEST(LiveStreams, SendPacketsAndMessagesInRealTime) {
       ++counts[static_cast<std::size_t>(frame[1])];
     else
       ++times[0];
-  EXPECT_EQ(counts, (std::vector<int>{20, 9, 1, 2}));
+  EXPECT_EQ(counts, (std::vector<int>{20, 10, 1, 2}));
   EXPECT_EQ(times[0], 20);
   EXPECT_NE(setup.ask("GET", "calibration/lidar").body->find("lasers"), std::string::npos);
+}
+
+TEST(LiveStreams, SendInTheOrderOfTimeAcrossPauses) {
+  LiveSetup setup;
+  const auto client = std::make_shared<MessageClient>();
+  setup.streams.messages().opened(client);
+  setup.streams.messages().received(
+      client,
+      R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":0},{"id":3,"channelId":3}]})");
+  setup.ask("POST", "run", R"({"on": true})");
+  std::this_thread::sleep_for(150ms);
+  setup.ask("POST", "run", R"({"on": false})");
+  setup.ask("POST", "step", R"({"count": 2})");
+  setup.ask("POST", "run", R"({"on": true})");
+  std::this_thread::sleep_for(150ms);
+  setup.loop.stop();
+  std::uint64_t last_ns = 0;
+  for (const std::string& frame : client->frames) {
+    if (frame[0] != 1) continue;
+    std::uint64_t time_ns = 0;
+    std::memcpy(&time_ns, frame.data() + 5, sizeof time_ns);
+    EXPECT_GE(time_ns, last_ns);
+    last_ns = time_ns;
+  }
+  EXPECT_GT(last_ns, 5'300'000'000U);
+}
+
+TEST(LiveApi, RunEndsSteps) {
+  LiveSetup setup;
+  std::promise<HttpReply> steps;
+  setup.api.handle({"POST", "step", R"({"count": 1000000})"},
+                   [&](HttpReply reply) { steps.set_value(std::move(reply)); });
+  EXPECT_EQ(setup.ask("POST", "run", R"({"on": true})").status, 409);
+  EXPECT_EQ(setup.ask("POST", "run", R"({"on": false})").status, 200);
+  EXPECT_EQ(steps.get_future().get().status, 500);
+  EXPECT_EQ(setup.ask("POST", "step", "{}").status, 200);
 }
 
 TEST(LiveStreams, RejectTimesBefore0) {

@@ -90,7 +90,10 @@ void Pacer::run() {
     ++count_;
     is_acting_ = true;
     lock.unlock();
-    action();
+    try {
+      action();
+    } catch (...) {  // without memory, it is lost
+    }
     lock.lock();
     is_acting_ = false;
   }

@@ -31,7 +31,7 @@ class Pacer {
   Pacer(const Pacer&) = delete;
   Pacer& operator=(const Pacer&) = delete;
 
-  /// A time that is over means at once. `action` must not throw.
+  /// A time that is over means at once. What it throws is dropped.
   void add(Clock::time_point due, std::function<void()> action);
   /// Waits until all actions are done.
   void drain();

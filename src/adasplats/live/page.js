@@ -14,7 +14,8 @@ async function request(method, path, body) {
   const reply = await fetch(path, {method, body: body && JSON.stringify(body)});
   const json = await reply.json();
   $('error').textContent = json.error ?? '';
-  if (reply.ok && json.time_s !== undefined) showState(json);
+  if (json.streams) showState(json);
+  else if (reply.ok) request('GET', 'state');
 }
 
 function showState(json) {
@@ -93,7 +94,7 @@ function connect() {
     if (typeof data === 'string') {
       const message = JSON.parse(data);
       if (message.op !== 'advertise') return;
-      const wanted = message.channels.filter((channel) => channel.topic.endsWith('/points'));
+      const wanted = message.channels.filter((channel) => channel.schemaName === 'sensor_msgs/msg/PointCloud2');
       wanted.forEach((channel) => topics[channel.id] = channel.topic);
       socket.send(JSON.stringify({op: 'subscribe', subscriptions: wanted.map(({id}) => ({id, channelId: id}))}));
       return;
@@ -168,8 +169,8 @@ function draw() {
   gl.uniformMatrix4fv(uniform('project'), false, projection(canvas.width / canvas.height));
   gl.uniform1i(uniform('by'), $('color').selectedIndex);
   for (const [topic, cloud] of clouds) {
-    const sensor = state?.sensors.find(({name}) => topic === `/${name}/points`);
-    const [x, y, z, qx, qy, qz, qw] = sensor?.mount ?? [0, 0, 0, 0, 0, 0, 1];
+    const sensor = state?.sensors.find((one) => one.topic === topic);
+    const [x, y, z, qx, qy, qz, qw] = sensor?.vehicle_from_points ?? [0, 0, 0, 0, 0, 0, 1];
     gl.uniform3f(uniform('shift'), x, y, z);
     gl.uniform4f(uniform('turn'), qx, qy, qz, qw);
     gl.uniform1f(uniform('highest'), cloud.highest);

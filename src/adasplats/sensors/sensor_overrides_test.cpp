@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "adasplats/sensors/packet_sensor.h"
+#include "adasplats/core/error.h"
 
 namespace adasplats {
 namespace {
@@ -28,6 +28,18 @@ TEST(SensorOverrides, SpinningSensorsKeepTheirFiringTimes) {
     SensorOverrides{{}, {}, {}, at_10.rotation_hz}.apply(same);
     EXPECT_EQ(same.columns, at_10.columns);
   }
+}
+
+TEST(SensorOverrides, RejectsRatesThatSensorsCannotHave) {
+  LidarModel sensor = load_lidar_model("velodyne-vlp-16");
+  for (const double rate_hz : {0.001, 1e4}) {
+    SensorOverrides overrides;
+    overrides.rotation_hz = rate_hz;
+    EXPECT_THROW(overrides.apply(sensor), Error) << rate_hz;
+  }
+  LidarModel listed = load_lidar_model("hesai-ot128");
+  ASSERT_FALSE(listed.free_pattern.empty());
+  EXPECT_THROW((SensorOverrides{{}, {}, {}, 20}.apply(listed)), Error);
 }
 
 TEST(SensorOverrides, OustersHaveTheColumnsOfTheirMode) {

@@ -3,6 +3,8 @@
 //
 // Servers that take POST and DELETE; the oracle is RFC 9110 and http_server.h.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "adasplats/serve/test_client.h"
@@ -16,6 +18,7 @@ class HttpActionsTest : public ServerTest {
     const HttpActions act = [this](HttpRequest request, HttpAnswer answer) {
       if (request.path == "later") {
         waiting = std::move(answer);
+        ++later;
         return;
       }
       if (request.path == "throws") throw std::runtime_error("no");
@@ -34,7 +37,13 @@ class HttpActionsTest : public ServerTest {
     return one.reply();
   }
 
+  /// Until so many requests wait for `waiting`.
+  void wait_for_later(int count) const {
+    while (later < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
   HttpAnswer waiting;
+  std::atomic<int> later = 0;
 };
 
 std::string status_of(const std::string& reply) { return reply.substr(9, 3); }
@@ -60,13 +69,14 @@ TEST_F(HttpActionsTest, AnswersMayComeLaterFromAnotherThread) {
   one.get("/secret/later", "Content-Length: 0\r\n", "POST");
   RawClient other = client();
   EXPECT_EQ(body_of(ask(other, "POST", "/secret/now", "")), "POST now ");  // the server goes on
+  wait_for_later(1);
   std::thread([this] {
     waiting({200, "text/plain", std::make_shared<const std::string>("at last")});
   }).join();
   EXPECT_EQ(body_of(one.reply()), "at last");
   // An answer to a client that has gone does nothing.
   one.get("/secret/later", "Content-Length: 0\r\n", "POST");
-  EXPECT_EQ(body_of(ask(other, "POST", "/secret/now", "")), "POST now ");
+  wait_for_later(2);
   one.reset();
   waiting({200, "text/plain", nullptr});
   EXPECT_EQ(body_of(ask(other, "POST", "/secret/now", "")), "POST now ");
@@ -83,6 +93,7 @@ TEST_F(HttpActionsTest, RejectsBadBodiesAndOrigins) {
   };
   EXPECT_EQ(status("POST", std::string(100, 'x'), ""), "200");
   EXPECT_EQ(status("POST", std::string(101, 'x'), ""), "413");
+  EXPECT_EQ(status("POST", std::string(3 << 20, 'x'), ""), "413");
   EXPECT_EQ(status("DELETE", "body", ""), "400");
   EXPECT_EQ(status("GET", "body", ""), "400");
   EXPECT_EQ(status("PUT", "body", ""), "405");

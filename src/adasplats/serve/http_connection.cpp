@@ -16,6 +16,8 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -39,9 +41,11 @@ constexpr std::size_t kLingerBytes = std::size_t{1} << 20;
 
 std::string_view to_std(beast::string_view text) { return {text.data(), text.size()}; }
 
-HttpReply status_reply(http::status status) {
-  const std::string text = std::string(to_std(http::obsolete_reason(status))) + "\n";
-  return {static_cast<int>(status), "text/plain; charset=utf-8",
+/// `is_json`: as {"error": "Not Found"}, for programs.
+HttpReply status_reply(http::status status, bool is_json) {
+  const std::string reason(to_std(http::obsolete_reason(status)));
+  const std::string text = is_json ? "{\"error\":\"" + reason + "\"}\n" : reason + "\n";
+  return {static_cast<int>(status), is_json ? "application/json" : "text/plain; charset=utf-8",
           std::make_shared<const std::string>(text)};
 }
 
@@ -99,6 +103,9 @@ class HttpConnection final : public Connection,
   void act(HttpRequest request);
   HttpAnswer answer_of_this_request();
   void send(HttpReply reply, bool last);
+  HttpReply status_reply(http::status status) const {
+    return adasplats::status_reply(status, core_->takes_writes);
+  }
   void send_some();
   void sent(ErrorCode error);
   void drop_input();
@@ -125,6 +132,8 @@ void HttpConnection::read() {
   keeps_alive_ = is_head_ = false;
   body_parser_.reset();
   parser_.emplace();
+  // read_body() has a smaller one. Boost 1.74 takes no value as 0.
+  parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
   parser_->header_limit(static_cast<std::uint32_t>(core_->options.header_bytes_limit));
   http::async_read_header(
       socket_, buffer_, *parser_,
@@ -199,7 +208,7 @@ HttpAnswer HttpConnection::answer_of_this_request() {
     asio::dispatch(self->core_->context, [self, reply = std::move(reply)]() mutable {
       if (self->ended_) return;
       // The same response as for a wrong token.
-      if (reply.status == 404 && !reply.body) reply = status_reply(http::status::not_found);
+      if (reply.status == 404 && !reply.body) reply = self->status_reply(http::status::not_found);
       self->send(std::move(reply), !self->keeps_alive_);
     });
   };

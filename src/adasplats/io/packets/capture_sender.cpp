@@ -51,14 +51,15 @@ DatagramSender::~DatagramSender() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-void DatagramSender::send(std::string_view bytes, std::uint16_t port) {
+void DatagramSender::send(std::string_view bytes, std::uint16_t port, WhenFull full) {
+  const int flags = MSG_NOSIGNAL | (full == WhenFull::fail ? MSG_DONTWAIT : 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = address_;
   address.sin_port = htons(port);
   ssize_t sent = -1;
   do {
-    sent = sendto(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
+    sent = sendto(descriptor_, bytes.data(), bytes.size(), flags,
                   reinterpret_cast<const sockaddr*>(&address), sizeof address);
   } while (sent < 0 && errno == EINTR);
   if (sent < 0)

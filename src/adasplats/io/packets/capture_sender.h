@@ -12,6 +12,9 @@
 
 namespace adasplats {
 
+/// What to do while the buffer of a socket is full.
+enum class WhenFull : std::uint8_t { wait, fail };
+
 /// Sends UDP datagrams to a host.
 class DatagramSender {
  public:
@@ -22,7 +25,7 @@ class DatagramSender {
   DatagramSender& operator=(const DatagramSender&) = delete;
 
   /// Errors: io.
-  void send(std::string_view bytes, std::uint16_t port);
+  void send(std::string_view bytes, std::uint16_t port, WhenFull full = WhenFull::wait);
 
  private:
   std::string host_;

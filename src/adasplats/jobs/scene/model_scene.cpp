@@ -89,9 +89,15 @@ void ModelScene::set_object_present(std::size_t object, bool present) {
 
 std::size_t ModelScene::add_object(WorldObject object) {
   objects().add_object(std::move(object));
-  attributes_ = world_->attributes(model_attributes());
+  const std::size_t number = world_->object_count() - 1;
+  try {
+    attributes_ = world_->attributes(model_attributes());
+  } catch (...) {
+    world_->set_present(number, false);  // it has no attributes
+    throw;
+  }
   primitive_table_.reset();
-  return world_->object_count() - 1;
+  return number;
 }
 
 std::shared_ptr<const PrimitiveTable> ModelScene::primitive_table() const {
