@@ -13,6 +13,7 @@
 #include "adasplats/io/arrays/npy.h"
 #include "adasplats/io/arrays/npz.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/pcd/pcd_writer.h"
 #include "adasplats/io/ply/ply.h"
