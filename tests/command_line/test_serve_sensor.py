@@ -104,6 +104,9 @@ class ServeSensorTest(ProgramTest):
             busy.listen()
             port = str(busy.getsockname()[1])
             self.run_bad(69, *words, "--port", port, says=[port])
+        far = self.folder / "far.csv"
+        far.write_text("time,x,y,z,qw,qx,qy,qz\n0,9000,0,2,1,0,0,0\n1,9001,0,2,1,0,0,0\n")
+        self.run_bad(65, *words[:3], far, says=["same frame"])
         late = self.folder / "late.csv"
         late.write_text("time,x,y,z,qw,qx,qy,qz\n-5,0,0,2,1,0,0,0\n-4,1,0,2,1,0,0,0\n")
         self.run_bad(64, *words[:3], late, says=["before 0"])

@@ -24,7 +24,7 @@ using ApiJson = nlohmann::ordered_json;
 
 constexpr int kBadRequest = 400, kNotFound = 404, kConflict = 409, kInternal = 500, kTooMany = 503;
 constexpr double kMaxSteps = 1e6;
-constexpr double kMaxTurn_rad_s = 100;
+constexpr double kMaxTurn_rad_s = 10;  // more is a turn in degrees
 
 HttpReply reply_of(std::string body, std::string type, int status = 200) {
   return {status, std::move(type), std::make_shared<const std::string>(std::move(body))};
@@ -272,6 +272,7 @@ std::string LiveApi::state() const {
                    {"topic", streams_.topic(k)},
                    {"vehicle_from_points", message_numbers(streams_.vehicle_from_points(k))}};
     if (streams_.has_packets()) one["port"] = streams_.port(k);
+    if (const auto last = loop_.last_scan(k)) one["points"] = last->size();
     json["sensors"].push_back(std::move(one));
   }
   json["cameras"] = ApiJson::array();

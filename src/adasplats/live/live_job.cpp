@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/live/live_job.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -60,6 +63,25 @@ Trajectory drive_of(const LiveJob& job, const ModelScene& scene, Session& sessio
   return {{0, *pose}};
 }
 
+/// Errors: data (no sensor reaches the model from any pose of the drive: another frame or unit).
+void require_near(const Trajectory& drive, const std::vector<MountedSensor>& sensors,
+                  const ScanScene& scene) {
+  double reach_m = 0, nearest_m = std::numeric_limits<double>::infinity();
+  for (const MountedSensor& sensor : sensors)
+    reach_m =
+        std::max(reach_m, length(sensor.mount.translation) + sensor.settings.sensor.max_range_m);
+  const auto [low, high] = scene.middle_box();
+  for (const TimedPose& pose : drive) {
+    const Vec3d at = pose.world_from_sensor.translation;
+    nearest_m = std::min(nearest_m, length(max(max(low - at, at - high), Vec3d{})));
+  }
+  if (nearest_m > reach_m)
+    throw Error(ErrorKind::data, "the drive is at least " + std::to_string(std::lround(nearest_m)) +
+                                     " m from the model's box, and the sensors measure up to " +
+                                     std::to_string(std::lround(reach_m)) +
+                                     " m; are trajectory and model in the same frame?");
+}
+
 std::optional<PacketTarget> packet_target(const LiveJob& job,
                                           const std::vector<MountedSensor>& sensors) {
   if (job.packets_to.empty()) return std::nullopt;
@@ -111,8 +133,9 @@ nlohmann::ordered_json run_live(const LiveJob& job, Session& session,
     placed.drive.trajectory = sensors.trajectory;
   const auto target = packet_target(job, sensors.mounted);
   ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
-  LiveRig rig(scene, std::move(sensors.mounted), drive_of(placed, scene, session),
-              session.executor);
+  Trajectory drive = drive_of(placed, scene, session);
+  require_near(drive, sensors.mounted, scene);
+  LiveRig rig(scene, std::move(sensors.mounted), std::move(drive), session.executor);
   LiveStreams streams(rig, target, job.driver);
   LiveLoop loop(rig, streams, false);
   LiveApi api(rig, streams, loop, std::move(sensors.cameras), session);

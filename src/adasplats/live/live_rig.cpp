@@ -16,6 +16,16 @@ namespace {
 /// Most objects at a time.
 constexpr std::size_t kMaxObjects = 10'000;
 
+/// Errors: usage (an axis that turns away from where it was, as of a quaternion in another order).
+void require_upright(const UniformMotion& motion, const RigidTransform& before) {
+  constexpr double kLeastCosine = 0.17;  // of 80 degrees
+  const Vec3d up{0, 0, 1};
+  if (dot(motion.from.world_from_sensor.rotation * up, before.rotation * up) < kLeastCosine)
+    throw Error(ErrorKind::usage,
+                "pose: turns the z axis by more than 80 degrees from where it was; the order is "
+                "x, y, z, qx, qy, qz, qw");
+}
+
 double turn_of(const MountedSensor& sensor) { return 1 / sensor.settings.sensor.rotation_hz; }
 
 std::size_t scans_in(double step_s, const MountedSensor& sensor) {
@@ -59,6 +69,7 @@ RigidTransform LiveRig::vehicle_at(double time_s) const {
 }
 
 void LiveRig::set_vehicle(UniformMotion motion) {
+  require_upright(motion, vehicle());
   motion.from.time_s = time_s_;
   vehicle_motion_ = motion;
 }
@@ -130,15 +141,17 @@ Image LiveRig::picture(const MountedCamera& camera, Session& session) {
   return scene_.render(camera.at(vehicle()), options);
 }
 
+RigidTransform LiveRig::pose_of(const Placed& object) const {
+  return object.motion ? object.motion->at(time_s_)
+                       : interpolate(scene_.world()->object(object.number).trajectory, time_s_);
+}
+
 std::vector<LiveObject> LiveRig::objects() const {
   std::vector<LiveObject> objects;
   objects.reserve(objects_.size());
   for (const auto& [id, object] : objects_) {
     const WorldObject& own = scene_.world()->object(object.number);
-    objects.push_back(
-        {id, own.name, object.like,
-         object.motion ? object.motion->at(time_s_) : interpolate(own.trajectory, time_s_),
-         own.instance});
+    objects.push_back({id, own.name, object.like, pose_of(object), own.instance});
   }
   return objects;
 }
@@ -154,6 +167,11 @@ std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
   const World* const world = scene_.world();
   if (objects_.size() >= kMaxObjects)
     throw Error(ErrorKind::usage, "the world has too many objects; remove some");
+  const std::size_t count = world == nullptr ? 0 : world->object_count();
+  std::size_t model = 0;
+  while (model < count && world->object(model).name != like) ++model;
+  if (model == count) throw Error(ErrorKind::usage, "like: the world has no object '" + like + "'");
+  require_upright(motion, interpolate(world->object(model).trajectory, time_s_));
   const auto is_like = [&](const Placed& one) { return one.like == like; };
   if (const auto found = std::ranges::find_if(free_, is_like); found != free_.end()) {
     Placed again = *found;
@@ -163,12 +181,10 @@ std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
     objects_.emplace(next_id_, std::move(again));
     return next_id_++;
   }
-  const std::size_t count = world == nullptr ? 0 : world->object_count();
-  std::size_t model = 0;
-  while (model < count && world->object(model).name != like) ++model;
-  if (model == count) throw Error(ErrorKind::usage, "like: the world has no object '" + like + "'");
   if (next_instance_ == 0)
-    throw Error(ErrorKind::usage, "there are no more instance numbers; spawn removed kinds again");
+    throw Error(ErrorKind::usage,
+                "all instance numbers are used; only objects whose copies were removed can be "
+                "spawned");
   WorldObject copy = world->object(model);
   copy.name = like + " " + std::to_string(next_id_);
   copy.instance = next_instance_++;
@@ -188,8 +204,10 @@ std::uint64_t LiveRig::spawn(const std::string& like, UniformMotion motion) {
 }
 
 void LiveRig::move(std::uint64_t id, UniformMotion motion) {
+  Placed& object = placed(id);
+  require_upright(motion, pose_of(object));
   motion.from.time_s = time_s_;
-  placed(id).motion = motion;
+  object.motion = motion;
 }
 
 void LiveRig::remove(std::uint64_t id) {

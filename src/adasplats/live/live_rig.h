@@ -65,16 +65,16 @@ class LiveRig {
   Image picture(const MountedCamera& camera, Session& session);
 
   RigidTransform vehicle() const { return vehicle_at(time_s_); }
-  /// From now on; `from.time_s` is not used.
+  /// From now on; `from.time_s` is not used. Errors: usage (it would fall on its side at once).
   void set_vehicle(UniformMotion motion);
   /// Back to the poses of the drive at this time.
   void follow_drive() { vehicle_motion_.reset(); }
 
   std::vector<LiveObject> objects() const;
   /// Adds a copy of an object of the world file. `from.time_s` is not used. Errors: usage (no such
-  /// object, too many objects).
+  /// object, too many objects, one on its side).
   std::uint64_t spawn(const std::string& like, UniformMotion motion);
-  /// Errors: no_input (no such object).
+  /// Errors: no_input (no such object), usage (it would fall on its side at once).
   void move(std::uint64_t id, UniformMotion motion);
   void remove(std::uint64_t id);
 
@@ -90,6 +90,7 @@ class LiveRig {
   ScanMotion motion_of(const MountedSensor& sensor, double begin_s) const;
   void make_simulators();
   Placed& placed(std::uint64_t id);
+  RigidTransform pose_of(const Placed& object) const;
   void place_objects();
 
   ModelScene& scene_;

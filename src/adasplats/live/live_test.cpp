@@ -372,7 +372,9 @@ TEST(LiveApi, RejectsBadRequests) {
         R"({"pose": [0, 0, NaN, 0, 0, 0, 1]})", R"({"pose": [0, 0, null, 0, 0, 0, 1]})",
         R"({"pose": [0, 0, 1e300, 0, 0, 0, 1]})", R"({"pose": [0, 0, 0, 0, 0, 0, 2]})",
         R"({"pose": [0, 0, 0, 0, 0, 0, 1], "velocity": [1, 0, 0]})",
-        R"({"pose": [0, 0, 0, 0, 0, 0, 1], "yaw_rate_rad_s": 1e9})", R"({"drive": false})"}) {
+        R"({"pose": [0, 0, 0, 0, 0, 0, 1], "yaw_rate_rad_s": 30})",
+        R"({"like": "wall", "pose": [0, 0, 0, 1, 0, 0, 0]})", R"({"pose": [0, 0, 0, 1, 0, 0, 0]})",
+        R"({"drive": false})"}) {
     EXPECT_EQ(status("POST", "ego", body), 400) << body;
     EXPECT_EQ(status("POST", "objects", body), 400) << body;
     EXPECT_EQ(status("POST", "objects/1", body), 400) << body;
