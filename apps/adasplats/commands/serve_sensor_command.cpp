@@ -33,11 +33,7 @@ class ServeSensorCommand final : public Command {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, city, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
-    app.add_option("--sensor", job_.scan.sensor,
-                   "Sensor: a name from 'adasplats sensors', or a file")
-        ->capture_default_str()
-        ->type_name("NAME|FILE")
-        ->basic();
+    add_sensor_option(app, job_.scan.sensor)->basic();
     add_path(app, "--rig", job_.rig,
              "Instead of --sensor: rig file with the sensors and cameras of a car (TOML)")
         ->basic();

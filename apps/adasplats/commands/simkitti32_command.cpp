@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -31,10 +32,7 @@ class SimKitti32Command final : public Command {
     OptionSet& app = options();
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option("--sensor", job_.sensor, "Sensor: a name from 'adasplats sensors', or a file")
-        ->capture_default_str()
-        ->type_name("NAME|FILE")
-        ->basic();
+    add_sensor_option(app, job_.sensor)->basic();
     add_scan_range(app, "--scans", job_.scans, "Scans to model and simulate")->basic();
     app.add_option("--labels", job_.labels, "Label scheme: semantickitti or a TOML file")
         ->capture_default_str()

@@ -42,11 +42,7 @@ class SimulateCommand final : public Command {
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, city, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option("--sensor", job_.scan.sensor,
-                   "Sensor: a name from 'adasplats sensors', or a file")
-        ->capture_default_str()
-        ->type_name("NAME|FILE")
-        ->basic();
+    add_sensor_option(app, job_.scan.sensor)->basic();
     add_path(app, "--rig", job_.rig,
              "Instead of --sensor: rig file with the sensors of a car (TOML)")
         ->basic();

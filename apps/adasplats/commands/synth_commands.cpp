@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
+#include "cli/options/shared_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -96,9 +97,7 @@ class SynthWorldCommand final : public Command {
     app.add_flag("--overwrite", job_.overwrite, "Replace an existing output folder");
     add_settings(app, job_.world);
     add_settings(app, job_.scan);
-    app.add_option("--sensor", job_.scan.sensor,
-                   "Sensor: a name from 'adasplats sensors', or a file")
-        ->capture_default_str();
+    add_sensor_option(app, job_.scan.sensor);
   }
 
   void run(Session& session) override {

@@ -93,6 +93,12 @@ Option* add_labels_option(OptionSet& app, std::string& labels, const std::string
       ->basic();
 }
 
+Option* add_sensor_option(OptionSet& app, std::string& sensor) {
+  return app.add_option("--sensor", sensor, "Sensor: a name from 'adasplats sensors', or a file")
+      ->capture_default_str()
+      ->type_name("NAME|FILE");
+}
+
 void add_load_options(OptionSet& app, LoadOptions& options) {
   add_settings(app, options);
   const auto set_sensor_fields = [&options](const std::string& text) {

@@ -32,6 +32,8 @@ void add_device_options(OptionSet& app, DeviceOptions& options, GpuCount count);
 
 /// Adds --labels; `default_scheme` is a text for help.
 Option* add_labels_option(OptionSet& app, std::string& labels, const std::string& default_scheme);
+/// Adds --sensor for a LiDAR: a name or a file, as of load_lidar_model().
+Option* add_sensor_option(OptionSet& app, std::string& sensor);
 /// Adds the options of LoadOptions.
 void add_load_options(OptionSet& app, LoadOptions& options);
 /// The first of the options of LoadOptions that is given; empty: none.
