@@ -26,7 +26,7 @@ function showState(json) {
   const facts = {
     'time': `${state.time_s.toFixed(2)} s, step ${state.steps}`,
     'sensors': state.sensors.map((s) => `${s.name} (${s.model}, ${s.rotation_hz} Hz)`).join(', '),
-    'points': [...clouds.values()].reduce((sum, cloud) => sum + cloud.count, 0).toLocaleString('en'),
+    'points': state.sensors.reduce((sum, sensor) => sum + (sensor.points ?? 0), 0).toLocaleString('en'),
     'objects': state.objects.length,
     'late steps': state.streams.late_steps,
     'delay': `median ${late.median.toFixed(2)} ms, 99 % below ${late.p99.toFixed(2)} ms`,
