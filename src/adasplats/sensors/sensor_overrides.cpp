@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/sensors/packet_layout.h"
 
 namespace adasplats {
@@ -36,6 +37,7 @@ void change_columns(double rotation_hz, LidarModel& sensor) {
 }  // namespace
 
 void SensorOverrides::apply(LidarModel& sensor) const {
+  check_settings(*this);
   sensor.range_noise_m = range_noise_m.value_or(sensor.range_noise_m);
   if (range_noise_m) sensor.ring_noise_m.clear();
   sensor.min_range_m = min_range_m.value_or(sensor.min_range_m);

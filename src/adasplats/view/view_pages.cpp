@@ -38,11 +38,10 @@ SharedBytes shared(std::string bytes) {
   return std::make_shared<const std::string>(std::move(bytes));
 }
 
+/// Without a body: the server sends the same response as for a wrong token.
 HttpReply not_found() {
   HttpReply reply;
   reply.status = 404;
-  reply.content_type = "text/plain; charset=utf-8";
-  reply.body = shared("not found\n");
   return reply;
 }
 
