@@ -26,6 +26,7 @@ constexpr std::size_t kMaxBytes = std::size_t{1} << 16;
 constexpr double kTolerance = 1e-3;  // of rotations, as in read_trajectory
 
 constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
+constexpr std::string_view kSpz = ".spz";
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
@@ -56,7 +57,7 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
 }
 
 FileKind kind_of_ply(const std::vector<std::string>& lines) {
-  bool has_radius = false, has_normal = false;
+  bool has_radius = false, has_normal = false, is_packed = false;
   std::size_t of_gaussians = 0;
   for (const std::string& line : lines) {
     if (line == "end_header") break;
@@ -66,8 +67,9 @@ FileKind kind_of_ply(const std::vector<std::string>& lines) {
     has_normal = has_normal || (is_property && line.ends_with(" nx"));
     for (const char* name : {" f_dc_0", " opacity", " scale_0", " rot_0"})
       if (is_property && line.ends_with(name)) ++of_gaussians;
+    is_packed = is_packed || line == "property uint packed_position";
   }
-  const bool is_model = (has_radius && has_normal) || of_gaussians == 4;
+  const bool is_model = (has_radius && has_normal) || of_gaussians == 4 || is_packed;
   return is_model ? FileKind::splat_model : FileKind::points;
 }
 
@@ -164,7 +166,9 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 }  // namespace
 
 FileKind kind_of_file(const std::filesystem::path& file) {
-  if (is_one_of(lower_case(file.extension().string()), kMeshes)) return FileKind::mesh;
+  const std::string extension = lower_case(file.extension().string());
+  if (is_one_of(extension, kMeshes)) return FileKind::mesh;
+  if (extension == kSpz) return FileKind::splat_model;
   const PointFormat* const format = format_of_extension(file);
   // Reading a damaged file reports the error.
   if (format != nullptr && format->means == ExtensionMeaning::points) return FileKind::points;
@@ -177,8 +181,8 @@ FileKind kind_of_file(const std::filesystem::path& file) {
 }
 
 bool has_extension_of_a_kind(const std::filesystem::path& file) {
-  return format_of_extension(file) != nullptr ||
-         is_one_of(lower_case(file.extension().string()), kMeshes);
+  const std::string extension = lower_case(file.extension().string());
+  return format_of_extension(file) != nullptr || is_one_of(extension, kMeshes) || extension == kSpz;
 }
 
 std::string_view plural_name_of(FileKind kind) {

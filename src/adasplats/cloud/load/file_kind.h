@@ -12,7 +12,7 @@ namespace adasplats {
 enum class FileKind : std::uint8_t {
   points,       ///< has a point format and is none of those below; text with a point in it
   mesh,         ///< OBJ, glTF, a PLY that declares faces
-  splat_model,  ///< a PLY with a radius and a normal, or with Gaussians
+  splat_model,  ///< SPZ, a PLY with a radius and a normal or with Gaussians
   trajectory,   ///< text with columns qw, qx, qy, qz, or with poses as lines
   other,        ///< none of these, such as prose
 };

@@ -20,6 +20,7 @@ namespace adasplats {
 /// crs_comments() among the comments. Counts are checked against the size of the file before
 /// allocation. Memory: binary 1x the file's size; ASCII at most 4x (doubles of one digit), usually
 /// below 1x. Errors: no_input, io, data (with line or byte offset).
+/// Gaussians in the compressed layout of PlayCanvas are returned unpacked (packed_ply.h).
 /// `records`: only these, of a file with random access (else std::logic_error).
 Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan>& records = {});
 

@@ -8,6 +8,7 @@
 
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/records.h"
+#include "adasplats/io/ply/packed_ply.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/ply/ply_body.h"
 
@@ -84,7 +85,7 @@ void check_repeated_size(const InputFile& file, const PlyElement& element, std::
 }
 
 bool has_random_access(const PlyHeader& header) {
-  if (header.encoding == PlyEncoding::ascii) return false;
+  if (header.encoding == PlyEncoding::ascii || has_packed_gaussians(header)) return false;
   for (const PlyElement& element : header.elements) {
     if (element.has_lists()) return false;
     if (element.name == "vertex") return !element.properties.empty();
@@ -101,15 +102,16 @@ Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan
   if (records && !has_random_access(header))
     throw std::logic_error("read_ply: records of a file without random access");
   PlyBody body(file, lines, header.encoding);
-  for (const PlyElement& element : header.elements) {
-    if (element.name != "vertex") {
-      body.skip(element);
-      continue;
-    }
-    Table table = records ? body.read(element, *records) : body.read(element).scalars;
+  const auto with_comments = [&](Table table) {
     table.crs = crs_of_comments(path, header.comments);
     table.comments = std::move(header.comments);
     return table;
+  };
+  if (has_packed_gaussians(header)) return with_comments(read_packed_gaussians(file, header, body));
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex")
+      return with_comments(records ? body.read(element, *records) : body.read(element).scalars);
+    body.skip(element);
   }
   throw lines.error_here("the header has no element 'vertex'");
 }

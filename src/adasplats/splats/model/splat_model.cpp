@@ -14,6 +14,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/gaussians/spz_reader.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/io/text/gltf.h"
 #include "adasplats/scene/soft_disk.h"
@@ -162,6 +163,26 @@ IntensityResponse response_of(const Table& table, const std::filesystem::path& p
   return response;
 }
 
+/// The splats of a file; Gaussians of other programs with a comment on where they come from.
+Table read_splats(const std::filesystem::path& path) {
+  Table table;
+  const char* source = "Gaussians (PLY, axes as in the file)";
+  if (is_gltf(path)) {
+    table = read_gltf_splats(path);
+    source = "Gaussians (glTF, y up turned to z up)";
+  } else if (is_spz(path)) {
+    table = read_spz(path);
+    source = "Gaussians (SPZ, y up turned to z up)";
+  } else {
+    table = read_ply(path);
+  }
+  const bool is_ours = table.find("radius") != nullptr;
+  table = disks_of_gaussians(path, std::move(table));
+  if (!is_ours && comment_value(table, kMethodComment).empty())
+    table.comments.push_back(std::string(kMethodComment) + source);
+  return table;
+}
+
 }  // namespace
 
 std::pair<Vec3f, Vec3f> bounds(const SplatModel& model) {
@@ -258,8 +279,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
 }
 
 SplatModel load_model(const std::filesystem::path& path) {
-  const Table table =
-      disks_of_gaussians(path, is_gltf(path) ? read_gltf_splats(path) : read_ply(path));
+  const Table table = read_splats(path);
   const std::array<const Column*, 3> position = {
       &required(table, path, "x"), &required(table, path, "y"), &required(table, path, "z")};
   const std::array<const Column*, 3> normal = {

@@ -6,9 +6,14 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
+#include <variant>
 
+#include "adasplats/core/maths/random.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/pickle/gzip.h"
+#include "adasplats/splats/model/any_model.h"
 
 namespace adasplats {
 namespace {
@@ -60,6 +65,32 @@ TEST(Spz, PositionsFarAway) {
 TEST(Spz, NoDisksAndWrongColours) {
   EXPECT_EQ(unpacked(spz_of({}, {}, {})).size(), 16U);
   EXPECT_THROW(spz_of({}, std::vector<ColorBytes>(1), {}), std::logic_error);
+}
+
+TEST(Spz, IsReadAsAModelWithZUp) {
+  std::vector<Disk> disks;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    Random random(4, 0, i);
+    const auto number = [&](double low, double high) { return random.uniform(low, high); };
+    const Vec3d normal = normalized(Vec3d{number(-1, 1), number(-1, 1), number(-1, 1)});
+    disks.push_back({vec_cast<float>(Vec3d{number(-90, 90), number(-90, 90), number(-5, 20)}),
+                     static_cast<float>(number(0.02, 1)), vec_cast<float>(normal)});
+  }
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "a.spz")
+      << spz_of(disks, std::vector<ColorBytes>(disks.size(), {10, 100, 200}), {});
+  const auto model = std::get<SplatModel>(load_any_model(folder.path() / "a.spz"));
+  ASSERT_EQ(model.size(), disks.size());
+  EXPECT_TRUE(model.opacities.empty());
+  EXPECT_EQ(model.method, "Gaussians (SPZ, y up turned to z up)");
+  const auto ours = [](Vec3f spz) { return Vec3d{-spz.z, -spz.x, spz.y}; };
+  for (std::size_t i = 0; i < disks.size(); ++i) {
+    const Disk& found = model.disks[i];
+    EXPECT_LT(length(model.origin + vec_cast<double>(found.center) - ours(disks[i].center)), 3e-4);
+    EXPECT_GT(std::fabs(dot(vec_cast<double>(found.normal), ours(disks[i].normal))), 1 - 1e-5);
+    EXPECT_NEAR(static_cast<double>(found.radius / disks[i].radius), 1, 0.04);
+    EXPECT_EQ(model.colors[i], (ColorBytes{10, 100, 200}));
+  }
 }
 
 TEST(Spz, GlbIsCompleteAndPadded) {
