@@ -64,6 +64,7 @@ constexpr FuzzTarget kTargets[] = {
     {"glb", "a.glb", "io/text/gltf.cpp", &read_gltf},
     {"splats", "a.ply", "splats/model/splat_model.cpp splats/model/gaussians.cpp",
      &read_splat_model},
+    {"spz", "a.spz", "io/gaussians/spz_reader.cpp", &read_splat_model},
     {"world", "a.toml car.ply", "simulate/world/world_file.cpp", &read_world},
     {"city", "city.json", "city/city_manifest.cpp io/base/json_rows.cpp", &read_city},
     {"city-points", "points.json", "city/layer_facts.cpp", &read_layer_facts},

@@ -15,6 +15,7 @@
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/bags/ros_values.h"
 #include "adasplats/io/base/base64.h"
+#include "adasplats/io/gaussians/spz_samples_test.h"
 #include "adasplats/io/las/copc_file_test.h"
 #include "adasplats/io/packets/capture_samples_test.h"
 #include "adasplats/io/pickle/data_frame.h"
@@ -348,6 +349,19 @@ void add_places(Seeds& seeds) {
     trained += "property float " + std::string(name) + "\n";
   seeds.add("splats", {trained + "end_header\n1 2 3 0 1 -1 2 -1 -2 -6 1 0 0 0\n"
                                  "4 5 6 0 1 -1 -9 -1 -2 -6 2 0 1 0\n"});
+  std::string packed = "ply\nformat ascii 1.0\nelement chunk 1\n";
+  for (const char* side : {"min_", "max_"}) {
+    for (const char* name : {"x", "y", "z", "scale_x", "scale_y", "scale_z"})
+      packed += "property float " + std::string(side) + name + "\n";
+  }
+  const std::string ranges = "-3 -3 -3 -3 -3 -3 5 5 5 1 1 1\n";
+  packed += "element vertex 1\n";
+  for (const char* name : {"position", "rotation", "scale", "color"})
+    packed += "property uint packed_" + std::string(name) + "\n";
+  seeds.add("splats", {packed + "end_header\n" + ranges + "1 2000000000 3000000000 255\n"});
+  seeds.add("spz", {gzipped(spz_samples::version_2())});
+  seeds.add("spz", {gzipped(spz_samples::version_3())});
+  seeds.add("spz", {spz_samples::version_4()});
   seeds.add("world",
             {joined({"[[object]]\ngeometry = \"car.ply\"\nclass = \"car\"\ninstance = 7\n"
                      "position = [1, -3.5, 0]\nyaw_deg = 90\nscale = 2\ntrajectory = \"car.ply\"\n"
