@@ -22,7 +22,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "command_line"))
-from support import BUILDING, POLE, PROGRAM, ROAD, ProgramTest  # noqa: E402
+from support import BUILDING, POLE, PROGRAM, ROAD, ProgramTest, run  # noqa: E402
 
 SKIPPED = 77
 PLY_TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I",
@@ -300,6 +300,58 @@ class Exports(ProgramTest):
                 self.node("read_mcap.mjs", file, self.write_json("clouds.json", expected))
                 next(filter(None, expected["scans"][0]["points"]))["y"] += 0.01
                 self.node_refuses("read_mcap.mjs", file, self.write_json("other.json", expected))
+
+    def test_pictures_of_a_rig(self):
+        """The cameras of a rig in MCAP: what `render` draws, and the lenses of the rig."""
+        rig = self.folder / "rig.toml"
+        rig.write_text(f'''
+[[sensors]]
+name = "top"
+sensor = "{self.sensor.name}"
+mount = [0.5, 0, 0.25]
+''' + "".join(f'''
+[[camera]]
+name = "{name}"
+width = 64
+height = 48
+fx = 30
+fy = 31
+cx = 31.5
+cy = 23
+mount = [1.5, 0.25, 1]
+{lens}
+''' for name, lens in [
+            ("wide", 'model = "fisheye"\ncoefficients = [0.01, 0.002, 0, 0]'),
+            ("front", 'model = "rational"\ncoefficients = [0.1, 0.2, 0.01, 0.02, 0.3, 0.4, 0.5, 0.6]'),
+            ("left", "mount_rotation_deg = [90, 0, 0]")]), encoding="utf-8")
+        model = self.model()
+        self.run_good("simulate", model, "--trajectory", self.poses, "--rig", rig, "-o",
+                      self.folder / "drive", "--format", "mcap")
+        times_s = [float(line.split(",")[0]) for line in self.poses.read_text().splitlines()[1:]]
+        cameras = {}
+        for name, lens, d, turn in [
+                ("wide", "equidistant", [0.01, 0.002, 0, 0], [-0.5, 0.5, -0.5, 0.5]),
+                ("front", "rational_polynomial", [0.1, 0.2, 0.01, 0.02, 0.3, 0.4, 0.5, 0.6],
+                 [-0.5, 0.5, -0.5, 0.5]),
+                ("left", "plumb_bob", [0] * 5, [-HALF, 0, 0, HALF])]:
+            pngs = [self.folder / f"{name}{i}.png" for i in range(len(times_s))]
+            for i, png in enumerate(pngs):
+                self.run_good("render", model, "-o", png, "--camera", f"{rig}:{name}",
+                              "--trajectory", self.poses, "--pose", i, "--no-captions")
+            cameras[name] = {
+                "pngs": [str(png) for png in pngs], "mount": [1.5, 0.25, 1, *turn],
+                "times_ns": [str(round(time_s * 10**9)) for time_s in times_s],
+                "info": {"width": 64, "height": 48, "distortion_model": lens, "d": d,
+                         "k": [30, 0, 31.5, 0, 31, 23, 0, 0, 1],
+                         "r": [1, 0, 0, 0, 1, 0, 0, 0, 1],
+                         "p": [30, 0, 31.5, 0, 0, 31, 23, 0, 0, 0, 1, 0]}}
+        file = self.folder / "drive" / "scans.mcap"
+        self.node("read_mcap.mjs", file, self.write_json("cameras.json", {"cameras": cameras}))
+        cameras["front"]["info"]["d"][7] = 0.7
+        self.node_refuses("read_mcap.mjs", file, self.write_json("o.json", {"cameras": cameras}))
+        said = run("simulate", model, "--trajectory", self.poses, "--rig", rig, "-o",
+                   self.folder / "plys", "--format", "ply").stderr
+        self.assertIn("pictures of its cameras are written in --format mcap only", said)
 
 
 def missing():

@@ -40,7 +40,8 @@ function checkDefinitions(definitions, schemaName) {
   for (const { name = schemaName.replace("/msg/", "/"), definitions: fields } of definitions) {
     const official = messages.ros2humble[name];
     assert.ok(official, `ROS has no ${name}`);
-    const essence = ({ name, type, isArray, value }) => [name, type, isArray ?? false, value];
+    const essence = ({ name, type, isArray, arrayLength, value }) =>
+      [name, type, isArray ?? false, arrayLength, value];
     assert.deepEqual(fields.map(essence), official.definitions.map(essence), name);
   }
 }
@@ -208,7 +209,36 @@ function checkDriver(messages, expected, how) {
   }
 }
 
+/** Pictures are files of `render`; the lens is that of the rig. */
+async function checkCameras(messages, cameras) {
+  const [{ content: fixed }] = messages.filter(({ topic }) => topic === "/tf_static");
+  for (const [name, { pngs, times_ns: times, info, mount }] of Object.entries(cameras)) {
+    const frame = `${name}_optical`;
+    const of = (topic) => messages.filter((message) => message.topic === `/${name}/${topic}`);
+    const images = of("image_raw/compressed"), infos = of("camera_info");
+    assert.deepEqual([images.length, infos.length], [pngs.length, pngs.length]);
+    for (const [i, { type, content }] of images.entries()) {
+      assert.equal(type, "sensor_msgs/msg/CompressedImage");
+      assertTime(nanoseconds(content.header.stamp), times[i], "time of the picture");
+      assert.deepEqual([content.header.frame_id, content.format], [frame, "png"]);
+      assert.ok(Buffer.from(content.data).equals(await readFile(pngs[i])), `picture ${pngs[i]}`);
+      const { header, ...rest } = infos[i].content;
+      assert.deepEqual(header, content.header);
+      for (const key of Object.keys(info)) {
+        const found = rest[key];
+        assert.deepEqual(ArrayBuffer.isView(found) ? [...found] : found, info[key], key);
+      }
+    }
+    const transform = fixed.transforms.find(({ child_frame_id: child }) => child === frame).transform;
+    const { translation: t, rotation: q } = transform;
+    [t.x, t.y, t.z, q.x, q.y, q.z, q.w].forEach((value, k) =>
+      assertNear(value, mount[k], 1e-12, "mount of a camera"),
+    );
+  }
+}
+
 function check(messages, expected, how) {
+  if (expected.cameras) return checkCameras(messages, expected.cameras);
   if (expected.layout) return checkDriver(messages, expected, how);
   const of = (topic) => messages.filter((message) => message.topic === topic);
   assert.equal(messages.length, 2 * expected.scans.length, how);
@@ -220,7 +250,7 @@ function check(messages, expected, how) {
 
 const [file, expectedFile] = process.argv.slice(2);
 const expected = JSON.parse(await readFile(expectedFile, "utf8"));
-check(await readByIndex(file), expected, "by index");
-check(await readAsStream(file), expected, "as a stream");
-const points = expected.scans.reduce((sum, scan) => sum + (scan.points.length ?? scan.points), 0);
-console.log(`${expected.scans.length} scans, ${points} points, every value as expected`);
+await check(await readByIndex(file), expected, "by index");
+await check(await readAsStream(file), expected, "as a stream");
+const points = (expected.scans ?? []).reduce((sum, scan) => sum + (scan.points.length ?? scan.points), 0);
+console.log(`${points} points, every value as expected`);

@@ -10,6 +10,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
+#include "adasplats/dataset/camera_messages.h"
 #include "adasplats/dataset/driver_cloud.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/ros_messages.h"
@@ -17,6 +18,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/mcap/mcap_file.h"
+#include "adasplats/sensors/camera.h"
 
 namespace adasplats {
 namespace {
@@ -124,10 +126,12 @@ class RigFolders final : public RigWriter {
 
 class RigMessages final : public RigWriter {
  public:
-  RigMessages(const fs::path& folder, std::vector<RigWriterSensor> all, Trajectory poses)
+  RigMessages(const fs::path& folder, std::vector<RigWriterSensor> all, Trajectory poses,
+              RigPictures* pictures)
       : RigWriter(folder, std::move(all), std::move(poses)),
         file_(folder / "scans.mcap", "ros2"),
-        merged_(sensors().size()),
+        merged_(sensors().size() + (pictures != nullptr ? 1 : 0)),
+        pictures_(pictures),
         later_s_(rig_ros_delay_s(sensors(), vehicle())) {
     const LabelScheme* const labels = sensors().front().writing.labels;
     if (labels != nullptr) file_.add_metadata(kMcapMetadataName, kMcapLabelsKey, labels->name());
@@ -149,6 +153,7 @@ class RigMessages final : public RigWriter {
                         kRosVehicleFrame,
                         sensor.name});
     }
+    if (pictures_ != nullptr) add_cameras(begin_s, mounts);
     merged_.add(ros_time_ns(begin_s),
                 mcap_message(fixed, ros_time_ns(begin_s), transforms_message(mounts)));
     for (const TimedPose& pose : vehicle()) {
@@ -171,6 +176,7 @@ class RigMessages final : public RigWriter {
   void append(std::size_t index, const EncodedScan& scan) override {
     const McapMessage& message = scan.messages.front();
     merged_.add(sensor_of(index), message.time_ns, message);
+    if (pictures_ != nullptr && sensor_of(index) == 0) add_pictures(scan_of(index), scan.pose);
     write_merged(false);
   }
   void finish() override {
@@ -184,8 +190,46 @@ class RigMessages final : public RigWriter {
     merged_.take([this](const McapMessage& message) { file_.add_message(message); }, all);
   }
 
+  struct CameraChannels {
+    std::uint16_t images = 0, infos = 0;
+    std::string frame;
+  };
+
+  void add_cameras(double begin_s, std::vector<RosTransform>& mounts) {
+    for (const MountedCamera& camera : pictures_->cameras())
+      cameras_.push_back(
+          {file_.add_channel(ros_channel("/" + camera.name + "/image_raw/compressed",
+                                         kCompressedImageType, compressed_image_definition())),
+           file_.add_channel(ros_channel("/" + camera.name + "/camera_info", kCameraInfoType,
+                                         camera_info_definition())),
+           camera.name + "_optical"});
+    for (std::size_t k = 0; k < cameras_.size(); ++k)
+      mounts.push_back({{begin_s, pictures_->cameras()[k].vehicle_from_camera *
+                                      RigidTransform{kCameraFromOptical, {}}},
+                        kRosVehicleFrame,
+                        cameras_[k].frame});
+  }
+
+  void add_pictures(std::size_t scan, const TimedPose& pose) {
+    const double time_s = pose.time_s + later_s_;
+    const std::uint64_t time_ns = ros_time_ns(time_s);
+    const std::vector<std::string> pngs = pictures_->take(scan);
+    for (std::size_t k = 0; k < pngs.size(); ++k) {
+      const CameraChannels& camera = cameras_[k];
+      const Lens& lens = pictures_->cameras()[k].lens;
+      merged_.add(sensors().size(), time_ns,
+                  mcap_message(camera.images, time_ns,
+                               compressed_image_message(pngs[k], time_s, camera.frame)));
+      merged_.add(
+          sensors().size(), time_ns,
+          mcap_message(camera.infos, time_ns, camera_info_message(lens, time_s, camera.frame)));
+    }
+  }
+
   McapFile file_;
   TimeMerge<McapMessage> merged_;
+  RigPictures* pictures_;  ///< null: none
+  std::vector<CameraChannels> cameras_;
   double later_s_;
   std::vector<std::uint16_t> points_;  ///< channels by sensor
   std::vector<DriverClouds> clouds_;   ///< by sensor
@@ -295,12 +339,23 @@ void require_rig_format(ScanFormat format) {
                                       "; use another `format` for a rig, such as mcap");
 }
 
+void RigPictures::add(std::size_t scan, std::vector<std::string> pngs) {
+  const std::lock_guard lock(mutex_);
+  drawn_[scan] = std::move(pngs);
+}
+
+std::vector<std::string> RigPictures::take(std::size_t scan) {
+  const std::lock_guard lock(mutex_);
+  auto found = drawn_.extract(scan);
+  return found.empty() ? std::vector<std::string>() : std::move(found.mapped());
+}
+
 std::unique_ptr<ScanWriter> make_rig_writer(const fs::path& folder, ScanFormat format,
                                             std::vector<RigWriterSensor> sensors,
-                                            Trajectory vehicle) {
+                                            Trajectory vehicle, RigPictures* pictures) {
   require_rig_format(format);
   if (format == ScanFormat::mcap)
-    return std::make_unique<RigMessages>(folder, std::move(sensors), std::move(vehicle));
+    return std::make_unique<RigMessages>(folder, std::move(sensors), std::move(vehicle), pictures);
   if (format == ScanFormat::pcap)
     return std::make_unique<RigPackets>(folder, std::move(sensors), std::move(vehicle));
   return std::make_unique<RigFolders>(folder, format, std::move(sensors), std::move(vehicle));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/dataset/scan_writer.h"
+#include "adasplats/sensors/camera_file.h"
 
 namespace adasplats {
 
@@ -25,6 +27,23 @@ struct RigWriterSensor {
   RigidTransform mount;      ///< vehicle_from_sensor
   double time_offset_s = 0;  ///< added to the times of the sensor to get those of the poses
   ScanWriterOptions writing;
+};
+
+/// The cameras of a rig, with the pictures that were drawn ahead of its scans.
+class RigPictures {
+ public:
+  explicit RigPictures(std::vector<MountedCamera> cameras) : cameras_(std::move(cameras)) {}
+
+  const std::vector<MountedCamera>& cameras() const { return cameras_; }
+  /// PNG files with scan `scan` of the first sensor, one per camera. Thread-safe.
+  void add(std::size_t scan, std::vector<std::string> pngs);
+  /// Removes and returns them; none if there are none. Thread-safe.
+  std::vector<std::string> take(std::size_t scan);
+
+ private:
+  std::vector<MountedCamera> cameras_;
+  std::mutex mutex_;
+  std::map<std::size_t, std::vector<std::string>> drawn_;
 };
 
 /// The number of scan `scan` of sensor `sensor` in a rig of `sensors`.
@@ -47,7 +66,9 @@ void require_rig_format(ScanFormat format);
 
 /// A writer of scans with rig_scan_number(). All formats write poses.csv, those of the vehicle.
 /// mcap: FOLDER/scans.mcap with a topic per sensor (rig_topic()), /tf (base_link in map) and
-/// /tf_static (NAME in base_link), all rig_ros_delay_s() later. pcap: FOLDER/drive.pcap, and in
+/// /tf_static (NAME in base_link), all rig_ros_delay_s() later; `pictures` (null: none) with the
+/// time of the pose of a scan as /CAMERA/image_raw/compressed and /CAMERA/camera_info in the frame
+/// CAMERA_optical. pcap: FOLDER/drive.pcap, and in
 /// NAME/ the files of make_packet_writer(). Both in the order of the vehicle's clock, if scans of
 /// different sensors are appended in turns. Other formats: the files of make_scan_writer() in
 /// NAME/, and NAME.times, the times of the scans (read_scan_times()). Errors: usage (nuscenes,
@@ -55,7 +76,7 @@ void require_rig_format(ScanFormat format);
 /// sensors that send from one address and port), those of make_scan_writer().
 std::unique_ptr<ScanWriter> make_rig_writer(const std::filesystem::path& folder, ScanFormat format,
                                             std::vector<RigWriterSensor> sensors,
-                                            Trajectory vehicle);
+                                            Trajectory vehicle, RigPictures* pictures = nullptr);
 
 /// Sorts the items of several sources by time. The times of each source ascend.
 template <class Item>

@@ -13,65 +13,13 @@
 
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
+#include "adasplats/dataset/cdr_writer.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/base/record_writer.h"
 #include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "messages are written little-endian");
-
-constexpr std::uint64_t kNanoseconds = 1'000'000'000;
-constexpr std::string_view kSeparator =
-    "================================================================================\n";
-
-constexpr std::string_view kTime =
-    "MSG: builtin_interfaces/Time\n"
-    "int32 sec\n"
-    "uint32 nanosec\n";
-constexpr std::string_view kHeader =
-    "MSG: std_msgs/Header\n"
-    "builtin_interfaces/Time stamp\n"
-    "string frame_id\n";
-
-/// Values in CDR layout: each at a multiple of its size after the encapsulation.
-class CdrWriter {
- public:
-  explicit CdrWriter(std::size_t bytes) {
-    bytes_.reserve(bytes);
-    bytes_.append("\0\1\0\0", kEncapsulationBytes);  // CDR_LE, no options
-  }
-  template <class T>
-  CdrWriter& put(T value) {
-    static_assert(std::is_arithmetic_v<T>);
-    while ((bytes_.size() - kEncapsulationBytes) % sizeof(T) != 0) bytes_ += '\0';
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-    return *this;
-  }
-  CdrWriter& text(std::string_view value) {
-    put(static_cast<std::uint32_t>(value.size() + 1));
-    bytes_.append(value).push_back('\0');
-    return *this;
-  }
-  CdrWriter& time(double time_s) {
-    const std::uint64_t time_ns = ros_time_ns(time_s);
-    return put(static_cast<std::int32_t>(time_ns / kNanoseconds))
-        .put(static_cast<std::uint32_t>(time_ns % kNanoseconds));
-  }
-  CdrWriter& header(double time_s, std::string_view frame) { return time(time_s).text(frame); }
-  /// Reserves an array of bytes and returns its begin.
-  char* array(std::size_t size) {
-    put(static_cast<std::uint32_t>(size));
-    bytes_.resize(bytes_.size() + size);
-    return bytes_.data() + bytes_.size() - size;
-  }
-  std::string take() { return std::move(bytes_); }
-
- private:
-  static constexpr std::size_t kEncapsulationBytes = 4;
-  std::string bytes_;
-};
 
 /// Type numbers of sensor_msgs/PointField.
 std::uint8_t point_field_type(ColumnType type) {
@@ -113,7 +61,11 @@ std::string point_cloud2_definition() {
       "uint32 row_step\n"
       "uint8[] data\n"
       "bool is_dense\n";
-  text.append(kSeparator).append(kHeader).append(kSeparator).append(kTime).append(kSeparator);
+  text.append(kRosSeparator)
+      .append(kRosHeader)
+      .append(kRosSeparator)
+      .append(kRosTime)
+      .append(kRosSeparator);
   return text +
          "MSG: sensor_msgs/PointField\n"
          "uint8 INT8 = 1\n"
@@ -132,23 +84,23 @@ std::string point_cloud2_definition() {
 
 std::string transforms_definition() {
   std::string text = "geometry_msgs/TransformStamped[] transforms\n";
-  text.append(kSeparator)
+  text.append(kRosSeparator)
       .append(
           "MSG: geometry_msgs/TransformStamped\n"
           "std_msgs/Header header\n"
           "string child_frame_id\n"
           "Transform transform\n")
-      .append(kSeparator)
+      .append(kRosSeparator)
       .append(
           "MSG: geometry_msgs/Transform\n"
           "Vector3 translation\n"
           "Quaternion rotation\n")
-      .append(kSeparator)
+      .append(kRosSeparator)
       .append("MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n")
-      .append(kSeparator)
+      .append(kRosSeparator)
       .append("MSG: geometry_msgs/Quaternion\n")
       .append("float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n");
-  return text.append(kSeparator).append(kHeader).append(kSeparator).append(kTime);
+  return text.append(kRosSeparator).append(kRosHeader).append(kRosSeparator).append(kRosTime);
 }
 
 std::uint64_t ros_time_ns(double time_s) {
@@ -159,8 +111,8 @@ std::uint64_t ros_time_ns(double time_s) {
                                      "shift the times of the poses");
   // Seconds and fraction separately: a double cannot hold nanoseconds since 1970.
   const double seconds = std::floor(time_s);
-  const double fraction_ns = std::round((time_s - seconds) * static_cast<double>(kNanoseconds));
-  return static_cast<std::uint64_t>(seconds) * kNanoseconds +
+  const double fraction_ns = std::round((time_s - seconds) * static_cast<double>(kRosNanoseconds));
+  return static_cast<std::uint64_t>(seconds) * kRosNanoseconds +
          static_cast<std::uint64_t>(fraction_ns);
 }
 
@@ -244,7 +196,7 @@ std::string transforms_message(std::span<const RosTransform> transforms) {
 }
 
 std::string clock_definition() {
-  return std::string("builtin_interfaces/Time clock\n").append(kSeparator).append(kTime);
+  return std::string("builtin_interfaces/Time clock\n").append(kRosSeparator).append(kRosTime);
 }
 
 std::string clock_message(double time_s) {

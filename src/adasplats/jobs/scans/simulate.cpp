@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/rig_writer.h"
 #include "adasplats/dataset/scan_values.h"
+#include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/folder_task.h"
 #include "adasplats/jobs/output/output_folder.h"
@@ -82,6 +84,9 @@ struct Plan {
   Trajectory vehicle;                  ///< likewise; of a rig
 
   std::size_t scans() const { return sensors.front().scans.size(); }  // as many as of the others
+  bool has_pictures() const {
+    return rig && !rig->cameras.empty() && job.format == ScanFormat::mcap;
+  }
   SensorOfRig place_of(std::size_t sensor) const {
     return rig ? SensorOfRig{sensors[sensor].name + "/", sensor, sensors.size()} : SensorOfRig();
   }
@@ -137,9 +142,9 @@ std::vector<RigWriterSensor> writer_sensors(const Simulators& simulators, const 
 }
 
 std::unique_ptr<ScanWriter> writer_of(const std::filesystem::path& folder,
-                                      const std::vector<RigWriterSensor>& sensors,
-                                      const Plan& plan) {
-  if (plan.rig) return make_rig_writer(folder, plan.job.format, sensors, plan.vehicle);
+                                      const std::vector<RigWriterSensor>& sensors, const Plan& plan,
+                                      RigPictures* pictures = nullptr) {
+  if (plan.rig) return make_rig_writer(folder, plan.job.format, sensors, plan.vehicle, pictures);
   return make_scan_writer(folder, plan.job.format, sensors.front().writing);
 }
 
@@ -170,15 +175,50 @@ std::vector<EncodedFile> numbered_boxes(const ScanScene& scene, const Plan& plan
   return files;
 }
 
-/// Casts the scans that are not `done` yet, a few of each sensor in turns. Errors: as
-/// require_returns(), for every sensor.
+/// Draws what the cameras of a rig see at the poses of scans, as `render` without captions.
+class PictureDrawer {
+ public:
+  PictureDrawer(const Plan& plan, ModelScene& scene, Session& session)
+      : plan_(plan), scene_(scene), session_(session), pictures_(plan.rig->cameras) {
+    options_.color = scene.default_color();
+    options_.samples_per_axis = 2;  // as `render`
+  }
+
+  RigPictures& pictures() { return pictures_; }
+  void draw(std::size_t first, std::size_t end) {
+    const MountedSensor& sensor = plan_.sensors.front();
+    for (std::size_t i = first; i < end; ++i) {
+      const TimedPose& reference = sensor.scans[i].reference;
+      const RigidTransform vehicle = reference.world_from_sensor * sensor.mount.inverse();
+      if (scene_.world() != nullptr) scene_.show_at(reference.time_s, session_);
+      std::vector<std::string> pngs;
+      pngs.reserve(pictures_.cameras().size());
+      for (const MountedCamera& camera : pictures_.cameras()) {
+        const Image image = scene_.render(camera.at(vehicle), options_);
+        pngs.push_back(png_bytes(image.width, image.height, image.pixels));
+      }
+      pictures_.add(i, std::move(pngs));
+    }
+  }
+
+ private:
+  const Plan& plan_;
+  ModelScene& scene_;
+  Session& session_;
+  RigPictures pictures_;
+  ImageOptions options_;
+};
+
+/// Casts the scans that are not `done` yet, a few of each sensor in turns, after their pictures
+/// (`drawer` null: none). Errors: as require_returns(), for every sensor.
 ReportTimes record_scans(Simulators& simulators, const Plan& plan,
                          const std::vector<std::size_t>& done, ScanRecorder& recorder,
-                         SimulateResult& result) {
+                         PictureDrawer* drawer, SimulateResult& result) {
   ReportTimes times;
   const std::size_t turn = plan.rig ? scans_a_turn(plan.job.format) : plan.scans();
   std::vector<SimulateResult> results(plan.sensors.size());
-  for (std::size_t first = 0; first < plan.scans(); first += turn)
+  for (std::size_t first = 0; first < plan.scans(); first += turn) {
+    if (drawer != nullptr) drawer->draw(first, std::min(first + turn, plan.scans()));
     for (std::size_t k = 0; k < simulators.size(); ++k) {
       const std::size_t begin = std::max(first, done[k]);
       const std::size_t end = std::min(first + turn, plan.scans());
@@ -189,6 +229,7 @@ ReportTimes record_scans(Simulators& simulators, const Plan& plan,
       results[k].rays += recorder.rays() - rays;
       results[k].hits += recorder.hits() - hits;
     }
+  }
   result.rays = recorder.rays();
   result.hits = recorder.hits();
   for (std::size_t k = 0; k < simulators.size(); ++k) {
@@ -199,13 +240,14 @@ ReportTimes record_scans(Simulators& simulators, const Plan& plan,
 }
 
 /// Casts and writes the missing scans.
-ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolder& folder,
-                        Session& session, SimulateResult& result) {
+ReportTimes write_scans(Simulators& simulators, const Plan& plan, PictureDrawer* drawer,
+                        ResumableFolder& folder, Session& session, SimulateResult& result) {
   const ScanScene& scene = simulators.front().scene();
   remove_poses(folder.path(), plan);
   const std::vector<RigWriterSensor> sensors = writer_sensors(simulators, plan);
   warn_about_delay(plan, sensors, session.progress);
-  const auto writer = writer_of(folder.path(), sensors, plan);
+  const auto writer =
+      writer_of(folder.path(), sensors, plan, drawer == nullptr ? nullptr : &drawer->pictures());
   std::vector<std::size_t> done;
   std::size_t missing = 0, missing_rays = 0;
   for (std::size_t k = 0; k < plan.sensors.size(); ++k) {
@@ -235,7 +277,7 @@ ReportTimes write_scans(Simulators& simulators, const Plan& plan, ResumableFolde
   parallel.written = [&journal](std::size_t, std::size_t points,
                                 std::span<const FileDigest> files) { journal.note(points, files); };
   ScanRecorder recorder(*writer, parallel, result.scans_resumed, session);
-  const ReportTimes times = record_scans(simulators, plan, done, recorder, result);
+  const ReportTimes times = record_scans(simulators, plan, done, recorder, drawer, result);
   recorder.finish();
   if (plan.rig)
     write_written_rig(folder.path(), *plan.rig, plan.job, sensors, *writer, session.progress);
@@ -272,6 +314,10 @@ Plan plan_of(const SimulateJob& job, Session& session) {
     require_rig_format(job.format);
     plan.rig = read_rig_to_simulate(job.rig);
     plan.sensors = sensors_of_rig(*plan.rig, job.scan, session.seed);
+    if (!plan.rig->cameras.empty() && !plan.has_pictures())
+      session.progress.warn(job.rig.string() +
+                            ": pictures of its cameras are written in `format` mcap only; see also "
+                            "`render` with `each_pose`");
     if (drive.trajectory.empty() && drive.at.empty() && drive.path.empty())
       drive.trajectory = plan.rig->sensors.front().trajectory;
   }
@@ -287,10 +333,11 @@ Plan plan_of(const SimulateJob& job, Session& session) {
 }
 
 /// Whether tiles of a city are loaded while scans are simulated. Without a trajectory the ground is
-/// searched first, and OptiX has no trees of tiles: both need the complete city in memory.
-bool is_streamed(const SimulateJob& job, const Session& session) {
-  return !job.drive.trajectory.empty() && session.device.kind != DeviceKind::optix &&
-         is_streamable(job.model);
+/// searched first, OptiX has no trees of tiles, and pictures show everything: all need the complete
+/// city in memory.
+bool is_streamed(const Plan& plan, const Session& session) {
+  return !plan.job.drive.trajectory.empty() && session.device.kind != DeviceKind::optix &&
+         !plan.has_pictures() && is_streamable(plan.job.model);
 }
 
 constexpr double kCpuTiles_gb = 1, kGpuTiles_gb = 6;
@@ -298,8 +345,9 @@ constexpr double kCpuTiles_gb = 1, kGpuTiles_gb = 6;
 /// The scene of a job, in memory or tile by tile.
 class OpenScene {
  public:
-  OpenScene(const SimulateJob& job, Session& session) {
-    if (!is_streamed(job, session)) {
+  OpenScene(const Plan& plan, Session& session) {
+    const SimulateJob& job = plan.job;
+    if (!is_streamed(plan, session)) {
       model_ = std::make_unique<ModelScene>(job.model, job.labels, session, WorldFiles::taken);
       return;
     }
@@ -313,7 +361,7 @@ class OpenScene {
     if (city_) return *city_;
     return *model_;
   }
-  const ModelScene* model() const { return model_.get(); }
+  ModelScene* model() const { return model_.get(); }
   std::optional<TileStreamCounts> tiles() const {
     return city_ ? std::optional(city_->counts()) : std::nullopt;
   }
@@ -334,16 +382,20 @@ nlohmann::ordered_json content_of(const Plan& plan, const ScanScene& scene) {
   return simulate_content(plan.job, plan.sensors, plan.rig, scene);
 }
 
-SimulateResult simulate_in(const ScanScene& scene, const Plan& plan, Session& session) {
+/// `drawn`: for pictures; null if there are none.
+SimulateResult simulate_in(const ScanScene& scene, ModelScene* drawn, const Plan& plan,
+                           Session& session) {
   ResumableFolder folder(plan.job.output, plan.job.overwrite, kCommand, content_of(plan, scene));
   record_spans(folder);
   Simulators simulators = simulators_of(plan, scene, session.executor);
+  std::optional<PictureDrawer> drawer;
+  if (drawn != nullptr && plan.has_pictures()) drawer.emplace(plan, *drawn, session);
   SimulateResult result;
   session.progress.begin_step("simulate", plan.scans() * plan.sensors.size());
   const Stopwatch all;
   ReportTimes times;
   try {
-    times = write_scans(simulators, plan, folder, session, result);
+    times = write_scans(simulators, plan, drawer ? &*drawer : nullptr, folder, session, result);
     session.progress.end_step();
     folder.commit(nlohmann::ordered_json::object(), span_note_files(folder.path()));
   } catch (const Error&) {
@@ -408,7 +460,7 @@ SpanResult write_span(Simulators& simulators, const Plan& plan, ScanTask span,
 std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count, Session& session) {
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
-  const OpenScene open(plan.job, session);
+  const OpenScene open(plan, session);
   const ScanScene& scene = *open;
   find_scans(plan, open.model(), session);
   ResumableFolder folder(job.output, job.overwrite, kCommand, content_of(plan, scene));
@@ -427,7 +479,7 @@ std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count,
 SpanResult simulate_span(const SimulateJob& job, ScanTask span, Session& session) {
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
-  const OpenScene open(plan.job, session);
+  const OpenScene open(plan, session);
   const ScanScene& scene = *open;
   find_scans(plan, open.model(), session);
   const std::size_t scans = plan.scans();
@@ -447,9 +499,9 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   Plan plan = plan_of(job, session);
   checked_output_folder(job.output, job.overwrite, kCommand);
-  const OpenScene open(plan.job, session);
+  const OpenScene open(plan, session);
   find_scans(plan, open.model(), session);
-  SimulateResult result = simulate_in(*open, plan, session);
+  SimulateResult result = simulate_in(*open, open.model(), plan, session);
   result.tiles = open.tiles();
   result.seconds = total.seconds();
   return result;
@@ -460,7 +512,7 @@ SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Ses
   Plan plan = plan_of(job, session);
   checked_output_folder(job.output, job.overwrite, kCommand);
   find_scans(plan, &scene, session);
-  SimulateResult result = simulate_in(scene, plan, session);
+  SimulateResult result = simulate_in(scene, nullptr, plan, session);
   result.seconds = total.seconds();
   return result;
 }
