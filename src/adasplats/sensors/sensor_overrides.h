@@ -17,8 +17,8 @@ struct SensorOverrides {
   std::optional<double> rotation_hz;
 
   /// At another rotation rate, spinning sensors of Velodyne and Hesai fire as often as before, so
-  /// they have more or fewer columns; an Ouster has those of its mode. Errors: usage (a value out of
-  /// range; a rate that such a sensor cannot have).
+  /// they have more or fewer columns; an Ouster has those of its mode. Errors: usage (a value out
+  /// of range; a rate that such a sensor cannot have).
   void apply(LidarModel& sensor) const;
 };
 
