@@ -39,7 +39,8 @@ struct SpzHead {
 };
 
 /// The attributes of all Gaussians, one after the other, in the order of the file.
-enum SpzStream : std::uint8_t { kPositions, kAlphas, kColors, kScales, kRotations, kSpzStreams };
+constexpr std::size_t kPositions = 0, kAlphas = 1, kColors = 2, kScales = 3, kRotations = 4;
+constexpr std::size_t kSpzStreams = 5;
 
 std::uint64_t whole_number(std::string_view bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
@@ -89,7 +90,7 @@ class SpzFile {
     }
     return at;
   }
-  double byte(SpzStream stream, std::size_t index) const {
+  double byte(std::size_t stream, std::size_t index) const {
     return static_cast<double>(static_cast<std::uint8_t>(streams_[stream][index]));
   }
   SpzRotation rotation(std::size_t i) const {
