@@ -8,7 +8,7 @@ import struct
 import unittest
 
 from pictures import npy
-from support import AV2_LOG, ProgramTest, run
+from support import AV2_LOG, KNOWN_SENSOR, ProgramTest, run
 
 
 def turned(q, v):
@@ -90,6 +90,7 @@ class Trees(ProgramTest):
 
     def test_a_camera_of_nuscenes_tables(self):
         """Points of a scan, projected as the devkit does it, are at the depths of a picture."""
+        self.sensor.write_text(KNOWN_SENSOR)
         tables = self.tree("nuscenes") / "v1.0-mini"
         rows = {name: json.loads((tables / f"{name}.json").read_text())
                 for name in ("sensor", "calibrated_sensor", "sample_data", "ego_pose")}
@@ -100,11 +101,11 @@ class Trees(ProgramTest):
                      says=["sensor.json", "has no camera"])
         camera = {"token": "c", "sensor_token": "s", "translation": [1.4, 0.3, 1.5],
                   "rotation": [0.5, -0.5, 0.5, -0.5],
-                  "camera_intrinsic": [[60, 0, 79.5], [0, 62, 49.5], [0, 0, 1]]}
+                  "camera_intrinsic": [[120, 0, 159.5], [0, 124, 99.5], [0, 0, 1]]}
         rows["sensor"].append({"token": "s", "channel": "CAM_FRONT", "modality": "camera"})
         rows["calibrated_sensor"].append(camera)
         rows["sample_data"].append({**scan, "token": "d", "calibrated_sensor_token": "c",
-                                    "width": 160, "height": 100})
+                                    "width": 320, "height": 200})
         for name, table in rows.items():
             (tables / f"{name}.json").write_text(json.dumps(table))
         self.run_good("render", self.place, *picture, "--camera", f"{tables}:CAM_FRONT", "--layers",
@@ -118,13 +119,13 @@ class Trees(ProgramTest):
             right, down, ahead = 0.3 - y, 1.5 - z, x - 1.4  # the camera looks along x
             if ahead < 1:
                 continue
-            column = round(79.5 + 60 * right / ahead)
-            row = round(49.5 + 62 * down / ahead)
-            if 0 <= column < 160 and 0 <= row < 100:
+            column = round(159.5 + 120 * right / ahead)
+            row = round(99.5 + 124 * down / ahead)
+            if 0 <= column < 320 and 0 <= row < 200:
                 seen += 1
-                near += abs(depths[160 * row + column] - ahead) < 0.1
+                near += abs(depths[320 * row + column] - ahead) < 0.1
         self.assertGreater(seen, 100)
-        self.assertGreater(near / seen, 0.75)
+        self.assertGreater(near / seen, 0.85)
         self.run_drive("info", tables.parent)  # still a drive
 
     def run_drive(self, *arguments):
@@ -135,6 +136,7 @@ class Trees(ProgramTest):
 
     def test_trees_are_drives(self):
         """Oracle: the six scans that were simulated."""
+        self.sensor.write_text(KNOWN_SENSOR)
         for word, folder, kind in (("pandaset", "001", "PandaSet sequence"),
                                    ("nuscenes", "", "nuScenes scene"),
                                    ("argoverse2", AV2_LOG, "Argoverse 2 log")):
