@@ -10,10 +10,11 @@ import unittest
 from support import ProgramTest, run
 from test_calibrate import hall, winding_line
 
-POSES = 16
-# Name: sensor, mount, yaw, pitch and roll in degrees.
+POSES = 10
+# Name: what its sensor is like, mount, yaw, pitch and roll in degrees.
 SENSORS = {"top": ("velodyne-vlp-32c", [0.5, 0.0, 0.2], [0, 0, 0]),
            "left": ("velodyne-vlp-16", [1.4, 0.8, 0.0], [70, 10, 0])}
+COLUMNS = 450  # a quarter of those of the sensors
 CAMERA = '''
 [[camera]]
 name = "wide"
@@ -40,9 +41,11 @@ class RigCalibration(ProgramTest):
         (self.folder / "hall.obj").write_text(hall())
         (self.folder / "drive.csv").write_text(
             "\n".join(["time,x,y,z,qw,qx,qy,qz"] + [winding_line(k) for k in range(POSES)]))
+        for name, (like, _, _) in SENSORS.items():
+            (self.folder / f"{name}.toml").write_text(f'like = "{like}"\ncolumns = {COLUMNS}\n')
         (self.folder / "rig.toml").write_text(rig_text(
-            {"name": name, "sensor": sensor, "mount": at, "mount_rotation_deg": turn}
-            for name, (sensor, at, turn) in SENSORS.items()))
+            {"name": name, "sensor": f"{name}.toml", "mount": at, "mount_rotation_deg": turn}
+            for name, (_, at, turn) in SENSORS.items()))
 
     def go(self, *words):
         """Runs the program, which must succeed; drives are reported on stderr."""
@@ -137,7 +140,7 @@ class RigCalibration(ProgramTest):
     def test_recording_to_evaluated_model(self):
         out, _ = self.simulated("mcap")
         model = self.folder / "hall.ply"
-        self.go("model", out / "scans.mcap", "-o", model)
+        self.go("model", out / "scans.mcap", "-o", model, "--cell", 0.1)
         for name in SENSORS:
             report = self.folder / f"{name}.json"
             self.go("evaluate", "resimulate", model, out / "scans.mcap", "--topic",
@@ -149,7 +152,7 @@ class RigCalibration(ProgramTest):
     def test_capture_to_evaluated_model(self):
         out, _ = self.simulated("pcap")
         model = self.folder / "hall.ply"
-        self.go("model", out / "rig.toml", "-o", model)
+        self.go("model", out / "rig.toml", "-o", model, "--cell", 0.1)
         for name in SENSORS:
             report = self.folder / f"{name}.json"
             self.go("evaluate", "resimulate", model, out / "rig.toml", "--topic", name,
