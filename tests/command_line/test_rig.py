@@ -25,9 +25,7 @@ SENSORS = {"top": ("velodyne-vlp-16", (0.5, 0.1, 1.9), (0, 0, 0), 0.0),
            "left": ("velodyne-vlp-16", (1.4, 0.8, 1.7), (35, 10, 180), 0.05),
            "right": ("small.toml", (1.6, -0.9, 1.7), (-80, 5, 3), -0.02)}
 SMALL = """name = "small"
-beams = 12
-elevation_top_deg = 15.0
-elevation_bottom_deg = -40.0
+like = "velodyne-vlp-32c"
 columns = 360
 rotation_hz = 20
 max_range_m = 60.0
@@ -412,9 +410,10 @@ class Rig(ProgramTest):
                 done = run("export", out / sensor["input"], "-o", cloud, *words)
                 self.assertEqual(done.returncode, 0, (word, sensor, done.stderr))
                 with cloud.open() as file:
-                    rows = [tuple(float(row[axis]) for axis in "xyz")
-                            for row in csv.DictReader(file)]
+                    names, *rows = csv.reader(file)
                 self.assertGreater(len(rows), 2000)
+                self.assertEqual(names[:3], ["x", "y", "z"])
+                rows = [tuple(map(float, row[:3])) for row in rows[::5]]
                 far = sum(min(abs(box_distance(row, box)) for box in HALL) > 0.03 for row in rows)
                 self.assertLess(far, 0.01 * len(rows), (word, sensor["name"]))
 
