@@ -60,14 +60,15 @@ RECORD_BYTES = 36
 
 class WrongOrigins(ProgramTest):
     """The measuring street with sensor positions from which it can be seen, and was not."""
-    QUIET = ("--labels", "semantickitti", "--remove", "none", "--driven-path", "0")
+    QUIET = ("--labels", "semantickitti", "--remove", "none", "--driven-path", "0", "--cell", "0.1",
+             "--small-cell", "0")
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.place = Path(tempfile.mkdtemp(prefix="adasplats street "))
         cls.addClassCleanup(shutil.rmtree, cls.place, ignore_errors=True)
-        result = run("synth", "street", "-o", cls.place / "street")
+        result = run("synth", "street", "-o", cls.place / "street", "--points", "150000")
         assert result.returncode == 0, result.stderr
         cls.right = cls.place / "street" / "mapping.ply"
         cls.mirrored = cls.place / "mirrored.ply"
