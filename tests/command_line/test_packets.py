@@ -266,12 +266,11 @@ class Captures(ProgramTest):
             with self.subTest(sensor):
                 folder = self.drive(sensor, sensor, "--no-noise")
                 model = self.folder / f"{sensor}.ply"
-                result = run("model", folder / "drive.pcap", "--trajectory", folder / "poses.csv",
-                             "-o", model)
+                drive = [folder / "drive.pcap", "--trajectory", folder / "poses.csv", "--scans", "0:4"]
+                result = run("model", *drive, "-o", model, "--cell", "0.1", "--small-cell", "0")
                 self.assertEqual(result.returncode, 0, result.stderr)
                 report = self.folder / "r.json"
-                result = run("evaluate", "resimulate", self.place, folder / "drive.pcap",
-                             "--trajectory", folder / "poses.csv", "--report", report)
+                result = run("evaluate", "resimulate", self.place, *drive, "--report", report)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 figures = json.loads(report.read_text())
                 # The place that sent them has them at its surfaces, to the steps of packets.

@@ -112,12 +112,13 @@ class PandaSetRig(ProgramTest):
         for angle, expected in zip(sensors[1]["yaw_pitch_roll_deg"], (88.5, 0, 0)):
             self.assertAlmostEqual(angle, expected, delta=0.1)
 
+        cells = ["--cell", "0.1", "--small-cell", "0"]
         model, by_file = self.folder / "both.ply", self.folder / "by_file.ply"
         self.assertIn("pandargt: mount turned by",
-                      self.go("model", both, "--scans", "0:8:2", "-o", model).stdout)
+                      self.go("model", both, "--scans", "0:8:2", *cells, "-o", model).stdout)
         (self.folder / "both.toml").write_text(rig_text(
             {"name": name, "input": "both", "topic": name} for name in ("pandar64", "pandargt")))
-        self.go("model", self.folder / "both.toml", "--scans", "0:8:2", "-o", by_file)
+        self.go("model", self.folder / "both.toml", "--scans", "0:8:2", *cells, "-o", by_file)
         self.assertEqual(model.read_bytes(), by_file.read_bytes())
         rays = {}
         for name in ("", "pandar64", "pandargt"):
