@@ -19,7 +19,8 @@ from support import PROGRAM, run, tiny_place, write_cloud, write_network
 # The tests work with relative paths in folders of their own.
 ABSOLUTE_PROGRAM = str(Path(shutil.which(PROGRAM) or PROGRAM).resolve())
 
-COARSE = ["--picture-width", "64", "--every", "40"]
+FEW_BEAMS = ["--picture-width", "64", "--sensor", "velodyne-vlp-16"]
+COARSE = [*FEW_BEAMS, "--every", "40"]
 CHILD_STEPS = ["generate", "render", "picture", "simulate", "c2c", "resimulate", "truth"]
 
 # Of every competitor that is done, by parts of its entry.
@@ -404,7 +405,7 @@ class Street(CompareTest):
 
 class Presets(CompareTest):
     """Folders as the authors of the paper's data ship them."""
-    RUN = ["-o", "out", "--methods", "basic", "--picture-width", "64"]
+    RUN = ["-o", "out", "--methods", "basic", *FEW_BEAMS]
 
     def paper_names(self):
         return [row["name"] for row in results_of(self.output)["paper"]["rows"]]
@@ -456,8 +457,8 @@ class Presets(CompareTest):
         points = tiny_place()
         write_cloud(self.folder / "place.ply", points)
         network = self.network()
-        words = ["place.ply", "-o", "out", "--methods", "kpconv,semantic", "--picture-width", "64",
-                 "--labels", "semantickitti", "--network", network.name]
+        words = ["place.ply", "-o", "out", "--methods", "kpconv,semantic", *FEW_BEAMS, "--labels",
+                 "semantickitti", "--network", network.name]
         self.compare(*words)
         rows = rows_of(self.output)
         self.assertEqual([(row["title"], row["state"]) for row in rows.values()],
@@ -500,7 +501,7 @@ class Presets(CompareTest):
     def test_kpconv_of_points_without_labels_or_of_another_scheme(self):
         write_cloud(self.folder / "place.ply", tiny_place(), labels=False)
         network = self.network()
-        words = ["place.ply", "-o", "out", "--picture-width", "64", "--network", network.name]
+        words = ["place.ply", "-o", "out", *FEW_BEAMS, "--network", network.name]
         self.compare(*words, "--methods", "kpconv")
         row = rows_of(self.output)["kpconv"]
         self.assertEqual(row["state"], "done", row)
@@ -527,8 +528,8 @@ class Presets(CompareTest):
         (self.folder / "paris").mkdir()
         write_cloud(self.folder / "paris" / "Soufflot_1.ply", points[::2])
         write_cloud(self.folder / "paris" / "Soufflot_2.ply", points[1::2])
-        paper = ["paris", "--preset", "paper-pc3d", "-o", "out", "--picture-width", "64", "--methods",
-                 "basic,semantic,imls"]
+        paper = ["paris", "--preset", "paper-pc3d", "-o", "out", *FEW_BEAMS, "--methods",
+                 "basic,imls"]
         self.compare(*paper)
         self.assertEqual(results_of(self.output)["data"]["removed"],
                          {"rule": "movable", "points": 30, "by_class": {"vehicles": 30},
