@@ -5,6 +5,7 @@ import html
 import json
 import math
 import re
+import shlex
 import struct
 import subprocess
 import unittest
@@ -102,7 +103,8 @@ class Pipeline(ProgramTest):
         for flag in ("--empty-beams", "--no-empty-beams"):
             model = self.folder / f"m{flag}.ply"
             made = self.report("model", street / "mapping.ply", "-o", model, flag, "--labels",
-                               "semantickitti", "--driven-path", "0")
+                               "semantickitti", "--driven-path", "0", "--cell", "0.1",
+                               "--small-cell", "0")
             self.assertEqual(made["empty_beams"] > 1000, flag == "--empty-beams", made)
             truth = self.report("evaluate", "truth", model, street / "mesh.ply", "--trajectory",
                                 street / "mapping_trajectory.csv", "--every", "20", "--sensor",
@@ -233,8 +235,9 @@ class Pipeline(ProgramTest):
         self.assertEqual(content["seed"], 3)
 
     def test_demo(self):
-        demo = self.folder / "demo"
-        text = self.run_good("demo", "-o", "demo", "--points", "5000", "--driving-spacing", "25",
+        name = "it's a \"$HOME\" `id` & b;c"
+        demo = self.folder / name
+        text = self.run_good("demo", "-o", name, "--points", "5000", "--driving-spacing", "25",
                              cwd=self.folder).stdout
         for word in ["basic", "descriptors", "semantic", "consistent", "thin C2C"]:
             self.assertIn(word, text)
@@ -245,19 +248,16 @@ class Pipeline(ProgramTest):
             self.assertGreater(png_size(picture)[0], 0)
         page = (demo / "index.html").read_text(encoding="utf-8")
         self.assertEqual(page.count("data:image/png"), len(pictures))
-        named = [line.split()[0] for line in text.splitlines() if line.startswith("  demo/")]
-        self.assertEqual(named, ["demo/demo.png", "demo/index.html"])
-        for name in named:
-            self.assertTrue((self.folder / name).is_file(), name)
+        named = [line.strip().split("  ")[0] for line in text.splitlines()
+                 if line.startswith(f"  {name}/")]
+        self.assertEqual(named, [f"{name}/demo.png", f"{name}/index.html"])
+        for path in named:
+            self.assertTrue((self.folder / path).is_file(), path)
         # A command that the page shows runs as it stands there.
         command = re.search(r"<pre>adasplats (simulate [^<]*)</pre>", page).group(1)
-        self.run_good(*html.unescape(command).split(), cwd=self.folder)
+        self.run_good(*shlex.split(html.unescape(command)), cwd=self.folder)
 
-    def test_commands_of_a_demo_are_quoted(self):
-        name = "it's a \"$HOME\" `id` & b;c"
-        text = self.run_good("demo", "-o", name, "--points", "5000", "--driving-spacing", "25",
-                             cwd=self.folder).stdout
-        page = (self.folder / name / "index.html").read_text(encoding="utf-8")
+        # Its commands are quoted.
         shown = [html.unescape(command) for command in re.findall("<pre>(.*?)</pre>", page)]
         shown = [command for command in shown if "YOUR_POINTS" not in command]
         printed = next(line for line in text.splitlines() if line.startswith("  adasplats view"))
