@@ -8,11 +8,12 @@ import shlex
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 from pathlib import Path
 
-from support import PROGRAM, ProgramTest, tree_digest
+from support import PROGRAM, ProgramTest, tiny_place, tree_digest, write_cloud
 
 
 def has_gnu_parallel():
@@ -25,8 +26,17 @@ def has_gnu_parallel():
 class CityTasks(ProgramTest):
     """A place of 15 m in tiles of 6 m, each with all that is around it."""
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.digest = None
+        cls.place = Path(tempfile.mkdtemp(prefix="adasplats test ä "))
+        cls.addClassCleanup(shutil.rmtree, cls.place, ignore_errors=True)
+        write_cloud(cls.place / "cloud.ply", tiny_place())
+
     def setUp(self):
         super().setUp()
+        self.cloud = self.place / "cloud.ply"  # the city holds its path
         self.city = self.folder / "it's a city"
         self.unfinished = self.folder / ".it's a city.unfinished"
 
@@ -35,11 +45,12 @@ class CityTasks(ProgramTest):
                 "--device", "cpu", "--threads", "1", "-o", output or self.city, *words]
 
     def whole(self):
-        """The digest of the city that one command makes."""
-        output = self.folder / "whole"
-        if not output.exists():
+        """The digest of the city that one command makes; it is made once for all tests."""
+        if CityTasks.digest is None:
+            output = self.folder / "whole"
             self.run_good(*self.command(output=output))
-        return tree_digest(output)
+            CityTasks.digest = tree_digest(output)
+        return CityTasks.digest
 
     def plan(self):
         """The lines of the tasks; the last line is the command that finishes, as a comment."""
