@@ -23,7 +23,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::string_view kSpzMagic = "NGSP", kGzipMagic = "\x1f\x8b";
+constexpr std::string_view kSpzMagic = "NGSP";
 constexpr std::uint32_t kMaxGaussians = 1U << 26;
 constexpr std::array<const char*, 14> kSpzColumns = {
     "x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
@@ -63,6 +63,8 @@ class SpzFile {
       read_streams(bytes);
       return;
     }
+    if (!bytes.starts_with("\x1f\x8b"))
+      throw error("is not SPZ: it begins neither with NGSP nor as gzip");
     constexpr std::size_t kMaxBytes = std::size_t{1} << 34;
     constexpr std::size_t kMaxGrowth = 1100;  // of deflate
     content_ = gunzipped(path, bytes, std::min(kMaxBytes, kMaxGrowth * (bytes.size() + 1024)));
@@ -109,7 +111,7 @@ class SpzFile {
 
   void read_head(std::string_view bytes, std::uint32_t first_version, std::uint32_t last_version) {
     if (bytes.size() < kHeadBytes || !bytes.starts_with(kSpzMagic))
-      throw error("is not SPZ: it does not begin with NGSP");
+      throw error("is not SPZ: its content does not begin with NGSP");
     const auto at = [&](std::size_t k) { return static_cast<std::uint8_t>(bytes[k]); };
     head_ = {static_cast<std::uint32_t>(whole_number(bytes, 4, 4)),
              static_cast<std::uint32_t>(whole_number(bytes, 8, 4)),
@@ -195,11 +197,7 @@ std::array<double, 4> turned(const SpzRotation& q) {
 }  // namespace
 
 bool is_spz(const std::filesystem::path& path) {
-  if (lower_case(path.extension().string()) != ".spz") return false;
-  InputFile file(path);
-  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(4, file.size_bytes()));
-  const std::string_view begin(reinterpret_cast<const char*>(file.peek(size).data()), size);
-  return begin == kSpzMagic || begin.starts_with(kGzipMagic);
+  return lower_case(path.extension().string()) == ".spz";
 }
 
 Table read_spz(const std::filesystem::path& path) {

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// Whether the extension is .spz and the file begins as one: gzip, or "NGSP".
+/// Whether the extension is .spz.
 bool is_spz(const std::filesystem::path& path);
 
 /// Reads Gaussians in SPZ (Niantic, versions 2 to 4) as the PLY layout of 3D Gaussian Splatting:
