@@ -9,7 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from support import ProgramTest, run, tiny_place
+from support import LARGE_CELLS, ProgramTest, run, tiny_place
 
 
 class Origins(ProgramTest):
@@ -60,8 +60,7 @@ RECORD_BYTES = 36
 
 class WrongOrigins(ProgramTest):
     """The measuring street with sensor positions from which it can be seen, and was not."""
-    QUIET = ("--labels", "semantickitti", "--remove", "none", "--driven-path", "0", "--cell", "0.1",
-             "--small-cell", "0")
+    QUIET = ("--labels", "semantickitti", "--remove", "none", "--driven-path", "0", *LARGE_CELLS)
 
     @classmethod
     def setUpClass(cls):

@@ -11,7 +11,7 @@ import unittest
 from collections import defaultdict
 
 import packet_parser
-from support import ProgramTest, run, tree_digest
+from support import LARGE_CELLS, ProgramTest, run, tree_digest
 
 # Manual 63-9243, table "Vertical angles by laser id".
 VLP_16_TILTS = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
@@ -267,7 +267,7 @@ class Captures(ProgramTest):
                 folder = self.drive(sensor, sensor, "--no-noise")
                 model = self.folder / f"{sensor}.ply"
                 drive = [folder / "drive.pcap", "--trajectory", folder / "poses.csv", "--scans", "0:4"]
-                result = run("model", *drive, "-o", model, "--cell", "0.1", "--small-cell", "0")
+                result = run("model", *drive, "-o", model, *LARGE_CELLS)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 report = self.folder / "r.json"
                 result = run("evaluate", "resimulate", self.place, *drive, "--report", report)

@@ -12,7 +12,7 @@ import struct
 import unittest
 from array import array
 
-from support import ProgramTest, run
+from support import LARGE_CELLS, ProgramTest, run
 from test_calibrate import hall, winding_line
 from test_rig import moved, rotation, rotation_of
 from test_rig_calibration import rig_text
@@ -112,13 +112,12 @@ class PandaSetRig(ProgramTest):
         for angle, expected in zip(sensors[1]["yaw_pitch_roll_deg"], (88.5, 0, 0)):
             self.assertAlmostEqual(angle, expected, delta=0.1)
 
-        cells = ["--cell", "0.1", "--small-cell", "0"]
         model, by_file = self.folder / "both.ply", self.folder / "by_file.ply"
         self.assertIn("pandargt: mount turned by",
-                      self.go("model", both, "--scans", "0:8:2", *cells, "-o", model).stdout)
+                      self.go("model", both, "--scans", "0:8:2", *LARGE_CELLS, "-o", model).stdout)
         (self.folder / "both.toml").write_text(rig_text(
             {"name": name, "input": "both", "topic": name} for name in ("pandar64", "pandargt")))
-        self.go("model", self.folder / "both.toml", "--scans", "0:8:2", *cells, "-o", by_file)
+        self.go("model", self.folder / "both.toml", "--scans", "0:8:2", *LARGE_CELLS, "-o", by_file)
         self.assertEqual(model.read_bytes(), by_file.read_bytes())
         rays = {}
         for name in ("", "pandar64", "pandargt"):
@@ -138,12 +137,13 @@ class PandaSetRig(ProgramTest):
         self.assertEqual(bad.returncode, 65)
         for text in ("sensor 'pandargt'", "do not fit those of 'pandar64'", "--topic"):
             self.assertIn(text, bad.stderr.splitlines()[-1])
-        self.go("model", both, "--topic", "pandar64", "--scans", "0:2", "-o", self.folder / "m.ply")
+        self.go("model", both, "--topic", "pandar64", "--scans", "0:2", *LARGE_CELLS, "-o",
+                self.folder / "m.ply")
 
     def test_few_points_of_the_pandargt_are_left_out(self):
         few = self.joined("few", every=20)
         for name, tree in (("few", few), ("alone", self.alone)):
-            self.go("model", tree, "--scans", "0:2", "-o", self.folder / f"{name}.ply")
+            self.go("model", tree, "--scans", "0:2", *LARGE_CELLS, "-o", self.folder / f"{name}.ply")
         self.assertEqual((self.folder / "few.ply").read_bytes(),
                          (self.folder / "alone.ply").read_bytes())
         self.assertIn("points of the PandarGT (d = 1)", self.go("info", few).stdout)

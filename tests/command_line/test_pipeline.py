@@ -11,7 +11,7 @@ import subprocess
 import unittest
 
 from pictures import png_size
-from support import ProgramTest, run, tiny_place, write_cloud
+from support import LARGE_CELLS, ProgramTest, run, tiny_place, write_cloud
 
 
 class Pipeline(ProgramTest):
@@ -103,8 +103,7 @@ class Pipeline(ProgramTest):
         for flag in ("--empty-beams", "--no-empty-beams"):
             model = self.folder / f"m{flag}.ply"
             made = self.report("model", street / "mapping.ply", "-o", model, flag, "--labels",
-                               "semantickitti", "--driven-path", "0", "--cell", "0.1",
-                               "--small-cell", "0")
+                               "semantickitti", "--driven-path", "0", *LARGE_CELLS)
             self.assertEqual(made["empty_beams"] > 1000, flag == "--empty-beams", made)
             truth = self.report("evaluate", "truth", model, street / "mesh.ply", "--trajectory",
                                 street / "mapping_trajectory.csv", "--every", "20", "--sensor",

@@ -22,23 +22,19 @@ class Render(ProgramTest):
         self.assertNotEqual(with_captions.read_bytes(), without.read_bytes())
 
     def test_errors_of_held_out_beams(self):
-        demo = self.folder / "demo"
-        self.run_good("demo", "-o", demo, "--points", "5000", "--driving-spacing", "25")
-        errors, picture = demo / "consistent-errors.ply", self.folder / "p.png"
+        model, basic = self.model(), self.model("basic.ply", "--method", "basic")
+        errors, picture = self.folder / "errors.ply", self.folder / "p.png"
         by_class = self.folder / "class.png"
-        self.run_good("render", demo / "consistent.ply", "--errors", errors, "-o", picture, *SMALL)
-        self.run_good("render", demo / "consistent.ply", "-o", by_class, *SMALL)
+        self.run_good("evaluate", "resimulate", model, self.simulate(basic), "--errors", errors)
+        self.run_good("render", model, "--errors", errors, "-o", picture, *SMALL)
+        self.run_good("render", model, "-o", by_class, *SMALL)
         self.assertNotEqual(picture.read_bytes(), by_class.read_bytes())
         self.run_good("render", errors, "-o", picture, *SMALL)  # its points alone
-        self.run_bad(65, "render", demo / "basic.ply", "--errors", demo / "street" / "mapping.ply",
-                     "-o", picture, *SMALL, says=["error_m"])
-        self.run_bad(64, "render", demo / "basic.ply", demo / "consistent.ply", "--errors", errors,
-                     "-o", picture, *SMALL, says=["--errors"])
-        few = self.folder / "few.ply"
-        write_cloud(self.folder / "few-points.ply", tiny_place())
-        self.run_good("model", self.folder / "few-points.ply", "-o", few, "--labels",
-                      "semantickitti")
-        self.run_bad(65, "render", few, "--errors", errors, "-o", picture, *SMALL,
+        self.run_bad(65, "render", basic, "--errors", self.cloud, "-o", picture, *SMALL,
+                     says=["error_m"])
+        self.run_bad(64, "render", basic, model, "--errors", errors, "-o", picture, *SMALL,
+                     says=["--errors"])
+        self.run_bad(65, "render", basic, "--errors", errors, "-o", picture, *SMALL,
                      says=["another model"])
 
     def test_difference(self):

@@ -7,7 +7,7 @@ import struct
 import tomllib
 import unittest
 
-from support import ProgramTest, run
+from support import LARGE_CELLS, ProgramTest, run
 from test_calibrate import hall, winding_line
 
 POSES = 10
@@ -140,7 +140,7 @@ class RigCalibration(ProgramTest):
     def test_recording_to_evaluated_model(self):
         out, _ = self.simulated("mcap")
         model = self.folder / "hall.ply"
-        self.go("model", out / "scans.mcap", "-o", model, "--cell", 0.1)
+        self.go("model", out / "scans.mcap", "-o", model, *LARGE_CELLS)
         for name in SENSORS:
             report = self.folder / f"{name}.json"
             self.go("evaluate", "resimulate", model, out / "scans.mcap", "--topic",
@@ -152,7 +152,7 @@ class RigCalibration(ProgramTest):
     def test_capture_to_evaluated_model(self):
         out, _ = self.simulated("pcap")
         model = self.folder / "hall.ply"
-        self.go("model", out / "rig.toml", "-o", model, "--cell", 0.1)
+        self.go("model", out / "rig.toml", "-o", model, *LARGE_CELLS)
         for name in SENSORS:
             report = self.folder / f"{name}.json"
             self.go("evaluate", "resimulate", model, out / "rig.toml", "--topic", name,

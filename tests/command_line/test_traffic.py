@@ -8,7 +8,7 @@ import struct
 import tomllib
 import unittest
 
-from support import ProgramTest
+from support import LARGE_CELLS, ProgramTest
 from test_packets import ply_rows
 
 SCANS = 16
@@ -75,7 +75,7 @@ class Traffic(ProgramTest):
     def test_a_car_is_found_drives_again_and_can_be_removed(self):
         drive = self.record()
         place = self.folder / "place"
-        result = self.run_good("model", drive, "--traffic", "-o", place, "--report",
+        result = self.run_good("model", drive, "--traffic", *LARGE_CELLS, "-o", place, "--report",
                                self.folder / "report.json")
         self.assertIn("1 moving objects and 0 at rest; 0 left out", result.stdout)
         car, = json.loads((self.folder / "report.json").read_text())["objects"]
@@ -122,7 +122,7 @@ class Traffic(ProgramTest):
                       "--trajectory", self.folder / "ego.csv", "-o", self.folder / "drive")
         place = self.folder / "place"
         result = self.run_good("model", self.folder / "drive" / "sequences" / "00", "--traffic",
-                               "-o", place)
+                               *LARGE_CELLS, "-o", place)
         self.assertIn("1 moving objects and 1 at rest; 0 left out", result.stdout)
         moving, parked = tomllib.loads((place / "world.toml").read_text())["object"]
         self.assertEqual((moving["name"], moving["class"]), ("001-car", MOVING_CAR))
