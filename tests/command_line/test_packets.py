@@ -266,7 +266,8 @@ class Captures(ProgramTest):
             with self.subTest(sensor):
                 folder = self.drive(sensor, sensor, "--no-noise")
                 model = self.folder / f"{sensor}.ply"
-                drive = [folder / "drive.pcap", "--trajectory", folder / "poses.csv", "--scans", "0:4"]
+                drive = [folder / "drive.pcap", "--trajectory", folder / "poses.csv", "--scans",
+                         "0:4"]
                 result = run("model", *drive, "-o", model, *LARGE_CELLS)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 report = self.folder / "r.json"

@@ -143,7 +143,8 @@ class PandaSetRig(ProgramTest):
     def test_few_points_of_the_pandargt_are_left_out(self):
         few = self.joined("few", every=20)
         for name, tree in (("few", few), ("alone", self.alone)):
-            self.go("model", tree, "--scans", "0:2", *LARGE_CELLS, "-o", self.folder / f"{name}.ply")
+            self.go("model", tree, "--scans", "0:2", *LARGE_CELLS, "-o",
+                    self.folder / f"{name}.ply")
         self.assertEqual((self.folder / "few.ply").read_bytes(),
                          (self.folder / "alone.ply").read_bytes())
         self.assertIn("points of the PandarGT (d = 1)", self.go("info", few).stdout)
