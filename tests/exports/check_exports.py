@@ -324,7 +324,16 @@ mount = [1.5, 0.25, 1]
             ("wide", 'model = "fisheye"\ncoefficients = [0.01, 0.002, 0, 0]'),
             ("front", 'model = "rational"\ncoefficients = [0.1, 0.2, 0.01, 0.02, 0.3, 0.4, 0.5, 0.6]'),
             ("left", "mount_rotation_deg = [90, 0, 0]")]), encoding="utf-8")
-        model = self.model()
+        self.model()
+        # An object in front of the cameras at the first pose and far above them at the others.
+        first_s = float(self.poses.read_text().splitlines()[1].split(",")[0])
+        (self.folder / "box.obj").write_text("v 0 -1 0\nv 0 1 0\nv 0 0 2\nf 1 2 3\n")
+        (self.folder / "way.csv").write_text(
+            f"time,x,y,z,qw,qx,qy,qz\n{first_s},9,0,0,1,0,0,0\n{first_s + 0.1},9,0,90,1,0,0,0\n"
+            f"{first_s + 9},9,0,90,1,0,0,0\n")
+        model = self.folder / "world.toml"
+        model.write_text('model = "model.ply"\n[[object]]\ngeometry = "box.obj"\nclass = 10\n'
+                         'trajectory = "way.csv"\n')
         self.run_good("simulate", model, "--trajectory", self.poses, "--rig", rig, "-o",
                       self.folder / "drive", "--format", "mcap")
         times_s = [float(line.split(",")[0]) for line in self.poses.read_text().splitlines()[1:]]
@@ -352,6 +361,14 @@ mount = [1.5, 0.25, 1]
         said = run("simulate", model, "--trajectory", self.poses, "--rig", rig, "-o",
                    self.folder / "plys", "--format", "ply").stderr
         self.assertIn("pictures of its cameras are written in --format mcap only", said)
+        for text, name, says in [('"left"', '"le/ft"', "without / and spaces"),
+                                 ('"top"', '"left_optical"', "the frame of a camera")]:
+            wrong = self.folder / "wrong.toml"
+            wrong.write_text(rig.read_text(encoding="utf-8").replace(text, name), encoding="utf-8")
+            before = self.names()
+            self.run_bad(64, "simulate", model, "--trajectory", self.poses, "--rig", wrong, "-o",
+                         self.folder / "none", "--format", "mcap", says=[says])
+            self.assertEqual(self.names(), before)
 
 
 def missing():

@@ -195,14 +195,22 @@ class RigMessages final : public RigWriter {
     std::string frame;
   };
 
+  /// Errors: usage (a name that is no part of a topic, or whose frame is that of a sensor).
   void add_cameras(double begin_s, std::vector<RosTransform>& mounts) {
-    for (const MountedCamera& camera : pictures_->cameras())
+    for (const MountedCamera& camera : pictures_->cameras()) {
+      if (camera.name.empty() || camera.name.find_first_of(" \t\n/\\") != std::string::npos)
+        throw Error(ErrorKind::usage, "camera '" + camera.name +
+                                          "' of the rig: topics need a name without / and spaces");
+      for (const RigWriterSensor& sensor : sensors())
+        if (sensor.name == camera.name + "_optical")
+          throw rig_error(sensor, "is named as the frame of a camera; choose another name");
       cameras_.push_back(
           {file_.add_channel(ros_channel("/" + camera.name + "/image_raw/compressed",
                                          kCompressedImageType, compressed_image_definition())),
            file_.add_channel(ros_channel("/" + camera.name + "/camera_info", kCameraInfoType,
                                          camera_info_definition())),
            camera.name + "_optical"});
+    }
     for (std::size_t k = 0; k < cameras_.size(); ++k)
       mounts.push_back({{begin_s, pictures_->cameras()[k].vehicle_from_camera *
                                       RigidTransform{kCameraFromOptical, {}}},

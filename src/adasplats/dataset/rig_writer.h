@@ -68,12 +68,12 @@ void require_rig_format(ScanFormat format);
 /// mcap: FOLDER/scans.mcap with a topic per sensor (rig_topic()), /tf (base_link in map) and
 /// /tf_static (NAME in base_link), all rig_ros_delay_s() later; `pictures` (null: none) with the
 /// time of the pose of a scan as /CAMERA/image_raw/compressed and /CAMERA/camera_info in the frame
-/// CAMERA_optical. pcap: FOLDER/drive.pcap, and in
-/// NAME/ the files of make_packet_writer(). Both in the order of the vehicle's clock, if scans of
-/// different sensors are appended in turns. Other formats: the files of make_scan_writer() in
-/// NAME/, and NAME.times, the times of the scans (read_scan_times()). Errors: usage (nuscenes,
-/// which the writer limits to one LiDAR; names of frames in mcap; pcap: an offset of a minute, two
-/// sensors that send from one address and port), those of make_scan_writer().
+/// CAMERA_optical. pcap: FOLDER/drive.pcap, and in NAME/ the files of make_packet_writer(). Both in
+/// the order of the vehicle's clock, if scans of different sensors are appended in turns. Other
+/// formats: the files of make_scan_writer() in NAME/, and NAME.times, the times of the scans
+/// (read_scan_times()). Errors: usage (nuscenes, which the writer limits to one LiDAR; names of
+/// frames and cameras in mcap; pcap: an offset of a minute, two sensors that send from one address
+/// and port), those of make_scan_writer().
 std::unique_ptr<ScanWriter> make_rig_writer(const std::filesystem::path& folder, ScanFormat format,
                                             std::vector<RigWriterSensor> sensors,
                                             Trajectory vehicle, RigPictures* pictures = nullptr);

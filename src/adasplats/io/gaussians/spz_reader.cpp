@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -34,7 +33,7 @@ using SpzRotation = std::array<double, 4>;
 
 struct SpzHead {
   std::uint32_t version = 0, count = 0;
-  std::uint8_t degree = 0, fractional_bits = 0, flags = 0;
+  std::uint8_t fractional_bits = 0;
   std::uint8_t streams = 0;  ///< from version 4 on
 };
 
@@ -66,7 +65,7 @@ class SpzFile {
     if (!bytes.starts_with("\x1f\x8b"))
       throw error("is not SPZ: it begins neither with NGSP nor as gzip");
     constexpr std::size_t kMaxBytes = std::size_t{1} << 34;
-    constexpr std::size_t kMaxGrowth = 1100;  // of deflate
+    constexpr std::size_t kMaxGrowth = 256;  // real ones grow less than tenfold
     content_ = gunzipped(path, bytes, std::min(kMaxBytes, kMaxGrowth * (bytes.size() + 1024)));
     read_head(content_, 2, 3);
     std::string_view rest = std::string_view(content_).substr(kHeadBytes);
@@ -114,11 +113,7 @@ class SpzFile {
       throw error("is not SPZ: its content does not begin with NGSP");
     const auto at = [&](std::size_t k) { return static_cast<std::uint8_t>(bytes[k]); };
     head_ = {static_cast<std::uint32_t>(whole_number(bytes, 4, 4)),
-             static_cast<std::uint32_t>(whole_number(bytes, 8, 4)),
-             at(12),
-             at(13),
-             at(14),
-             at(15)};
+             static_cast<std::uint32_t>(whole_number(bytes, 8, 4)), at(13), at(15)};
     if (head_.version < first_version || head_.version > last_version)
       throw error("SPZ version " + std::to_string(head_.version) + ", expected 2 to 4");
     if (head_.count == 0) throw error("contains no Gaussians");

@@ -36,6 +36,7 @@
 #include "adasplats/jobs/scene/rig_sensors.h"
 #include "adasplats/jobs/scene/world_clock.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/simulate/image/image.h"
 
 namespace adasplats {
 namespace {
@@ -182,6 +183,8 @@ class PictureDrawer {
       : plan_(plan), scene_(scene), session_(session), pictures_(plan.rig->cameras) {
     options_.color = scene.default_color();
     options_.samples_per_axis = 2;  // as `render`
+    // One scale for all pictures, whatever objects they show.
+    options_.range = shown_range(scene.image_scene(), options_.color);
   }
 
   RigPictures& pictures() { return pictures_; }
