@@ -8,6 +8,10 @@
 
 namespace adasplats {
 
+/// The constant spherical harmonic, sqrt(1 / (4 pi)): a colour from 0 to 1 is 0.5 + its coefficient
+/// times this.
+inline constexpr double kHarmonic0 = 0.28209479177387814;
+
 /// A Gaussian volume as a flat one: without its extent along its shortest axis.
 struct FlatGaussian {
   Vec3d normal;       ///< the shortest axis, unit

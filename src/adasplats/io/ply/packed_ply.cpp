@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/flat_gaussian.h"
 
 namespace adasplats {
 namespace {
@@ -80,7 +81,6 @@ class Unpacker {
   }
 
   std::array<double, kUnpacked.size()> row(std::size_t i) const {
-    constexpr double kHarmonic0 = 0.28209479177387814;
     const auto position = shares_11_10_11(word(0, i)), scale = shares_11_10_11(word(1, i));
     const std::uint32_t rgba = word(2, i);
     const std::array<double, 9> shares = {position[0],

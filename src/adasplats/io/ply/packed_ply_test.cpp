@@ -77,9 +77,9 @@ TEST(PackedPly, GaussiansAreUnpacked) {
     EXPECT_EQ(value(table, "opacity"), INFINITY);
     EXPECT_NEAR(value(table, "rot_1"), 1, 1e-5);
     EXPECT_NEAR(value(table, "rot_0"), 0, 1e-3);
-    constexpr double kHarmonic0 = 0.28209479177387814;
-    EXPECT_NEAR(value(table, "f_dc_0"), ((has_color_ranges ? 6 : 1) - 0.5) / kHarmonic0, 1e-9);
-    EXPECT_NEAR(value(table, "f_dc_2"), ((has_color_ranges ? -2 : 0) - 0.5) / kHarmonic0, 1e-9);
+    constexpr double kHarmonic = 0.28209479177387814;
+    EXPECT_NEAR(value(table, "f_dc_0"), ((has_color_ranges ? 6 : 1) - 0.5) / kHarmonic, 1e-9);
+    EXPECT_NEAR(value(table, "f_dc_2"), ((has_color_ranges ? -2 : 0) - 0.5) / kHarmonic, 1e-9);
   }
 }
 

@@ -647,7 +647,7 @@ GltfReader::SplatAttributes GltfReader::splat_attributes(const GltfMember& primi
 }
 
 void GltfReader::add_splats(const GltfMember& primitive, const AffineMap& world_from_mesh) {
-  constexpr double kHarmonic0 = 0.28209479177387814, kEven = 1e-3, kGrey = 0.72;
+  constexpr double kEven = 1e-3, kGrey = 0.72;
   const SplatAttributes all = splat_attributes(primitive);
   // glTF has y up and z forward; ours is z of glTF forward.
   const Mat3d ours_from_gltf = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};

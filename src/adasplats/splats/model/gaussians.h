@@ -21,9 +21,6 @@ namespace adasplats {
 inline constexpr double kGaussianSigmaOverRadius = 0.70710678118654752;
 /// Standard deviation along the normal divided by that in the plane: flat in any viewer.
 inline constexpr double kGaussianThickness = 0.01;
-/// The constant spherical harmonic, sqrt(1 / (4 pi)): a colour from 0 to 1 is 0.5 + its coefficient
-/// times this.
-inline constexpr double kHarmonic0 = 0.28209479177387814;
 
 /// Standard deviation in the plane of a disk's Gaussian, m. A soft disk's is that of the radius
 /// where its opacity falls to half.
