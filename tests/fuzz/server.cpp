@@ -60,13 +60,13 @@ bool leads_elsewhere(std::string_view path) {
 }
 
 std::shared_ptr<ServerCore> make_core(CountingHandler& handler) {
-  const auto get = [](std::string_view path) {
+  const HttpActions act = [](const HttpRequest& request, const HttpAnswer& answer) {
     static const auto kBody = std::make_shared<const std::string>(300, 'b');
-    require(!leads_elsewhere(path), "no way out of the folder");
-    return path == "throw" ? throw Error(ErrorKind::data, "d")
-                           : HttpReply{path.empty() ? 200 : 404, "text/plain", kBody};
+    require(!leads_elsewhere(request.path), "no way out of the folder");
+    if (request.path == "throw") throw Error(ErrorKind::data, "d");
+    answer({request.path.empty() ? 200 : 404, "text/plain", kBody});
   };
-  std::shared_ptr<ServerCore> core(new ServerCore{{}, get, handler});
+  std::shared_ptr<ServerCore> core(new ServerCore{{}, act, true, handler});
   core->options.token = "t";
   core->options.message_bytes_limit = CountingHandler::kMaxMessage;
   core->port = 8123;
