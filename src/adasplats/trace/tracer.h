@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,9 +10,16 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/scene/scene.h"
 
 namespace adasplats {
+
+/// A hit of one of several rays.
+struct RayHit {
+  std::uint32_t ray = 0;
+  Hit hit;
+};
 
 /// Finds the hits of rays in a scene; one interface for all backends. A tracer keeps views of its
 /// scene. Calls are const and thread-safe.
@@ -34,6 +42,11 @@ class Tracer {
   /// the last hit are Hit{} (not valid()).
   virtual void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                             const Executor& executor) const = 0;
+
+  /// Calls body(hits) with all hits of the rays, group by group and in any order, on the caller's
+  /// thread.
+  using HitsBody = FunctionRef<void(std::span<const RayHit> hits)>;
+  virtual void all_hits(std::span<const Ray> rays, HitsBody body) const;
 };
 
 /// Tests every primitive for every ray: the oracle of the tests. The scene's data must outlive it.

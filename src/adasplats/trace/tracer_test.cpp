@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
@@ -327,6 +328,17 @@ std::vector<Arrangement> arrangements() {
   return result;
 }
 
+/// All hits of rays as (ray, t, primitive), sorted.
+std::vector<std::tuple<std::uint32_t, float, std::uint32_t>> all_hits_of(
+    const Tracer& tracer, std::span<const Ray> rays) {
+  std::vector<std::tuple<std::uint32_t, float, std::uint32_t>> all;
+  tracer.all_hits(rays, [&](std::span<const RayHit> hits) {
+    for (const RayHit& found : hits) all.emplace_back(found.ray, found.hit.t, found.hit.primitive);
+  });
+  std::ranges::sort(all);
+  return all;
+}
+
 // Oracle: brute force, for single rays, packets and lists. (Embree omits primitives beyond 1e18.)
 TEST(Tracer, WideTreesOfOddScenesEqualBruteForce) {
   const Executor executor(2);
@@ -340,8 +352,10 @@ TEST(Tracer, WideTreesOfOddScenesEqualBruteForce) {
     make_brute_force_tracer(view)->nearest_hits(rays, kDepth, expected, executor);
     for (std::size_t i = 0; i < rays.size(); ++i) nearest.push_back(expected[kDepth * i]);
     EXPECT_GT(count_valid(nearest), 0U);
+    const auto all = all_hits_of(*make_brute_force_tracer(view), rays);
     for (const detail::WideVersion& version : detail::wide_versions()) {
       const auto tracer = detail::make_wide_tracer(view, version, executor);
+      EXPECT_EQ(all_hits_of(*tracer, rays), all);
       tracer->nearest_hits(rays, kDepth, found, executor);
       expect_equal_hits(found, expected);
       std::vector<Hit> found_nearest(rays.size());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -33,6 +34,13 @@ namespace {
 
 using F16 = __m512;
 using U16 = __m512i;
+struct Mask {
+  __mmask16 lanes;
+};
+inline Mask operator&(Mask a, Mask b) { return {_kand_mask16(a.lanes, b.lanes)}; }
+inline Mask operator|(Mask a, Mask b) { return {_kor_mask16(a.lanes, b.lanes)}; }
+inline Mask without(Mask a, Mask b) { return {_kandn_mask16(b.lanes, a.lanes)}; }
+inline unsigned bits(Mask m) { return m.lanes; }
 inline F16 load(const float* p) { return _mm512_load_ps(p); }
 inline F16 all(float v) { return _mm512_set1_ps(v); }
 inline void store(float* p, F16 v) { _mm512_store_ps(p, v); }
@@ -40,23 +48,19 @@ inline F16 root(F16 v) { return _mm512_sqrt_ps(v); }
 inline F16 fma(F16 a, F16 b, F16 c) { return _mm512_fmadd_ps(a, b, c); }
 inline F16 min(F16 a, F16 b) { return _mm512_min_ps(a, b); }
 inline F16 max(F16 a, F16 b) { return _mm512_max_ps(a, b); }
-inline unsigned less(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-inline unsigned at_most(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-inline unsigned equal(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
-inline F16 choose(unsigned mask, F16 a, F16 b) {
-  return _mm512_mask_blend_ps(static_cast<__mmask16>(mask), a, b);
-}
+inline Mask less(F16 a, F16 b) { return {_mm512_cmp_ps_mask(a, b, _CMP_LT_OQ)}; }
+inline Mask at_most(F16 a, F16 b) { return {_mm512_cmp_ps_mask(a, b, _CMP_LE_OQ)}; }
+inline Mask equal(F16 a, F16 b) { return {_mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ)}; }
+inline F16 choose(Mask mask, F16 a, F16 b) { return _mm512_mask_blend_ps(mask.lanes, a, b); }
 inline float largest(F16 v) { return _mm512_reduce_max_ps(v); }
 inline float smallest(F16 v) { return _mm512_reduce_min_ps(v); }
 inline U16 load(const std::uint32_t* p) { return _mm512_load_si512(p); }
 inline U16 all(std::uint32_t v) { return _mm512_set1_epi32(static_cast<int>(v)); }
 inline void store(std::uint32_t* p, U16 v) { _mm512_store_si512(p, v); }
-inline unsigned less(U16 a, U16 b) { return _mm512_cmplt_epu32_mask(a, b); }
-inline U16 choose(unsigned mask, U16 a, U16 b) {
-  return _mm512_mask_blend_epi32(static_cast<__mmask16>(mask), a, b);
-}
+inline Mask less(U16 a, U16 b) { return {_mm512_cmplt_epu32_mask(a, b)}; }
+inline U16 choose(Mask mask, U16 a, U16 b) { return _mm512_mask_blend_epi32(mask.lanes, a, b); }
 
-inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 from, float* to_from,
+inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from, float* to_from,
                      WideRef* to_refs) {
   const U16 order = _mm512_cvtepu8_epi32(
       _mm_load_si128(reinterpret_cast<const __m128i*>(node.far_first[octant])));
@@ -74,7 +78,7 @@ inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 f
 
 }  // namespace
 
-WideCast avx512_wide_cast() { return cast_rays; }
+WideVersion avx512_wide() { return {"avx512", cast_rays, all_hits}; }
 
 }  // namespace adasplats::detail
 

@@ -18,17 +18,22 @@ namespace adasplats::detail {
 using WideCast = void (*)(const WideView& tree, std::span<const Ray> rays, std::size_t slots,
                           std::span<Hit> hits);
 
-WideCast portable_wide_cast();
-#if defined(__x86_64__)
-WideCast avx2_wide_cast();
-WideCast avx512_wide_cast();
-#endif
+/// Tracer::all_hits() for a tree.
+using WideAllHits = void (*)(const WideView& tree, std::span<const Ray> rays,
+                             Tracer::HitsBody body);
 
 /// A traversal compiled for one vector instruction set.
 struct WideVersion {
   std::string_view name;
   WideCast cast;
+  WideAllHits all_hits;
 };
+
+WideVersion portable_wide();
+#if defined(__x86_64__)
+WideVersion avx2_wide();
+WideVersion avx512_wide();
+#endif
 
 /// The versions that this machine can run, the fastest first. All give the same bits.
 std::vector<WideVersion> wide_versions();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -29,11 +30,18 @@ inline Lanes<T> lanewise(const Lanes<T>& a, const Lanes<T>& b, F f) {
   for (unsigned i = 0; i < 16; ++i) result.v[i] = f(a.v[i], b.v[i]);
   return result;
 }
+struct Mask {
+  unsigned lanes;
+};
+inline Mask operator&(Mask a, Mask b) { return {a.lanes & b.lanes}; }
+inline Mask operator|(Mask a, Mask b) { return {a.lanes | b.lanes}; }
+inline Mask without(Mask a, Mask b) { return {a.lanes & ~b.lanes}; }
+inline unsigned bits(Mask m) { return m.lanes; }
 template <class T, class F>
-inline unsigned mask_of(const Lanes<T>& a, const Lanes<T>& b, F f) {
+inline Mask mask_of(const Lanes<T>& a, const Lanes<T>& b, F f) {
   unsigned mask = 0;
   for (unsigned i = 0; i < 16; ++i) mask |= static_cast<unsigned>(f(a.v[i], b.v[i])) << i;
-  return mask;
+  return {mask};
 }
 inline F16 operator+(const F16& a, const F16& b) {
   return lanewise(a, b, [](float x, float y) { return x + y; });
@@ -58,13 +66,13 @@ inline F16 root(const F16& a) {
 }
 inline F16 fma(const F16& a, const F16& b, const F16& c) { return a * b + c; }
 template <class T>
-inline unsigned less(const Lanes<T>& a, const Lanes<T>& b) {
+inline Mask less(const Lanes<T>& a, const Lanes<T>& b) {
   return mask_of(a, b, [](T x, T y) { return x < y; });
 }
-inline unsigned at_most(const F16& a, const F16& b) {
+inline Mask at_most(const F16& a, const F16& b) {
   return mask_of(a, b, [](float x, float y) { return x <= y; });
 }
-inline unsigned equal(const F16& a, const F16& b) {
+inline Mask equal(const F16& a, const F16& b) {
   return mask_of(a, b, [](float x, float y) { return x == y; });
 }
 template <class T>
@@ -86,9 +94,9 @@ inline void store(T* p, const Lanes<T>& v) {
   for (unsigned i = 0; i < 16; ++i) p[i] = v.v[i];
 }
 template <class T>
-inline Lanes<T> choose(unsigned mask, const Lanes<T>& a, const Lanes<T>& b) {
+inline Lanes<T> choose(Mask mask, const Lanes<T>& a, const Lanes<T>& b) {
   Lanes<T> result;
-  for (unsigned i = 0; i < 16; ++i) result.v[i] = (mask >> i & 1U) != 0 ? b.v[i] : a.v[i];
+  for (unsigned i = 0; i < 16; ++i) result.v[i] = (mask.lanes >> i & 1U) != 0 ? b.v[i] : a.v[i];
   return result;
 }
 inline float largest(const F16& v) {
@@ -106,6 +114,6 @@ inline float smallest(const F16& v) {
 
 }  // namespace
 
-WideCast portable_wide_cast() { return cast_rays; }
+WideVersion portable_wide() { return {"portable", cast_rays, all_hits}; }
 
 }  // namespace adasplats::detail

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdlib>
 #include <string>
+#include <string_view>
 
 #include "adasplats/core/error.h"
 #include "adasplats/trace/hit_list.h"
@@ -16,8 +18,8 @@ namespace {
 
 class WideTracer final : public Tracer {
  public:
-  WideTracer(const SceneView& scene, detail::WideCast cast, const Executor& executor)
-      : cast_(cast) {
+  WideTracer(const SceneView& scene, const detail::WideVersion& version, const Executor& executor)
+      : version_(version) {
     if (scene.primitive_count() >= Hit::kNone)
       throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
                                        " primitives; the maximum is 2^32 - 2");
@@ -29,11 +31,15 @@ class WideTracer final : public Tracer {
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
     const WideView tree = depth == 1 && !bvh_.soft.empty() ? bvh_.soft_view() : bvh_.view();
-    detail::cast_in_chunks(cast_, tree, rays, depth, hits, executor);
+    detail::cast_in_chunks(version_.cast, tree, rays, depth, hits, executor);
+  }
+
+  void all_hits(std::span<const Ray> rays, HitsBody body) const override {
+    if (bvh_.root.kind() != WideRef::Kind::nothing) version_.all_hits(bvh_.view(), rays, body);
   }
 
  private:
-  detail::WideCast cast_;
+  detail::WideVersion version_;
   WideBvh bvh_;
 };
 
@@ -56,18 +62,23 @@ std::vector<detail::WideVersion> detail::wide_versions() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq"))
-    versions.push_back({"avx512", avx512_wide_cast()});
+    versions.push_back(avx512_wide());
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2"))
-    versions.push_back({"avx2", avx2_wide_cast()});
+    versions.push_back(avx2_wide());
 #endif
-  versions.push_back({"portable", portable_wide_cast()});
+  versions.push_back(portable_wide());
+  // For benchmarks: the fastest version that may be used.
+  const char* const fastest = std::getenv("ADASPLATS_VECTORS");
+  const auto chosen =
+      std::ranges::find(versions, std::string_view(fastest ? fastest : ""), &WideVersion::name);
+  if (chosen != versions.end()) versions.erase(versions.begin(), chosen);
   return versions;
 }
 
 std::unique_ptr<Tracer> detail::make_wide_tracer(const SceneView& scene, const WideVersion& version,
                                                  const Executor& executor) {
-  return std::make_unique<WideTracer>(scene, version.cast, executor);
+  return std::make_unique<WideTracer>(scene, version, executor);
 }
 
 std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const Executor& executor) {
