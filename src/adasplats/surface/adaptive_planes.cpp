@@ -51,27 +51,39 @@ void sorted_keys(const NeighborList& neighbors, std::vector<std::uint64_t>& keys
   }
 }
 
+/// A neighbour: its offset from the cell and its number of points.
+struct NearCell {
+  Vec3f offset;
+  float weight;
+};
+
+/// Memory that the neighbourhoods of a thread share.
+struct Scratch {
+  std::vector<std::uint64_t> keys;
+  std::vector<NearCell> cells;
+};
+
 /// The neighbours of one cell, the nearest first.
 class Neighborhood {
  public:
-  Neighborhood(const FusedPoints& cells, std::vector<std::uint64_t>& keys, std::uint32_t cell,
+  Neighborhood(const FusedPoints& cells, Scratch& scratch, std::uint32_t cell,
                const NeighborList& neighbors)
-      : cells_(cells), keys_(keys), cell_(cell) {
-    sorted_keys(neighbors, keys_);
+      : cells_(scratch.cells) {
+    sorted_keys(neighbors, scratch.keys);
+    scratch.cells.resize(scratch.keys.size());
+    const Vec3f center = cells.positions[cell];
+    for (std::size_t k = 0; k < scratch.keys.size(); ++k) {
+      const auto rank = static_cast<std::uint32_t>(scratch.keys[k]);
+      scratch.cells[k] = {cells.positions[rank] - center, static_cast<float>(cells.count(rank))};
+    }
   }
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(keys_.size()); }
-  Vec3f offset(std::uint32_t k) const {
-    return cells_.positions[rank(k)] - cells_.positions[cell_];
-  }
-  double weight(std::uint32_t k) const { return static_cast<double>(cells_.count(rank(k))); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
+  Vec3f offset(std::uint32_t k) const { return cells_[k].offset; }
+  double weight(std::uint32_t k) const { return static_cast<double>(cells_[k].weight); }
 
  private:
-  std::uint32_t rank(std::uint32_t k) const { return static_cast<std::uint32_t>(keys_[k]); }
-
-  const FusedPoints& cells_;
-  std::vector<std::uint64_t>& keys_;
-  std::uint32_t cell_;
+  const std::vector<NearCell>& cells_;
 };
 
 }  // namespace
@@ -85,9 +97,9 @@ std::vector<LocalPlane> adaptive_planes(const FusedPoints& cells, const PointInd
   index.for_each_neighborhood(
       executor, [&](std::uint32_t) { return NeighborLimit{max_neighbors}; },
       [&](std::uint32_t cell, const NeighborList& neighbors) {
-        thread_local std::vector<std::uint64_t> keys;  // reused memory
-        planes[cell] =
-            local_plane(cells.positions[cell], Neighborhood(cells, keys, cell, neighbors), options);
+        thread_local Scratch scratch;  // reused memory
+        planes[cell] = local_plane(cells.positions[cell],
+                                   Neighborhood(cells, scratch, cell, neighbors), options);
       });
   return planes;
 }

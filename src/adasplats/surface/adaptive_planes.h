@@ -46,6 +46,7 @@ struct PlaneFit {
 
 struct ScaledFit {
   PlaneFit fit;
+  Moments moments;
   std::uint32_t used = 0;  ///< neighbours
   std::uint8_t scale = 0;
 };
@@ -85,32 +86,35 @@ ADASPLATS_HD ScaledFit fit_at_best_scale(const Neighborhood& neighborhood,
     const PlaneFit fit = plane_fit(moments);
     const bool planar = std::sqrt(fit.shape.lambda[2]) <= options.max_sigma_m;
     if (scale > 0 && !planar) break;
-    best = {fit, wanted, static_cast<std::uint8_t>(scale)};
+    best = {fit, moments, wanted, static_cast<std::uint8_t>(scale)};
   }
   return best;
 }
 
-/// The plane refitted without outliers.
+/// The plane refitted without outliers, whose moments are subtracted: they are few.
 template <class Neighborhood>
 ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const ScaledFit& start,
                                   const AdaptivePlaneOptions& options) {
   constexpr int kTrimRounds = 2;
-  constexpr int kMinTrimmed = 6;  // minimum number of cells of a trimmed fit
+  constexpr std::uint32_t kMinTrimmed = 6;  // minimum number of cells of a trimmed fit
   PlaneFit fit = start.fit;
   for (int round = 0; round < kTrimRounds; ++round) {
-    const double bound_m =
-        options.trim_sigmas * std::max(options.min_sigma_m, std::sqrt(fit.shape.lambda[2]));
-    const Vec3d normal = vec_cast<double>(fit.shape.normal);
-    Moments moments;
-    int kept = 0;  // cells; moments.count counts points
+    const auto bound_m = static_cast<float>(
+        options.trim_sigmas * std::max(options.min_sigma_m, std::sqrt(fit.shape.lambda[2])));
+    const Vec3f normal = fit.shape.normal;
+    const auto height_m = static_cast<float>(dot(vec_cast<double>(normal), fit.mean));
+    Moments outliers;
+    std::uint32_t kept = 0;  // cells; the moments count points
     for (std::uint32_t k = 0; k < start.used; ++k) {
       const Vec3f offset = neighborhood.offset(k);
-      if (!(std::fabs(dot(normal, vec_cast<double>(offset) - fit.mean)) < bound_m)) continue;
-      add_weighted(moments, offset, neighborhood.weight(k));
-      ++kept;
+      if (std::fabs(dot(normal, offset) - height_m) < bound_m) {
+        ++kept;
+      } else {
+        add_weighted(outliers, offset, neighborhood.weight(k));
+      }
     }
     if (kept < kMinTrimmed) break;
-    fit = plane_fit(moments);
+    fit = plane_fit(start.moments - outliers);
   }
   return fit;
 }

@@ -61,6 +61,15 @@ struct Moments {
   }
 };
 
+/// The moments of the points of `all` that are not among `some` of them.
+ADASPLATS_HD inline Moments operator-(const Moments& all, const Moments& some) {
+  return {all.count - some.count,
+          all.sum - some.sum,
+          {all.squares.xx - some.squares.xx, all.squares.xy - some.squares.xy,
+           all.squares.xz - some.squares.xz, all.squares.yy - some.squares.yy,
+           all.squares.yz - some.squares.yz, all.squares.zz - some.squares.zz}};
+}
+
 /// Principal components of a neighbourhood (paper section "Adaptive Splatting Using Local
 /// Descriptors").
 struct LocalShape {

@@ -37,7 +37,8 @@ struct Grow {
     for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
       if (!is_there(keys, size, k, other)) continue;
       const DiskOffset place = disk_offset(disk, other.center);
-      if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
+      if (ends_at(place, grows_over(disk, other, place, options), options))
+        end_m = std::min(end_m, place.along_m);
     }
     end_m = warp_smallest(end_m);
     float reach_m = disk.radius;

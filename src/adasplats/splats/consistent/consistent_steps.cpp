@@ -85,10 +85,10 @@ class ConsistentOnCpu : public RaysOnCpu {
     RayCasting casting;
     casting.reach = reach;
     PresentDisks(disks, executor())
-        .cast(rays, casting, executor(),
-              [&](std::size_t i, const Ray&, float, std::span<const Hit> hits) {
-                if (hits.empty()) missed[rays.point(i)] = 1;
-              });
+        .cast(rays, casting, executor(), [&](const RayBatch& batch, const NearestHits& hits) {
+          for (std::size_t i = 0; i < batch.rays.size(); ++i)
+            if (!hits.all[i].valid()) missed[rays.point(batch.numbers[i])] = 1;
+        });
     return missed;
   }
 

@@ -48,11 +48,9 @@ ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const D
   return height_m < options.tolerance_m && cosine > options.min_normal_cosine;
 }
 
-/// Whether a disk must end before another seed.
-ADASPLATS_HD inline bool ends_at(const Disk& disk, const Disk& other, const DiskOffset& place,
-                                 const CoverOptions& options) {
-  return !grows_over(disk, other, place, options) &&
-         static_cast<double>(place.height_m) < options.edge_m;
+/// Whether a disk must end before another seed; `grows` tells whether it grows over it.
+ADASPLATS_HD inline bool ends_at(const DiskOffset& place, bool grows, const CoverOptions& options) {
+  return !grows && static_cast<double>(place.height_m) < options.edge_m;
 }
 
 /// Whether a disk that covers up to `covered_m` from its centre can cover a seed.

@@ -9,28 +9,40 @@
 namespace adasplats {
 namespace {
 
+/// A seed near a disk.
+struct NearSeed {
+  std::uint32_t seed;
+  DiskOffset place;
+  bool grows_over;  ///< the disk may grow over it
+};
+
+/// The neighbours that are seeds of surfaces.
+void find_near(std::span<const Disk> seeds, const Disk& disk, const NeighborList& neighbors,
+               const CoverOptions& options, std::vector<NearSeed>& near) {
+  near.clear();
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+    const std::uint32_t seed = neighbors.ranks[k];
+    const Disk& other = seeds[seed];
+    if (!(other.radius > 0)) continue;
+    const DiskOffset place = disk_offset(disk, other.center);
+    near.push_back({seed, place, grows_over(disk, other, place, options)});
+  }
+}
+
 /// The radius up to which a disk can grow before the surface ends or bends.
-float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
+float radius_grown(std::span<const Disk> seeds, const Disk& disk, std::span<const NearSeed> near,
                    int sector_count, const CoverOptions& options) {
-  const Disk& disk = seeds[seed];
   // Two passes instead of a sort: the distance where it must end, then its reach before that.
   auto end_m = static_cast<float>(options.largest_radius_m);
-  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
-    const Disk& other = seeds[neighbors.ranks[k]];
-    if (!(other.radius > 0)) continue;
-    const DiskOffset place = disk_offset(disk, other.center);
-    if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
-  }
+  for (const NearSeed& other : near)
+    if (ends_at(other.place, other.grows_over, options))
+      end_m = std::min(end_m, other.place.along_m);
   float reach_m = disk.radius;
   SectorReach sectors(disk, sector_count);
-  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
-    const Disk& other = seeds[neighbors.ranks[k]];
-    if (!(other.radius > 0)) continue;
-    const DiskOffset place = disk_offset(disk, other.center);
-    if (place.along_m < end_m && grows_over(disk, other, place, options)) {
-      reach_m = std::max(reach_m, place.along_m);
-      sectors.add(other.center, place.along_m);
-    }
+  for (const NearSeed& other : near) {
+    if (!other.grows_over || !(other.place.along_m < end_m)) continue;
+    reach_m = std::max(reach_m, other.place.along_m);
+    sectors.add(seeds[other.seed].center, other.place.along_m);
   }
   return grown_radius(disk, reach_m, sectors);
 }
@@ -55,14 +67,12 @@ SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
         if (!(seeds_[seed].radius > 0)) return;
         const bool is_unchecked = !unchecked.empty() && unchecked[seed] != 0;
         const int sectors = is_unchecked ? options.unchecked_sectors : options.sectors;
-        radii_m_[seed] = radius_grown(seeds_, seed, neighbors, sectors, options);
+        thread_local std::vector<NearSeed> near;  // reused memory
+        find_near(seeds_, seeds_[seed], neighbors, options, near);
+        radii_m_[seed] = radius_grown(seeds_, seeds_[seed], near, sectors, options);
         const float covered_m = covered_reach(overlap_, radii_m_[seed]);
-        for (std::uint32_t k = 0; k < neighbors.size; ++k) {
-          const std::uint32_t other = neighbors.ranks[k];
-          if (!(seeds_[other].radius > 0)) continue;
-          const DiskOffset place = disk_offset(seeds_[seed], seeds_[other].center);
-          if (may_cover(place, covered_m, options)) list.push_back(other);
-        }
+        for (const NearSeed& other : near)
+          if (may_cover(other.place, covered_m, options)) list.push_back(other.seed);
         lengths_[seed] = static_cast<std::uint32_t>(list.size()) - begins_[seed];
       });
 }

@@ -56,9 +56,13 @@ class RaysOnCpu : public CpuBackend {
     casting.reach = {ObserveRay::kBeyond_m};
     const PresentDisks present(disks, executor());
     for (const auto& part : parts) {
-      const auto look = [&](std::size_t i, const Ray& ray, float range_m,
-                            std::span<const Hit> hits) {
-        part.second(i, part.first->point(i), ray, range_m, hits.empty() ? Hit{} : hits[0]);
+      const auto look = [&](const RayBatch& batch, const NearestHits& hits) {
+        for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+          Hit hit = hits.all[i];
+          if (hit.valid()) hit.primitive = present.id(hit.primitive);
+          const std::size_t number = batch.numbers[i];
+          part.second(number, part.first->point(number), batch.rays[i], batch.ranges_m[i], hit);
+        }
       };
       present.cast(*part.first, casting, executor(), look);
     }

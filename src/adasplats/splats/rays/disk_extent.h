@@ -9,6 +9,7 @@
 #include <span>
 
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/fixed_point.h"
 #include "adasplats/scene/soft_disk.h"
 
 namespace adasplats {
@@ -44,6 +45,14 @@ struct ExtentSums {
   std::int64_t opacity_weight = 0;
   std::int64_t scale = 0;
   std::int64_t scale_weight = 0;
+
+  ExtentSums& operator+=(const ExtentSums& other) {
+    opacity += other.opacity;
+    opacity_weight += other.opacity_weight;
+    scale += other.scale;
+    scale_weight += other.scale_weight;
+    return *this;
+  }
 };
 
 /// The derivative of rim_opacity() by the logarithm of the radius.
@@ -82,8 +91,7 @@ ADASPLATS_HD inline void add_extents_of_ray(const Disk* disks, const DiskExtent*
   double behind = range_m < HUGE_VALF ? 0 : static_cast<double>(reaches);
   likelihood += behind;
   const auto fixed = [](double value) {
-    return static_cast<std::int64_t>(
-        std::llround(std::clamp(value, -64.0, 64.0) / ExtentSums::kUnit));
+    return nearest_integer(std::clamp(value, -64.0, 64.0) / ExtentSums::kUnit);
   };
   for (std::size_t k = hits.size(); k-- > 0;) {
     const At& here = at[k];

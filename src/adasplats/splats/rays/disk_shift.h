@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/fixed_point.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/rays/measured_ray.h"
 
@@ -49,8 +50,8 @@ ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, flo
   const double weight = 1.0 / ((1.0 + relative * relative) * cosine * cosine);
   const Vec3f point = ray.origin + range_m * ray.direction;
   const auto shift_m = static_cast<double>(dot(point - disk.center, disk.normal));
-  return {static_cast<std::int64_t>(std::llround(weight / ShiftSums::kUnit)),
-          static_cast<std::int64_t>(std::llround(weight * shift_m / ShiftSums::kUnit)), 1};
+  return {nearest_integer(weight / ShiftSums::kUnit),
+          nearest_integer(weight * shift_m / ShiftSums::kUnit), 1};
 }
 
 /// Distance along its normal from a disk to the surface that its rays show; needs rays.

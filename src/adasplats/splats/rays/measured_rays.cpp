@@ -4,22 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <iterator>
 #include <limits>
 
+#include "adasplats/splats/rays/combined_sums.h"
 #include "adasplats/splats/rays/present_disks.h"
 
 namespace adasplats {
-namespace {
-
-template <class T>
-void add_relaxed(T& sum, T value) {
-  std::atomic_ref<T>(sum).fetch_add(value, std::memory_order_relaxed);
-}
-
-}  // namespace
-
 MeasuredRays::MeasuredRays(const PointCloud& cloud, double min_range_m, const Executor& executor,
                            RayEnds ends)
     : cloud_(cloud), ends_(ends) {
@@ -128,30 +119,29 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
   evidence.confirmed.resize(disks.size() * RayEvidence::kBins);
   evidence.contradicted.resize(disks.size() * RayEvidence::kBins);
   const PresentDisks present(disks, executor);
-  const auto count_rays = [&](const MeasuredRays& cast) {
-    const auto count = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
-      thread_local std::vector<std::uint32_t*> counters;  // reused memory
-      counters.clear();
-      for (const Hit& hit : hits) {
-        const Disk& disk = disks[hit.primitive];
-        const RayVerdict word = verdict_of_ray(disk, ray, hit.t, range_m, options);
-        if (word == RayVerdict::nothing) continue;
-        const std::size_t bin = evidence_ring(disk, ray, hit.t);
-        auto& counts = word == RayVerdict::confirms ? evidence.confirmed : evidence.contradicted;
-        std::uint32_t& counter =
-            counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin];
-        __builtin_prefetch(&counter, 1);
-        counters.push_back(&counter);
-      }
-      // A separate loop: atomic operations between the loads would keep these from overlapping.
-      for (std::uint32_t* counter : counters) add_relaxed(*counter, 1U);
-    };
-    const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.max_margin_m();
-    RayCasting casting = {{}, {beyond_m}, RayCasting::Hits::all};
-    if (options.parts > 1) casting.numbers = cast.part(options.parts, options.part);
-    present.cast(cast, casting, executor, count);
+  const auto count = [&](const RayBatch& batch, std::span<const RayHit> hits) {
+    CombinedSums<std::uint32_t, 2048, decltype(&add_relaxed<std::uint32_t>)> sums(
+        &add_relaxed<std::uint32_t>);
+    for (const RayHit& found : hits) {
+      const Disk& disk = present.disk(found.hit.primitive);
+      const Ray& ray = batch.rays[found.ray];
+      const RayVerdict word =
+          verdict_of_ray(disk, ray, found.hit.t, batch.ranges_m[found.ray], options);
+      if (word == RayVerdict::nothing) continue;
+      const std::size_t counter =
+          std::size_t{present.id(found.hit.primitive)} * RayEvidence::kBins +
+          evidence_ring(disk, ray, found.hit.t);
+      auto& counts = word == RayVerdict::confirms ? evidence.confirmed : evidence.contradicted;
+      sums.add(&counts[counter], counter, 1);
+    }
   };
-  for (const MeasuredRays* cast : rays) count_rays(*cast);
+  for (const MeasuredRays* cast : rays) {
+    const float beyond_m = cast->ends() == RayEnds::nowhere ? 0 : options.max_margin_m();
+    RayCasting casting;
+    casting.reach = {beyond_m};
+    if (options.parts > 1) casting.numbers = cast->part(options.parts, options.part);
+    present.cast_for_all(*cast, casting, executor, count);
+  }
   return evidence;
 }
 
@@ -159,17 +149,21 @@ std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRay
                                   const SettleOptions& options, const Executor& executor) {
   std::vector<ShiftSums> sums(disks.size());
   const PresentDisks present(disks, executor);
-  const auto add_ray = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
-    if (hits.empty()) return;
-    const std::uint32_t id = hits[0].primitive;
-    const ShiftSums part = shift_of_ray(disks[id], ray, hits[0].t, range_m, options);
-    add_relaxed(sums[id].weight, part.weight);
-    add_relaxed(sums[id].shift, part.shift);
-    add_relaxed(sums[id].rays, part.rays);
+  const auto add_rays = [&](const RayBatch& batch, const NearestHits& hits) {
+    for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+      const Hit& hit = hits.all[i];
+      if (!hit.valid()) continue;
+      const std::uint32_t id = present.id(hit.primitive);
+      const ShiftSums part = shift_of_ray(present.disk(hit.primitive), batch.rays[i], hit.t,
+                                          batch.ranges_m[i], options);
+      add_relaxed(sums[id].weight, part.weight);
+      add_relaxed(sums[id].shift, part.shift);
+      add_relaxed(sums[id].rays, part.rays);
+    }
   };
   RayCasting casting;
   casting.reach = settling_reach(options);
-  present.cast(rays, casting, executor, add_ray);
+  present.cast(rays, casting, executor, add_rays);
   return sums;
 }
 
@@ -177,24 +171,36 @@ std::vector<ExtentSums> sum_extents(std::span<const Disk> disks,
                                     std::span<const DiskExtent> extents,
                                     std::span<const MeasuredRays* const> rays,
                                     const ExtentOptions& options, const Executor& executor) {
-  std::vector<ExtentSums> sums(disks.size());
   const PresentDisks present(disks, executor);
-  const auto add_to_disk = [&](std::uint32_t id, const ExtentSums& part) {
-    add_relaxed(sums[id].opacity, part.opacity);
-    add_relaxed(sums[id].opacity_weight, part.opacity_weight);
-    add_relaxed(sums[id].scale, part.scale);
-    add_relaxed(sums[id].scale_weight, part.scale_weight);
+  std::vector<DiskExtent> of_present;
+  of_present.reserve(present.disks().size());
+  for (std::uint32_t k = 0; k < present.disks().size(); ++k)
+    of_present.push_back(extents[present.id(k)]);
+  std::vector<ExtentSums> sums(of_present.size());
+  const auto add_to = [](ExtentSums& sum, const ExtentSums& part) {
+    add_relaxed(sum.opacity, part.opacity);
+    add_relaxed(sum.opacity_weight, part.opacity_weight);
+    add_relaxed(sum.scale, part.scale);
+    add_relaxed(sum.scale_weight, part.scale_weight);
   };
-  const auto add_ray = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
-    add_extents_of_ray(disks.data(), extents.data(), ray, range_m, hits, options, add_to_disk);
+  const auto add_rays = [&](const RayBatch& batch, const NearestHits& hits) {
+    CombinedSums<ExtentSums, 1024, decltype(add_to)> combined(add_to);
+    for (std::size_t i = 0; i < batch.rays.size(); ++i)
+      add_extents_of_ray(present.disks().data(), of_present.data(), batch.rays[i],
+                         batch.ranges_m[i], hits.of(i), options,
+                         [&](std::uint32_t disk, const ExtentSums& part) {
+                           combined.add(&sums[disk], disk, part);
+                         });
   };
   for (const MeasuredRays* cast : rays) {
     RayCasting casting;
     casting.reach = {cast->ends() == RayEnds::nowhere ? 0 : options.beyond_m};
     casting.depth = kExtentHits;
-    present.cast(*cast, casting, executor, add_ray);
+    present.cast(*cast, casting, executor, add_rays);
   }
-  return sums;
+  std::vector<ExtentSums> of_all(disks.size());
+  for (std::uint32_t k = 0; k < sums.size(); ++k) of_all[present.id(k)] = sums[k];
+  return of_all;
 }
 
 }  // namespace adasplats
