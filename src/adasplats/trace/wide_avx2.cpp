@@ -101,7 +101,7 @@ inline U16 choose(Mask mask, U16 x, U16 y) {
 }
 
 inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from, float* to_from,
-                     WideRef* to_refs) {
+                     std::uint32_t* to_children) {
   alignas(64) float begin[kWide];
   store(begin, from);
   // One byte per child, from far to near.
@@ -115,7 +115,7 @@ inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from,
   for (; kept != 0; kept &= kept - 1) {
     const unsigned child = node.far_first[octant][__builtin_ctz(kept)];
     to_from[count] = begin[child];
-    to_refs[count++] = node.children[child];
+    to_children[count++] = child;
   }
   return count;
 }

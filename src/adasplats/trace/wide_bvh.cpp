@@ -451,12 +451,6 @@ class Builder {
       block.radius2[lane] = used ? disk.radius * disk.radius : -1.0F;
       block.primitive[lane] = used ? items[lane].index() : Hit::kNone;
     }
-    Box box;
-    for (const Item& item : items) box.add(item.low, item.high);
-    for (int axis = 0; axis < 3; ++axis) {
-      block.bounds[0][axis] = box.low[axis];
-      block.bounds[1][axis] = box.high[axis];
-    }
     return block;
   }
 

@@ -44,7 +44,6 @@ struct alignas(64) DiskBlock {
   float normal[3][kWide];
   float radius2[kWide];  ///< rounded as in intersect_disk
   std::uint32_t primitive[kWide];
-  float bounds[2][3];  ///< of all disks, with box_margin: [end][axis]
 };
 
 /// What a DiskBlock of soft disks has in addition.
