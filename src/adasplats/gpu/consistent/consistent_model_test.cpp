@@ -174,7 +174,7 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
     }
     both.step("fill_gaps", [&](auto& steps) { steps.fill_gaps(options); });
     for (int i = 0; i < 3; ++i)
-      both.step("refine_extents", [&](auto& steps) { steps.refine_extents(options); });
+      both.step("refine_extents", [&](auto& steps) { steps.refine_extents(i, options); });
     both.step("soften", [&](auto& steps) { steps.soften(options); });
   }
   const std::size_t splats = both.finish();

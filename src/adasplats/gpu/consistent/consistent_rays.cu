@@ -67,9 +67,10 @@ void add_extents(const DeviceScene& scene, const Disk* disks, const DiskExtent* 
   const DeviceBuffer<Hit> hits(at_once * kExtentHits, stream);
   RaySource source;
   source.rays = batch_rays.data();
-  for (std::size_t done = 0; done < rays.size(); done += at_once) {
-    const std::size_t batch = std::min(at_once, rays.size() - done);
-    const std::uint32_t* first = rays.points().data() + done;
+  const std::span<const std::uint32_t> cast = rays.points_of(options.parts, options.part);
+  for (std::size_t done = 0; done < cast.size(); done += at_once) {
+    const std::size_t batch = std::min(at_once, cast.size() - done);
+    const std::uint32_t* first = cast.data() + done;
     for_each(batch, stream, "make rays",
              [points, first, reach, to = batch_rays.data()] __device__(std::uint64_t k) {
                const std::uint32_t point = first[k];

@@ -40,11 +40,30 @@ AdaptivePlaneOptions ConsistentOptions::planes_for_splitting() const {
   return few;
 }
 
+namespace {
+
+/// Number of parts with at least `needed` rays each: a power of two, at most `most`.
+std::uint32_t parts_of(std::size_t rays, std::size_t needed, std::uint32_t most) {
+  const std::size_t parts = std::clamp<std::size_t>(rays / needed, 1, most);
+  return static_cast<std::uint32_t>(std::bit_floor(parts));
+}
+
+}  // namespace
+
 EvidenceOptions ConsistentOptions::evidence_of_round(int round, std::size_t rays) const {
   EvidenceOptions chosen = evidence;
-  const std::size_t parts = std::clamp<std::size_t>(rays / evidence_rays, 1, chosen.parts);
-  chosen.parts = static_cast<std::uint32_t>(std::bit_floor(parts));
+  chosen.parts = parts_of(rays, evidence_rays, evidence.parts);
   chosen.part = static_cast<std::uint32_t>(round) % chosen.parts;
+  return chosen;
+}
+
+ExtentOptions ConsistentOptions::extent_of_round(int round, std::size_t rays) const {
+  ExtentOptions chosen = extent;
+  const std::uint32_t most = round < 2 ? extent.parts >> round : 1;
+  chosen.parts = parts_of(rays, evidence_rays, std::max(most, 1U));
+  chosen.part = static_cast<std::uint32_t>(round) % chosen.parts;
+  chosen.opacity_prior /= chosen.parts;
+  chosen.scale_prior /= chosen.parts;
   return chosen;
 }
 
@@ -198,7 +217,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
     }
     if (options.refine) {
       begin_step("refinement", options.extent.rounds);
-      for (int i = 0; i < options.extent.rounds; ++i) steps.refine_extents(options);
+      for (int i = 0; i < options.extent.rounds; ++i) steps.refine_extents(i, options);
       steps.soften(options);
     }
   }

@@ -73,7 +73,7 @@ class ConsistentSteps {
   /// Restores seeds where rays pass between disks.
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
   /// Estimates opacities and radii of chosen disks from the rays that cross them: one round.
-  virtual void refine_extents(const ConsistentOptions& options) = 0;
+  virtual void refine_extents(int round, const ConsistentOptions& options) = 0;
   /// Makes chosen disks soft ones with the extents of refine_extents().
   virtual void soften(const ConsistentOptions& options) = 0;
 

@@ -200,16 +200,17 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     backend_.wait("fill gaps");
   }
 
-  void refine_extents(const ConsistentOptions& options) override {
+  void refine_extents(int round, const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = backend_.enter();
+    const ExtentOptions how = options.extent_of_round(round, rays_of_all());
     if (extents_.size() != chosen_.size()) {
       extents_ = backend_.template array<DiskExtent>(chosen_.size());
       backend_.for_each(chosen_.size(), "refine disks",
                         BeginExtent{extents_.data(), options.extent});
     }
-    const auto sums = backend_.extents(softened(), extents_, all_rays(), options.extent);
+    const auto sums = backend_.extents(softened(), extents_, all_rays(), how);
     backend_.for_each(chosen_.size(), "refine disks",
-                      RefineExtent{extents_.data(), sums.data(), options.extent});
+                      RefineExtent{extents_.data(), sums.data(), how});
     backend_.wait("refine disks");
   }
 

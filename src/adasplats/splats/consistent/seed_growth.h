@@ -25,6 +25,14 @@ struct CoverOptions {              // sources of the numbers: docs/research/cons
   int unchecked_sectors = 16;      ///< the same for seeds without rays
   double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
   double covered_within_m = 0.04;  ///< and within this distance of its plane
+
+  /// Squared distance beyond which no seed matters to a disk.
+  float squared_reach_m2() const {
+    constexpr double kRounding = 1.001;
+    const double height_m = std::max({edge_m, tolerance_m, covered_within_m});
+    return static_cast<float>(
+        kRounding * (largest_radius_m * largest_radius_m + height_m * height_m));
+  }
 };
 
 /// Position of a point relative to a disk.

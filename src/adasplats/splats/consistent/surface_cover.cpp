@@ -59,8 +59,9 @@ SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
       begins_(seeds.size()),
       lengths_(seeds.size()) {
   const ProgressPass pass(executor, seeds.size());
+  const NeighborLimit limit = {options.neighbors, options.squared_reach_m2()};
   index.for_each_neighborhood(
-      executor, [&](std::uint32_t) { return NeighborLimit{options.neighbors}; },
+      executor, [&](std::uint32_t) { return limit; },
       [&](std::uint32_t seed, const NeighborList& neighbors) {
         auto& list = lists_[seed / PointIndex::kQueriesPerTask];
         begins_[seed] = static_cast<std::uint32_t>(list.size());

@@ -196,6 +196,7 @@ std::vector<ExtentSums> sum_extents(std::span<const Disk> disks,
     RayCasting casting;
     casting.reach = {cast->ends() == RayEnds::nowhere ? 0 : options.beyond_m};
     casting.depth = kExtentHits;
+    if (options.parts > 1) casting.numbers = cast->part(options.parts, options.part);
     present.cast(*cast, casting, executor, add_rays);
   }
   std::vector<ExtentSums> of_all(disks.size());
