@@ -83,11 +83,12 @@ ADASPLATS_HD ScaledFit fit_at_best_scale(const Neighborhood& neighborhood,
     for (; added < wanted; ++added) {
       add_weighted(moments, neighborhood.offset(added), neighborhood.weight(added));
     }
-    const PlaneFit fit = plane_fit(moments);
-    const bool planar = std::sqrt(fit.shape.lambda[2]) <= options.max_sigma_m;
-    if (scale > 0 && !planar) break;
-    best = {fit, moments, wanted, static_cast<std::uint8_t>(scale)};
+    if (scale > 0 && !is_flat(moments, options.max_sigma_m * options.max_sigma_m)) break;
+    best.moments = moments;
+    best.used = wanted;
+    best.scale = static_cast<std::uint8_t>(scale);
   }
+  best.fit = plane_fit(best.moments);
   return best;
 }
 
@@ -98,6 +99,7 @@ ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const Scaled
   constexpr int kTrimRounds = 2;
   constexpr std::uint32_t kMinTrimmed = 6;  // minimum number of cells of a trimmed fit
   PlaneFit fit = start.fit;
+  Moments fitted = start.moments;
   for (int round = 0; round < kTrimRounds; ++round) {
     const auto bound_m = static_cast<float>(
         options.trim_sigmas * std::max(options.min_sigma_m, std::sqrt(fit.shape.lambda[2])));
@@ -114,7 +116,10 @@ ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const Scaled
       }
     }
     if (kept < kMinTrimmed) break;
-    fit = plane_fit(start.moments - outliers);
+    const Moments left = start.moments - outliers;
+    if (left.count == fitted.count && left.sum == fitted.sum) break;  // the same points: the same fit
+    fit = plane_fit(left);
+    fitted = left;
   }
   return fit;
 }
