@@ -79,6 +79,7 @@ def model(
     labels: Path | None = None,
     segment: bool = False,
     network: Path | None = None,
+    draft: bool = False,
     method: Literal["consistent", "basic", "descriptors", "semantic"] = "consistent",
     neighbors: int = 40,
     alpha: float = 0.2,

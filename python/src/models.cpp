@@ -103,6 +103,7 @@ struct ModelArguments {
   void take(Keywords& keywords) {
     keywords.take("labels", job.labels);
     take_settings(keywords, job.segment);
+    take_settings(keywords, job.draft);
     take_settings(keywords, method);
     keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
     keywords.take("reflectance", job.build.reflectances);
@@ -122,6 +123,7 @@ std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made)
 std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) {
   auto arguments = arguments_of<ModelArguments>("model", kwargs);
   ModelJob& job = arguments.job;
+  reject_unused(unused_settings(job.draft, arguments.method), kwargs);
   reject_unused(unused_settings(arguments.method), kwargs);
   reject_unused(unused_settings(job.segment), kwargs);
   job.build.recipe = arguments.method.recipe();

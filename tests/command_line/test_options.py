@@ -35,6 +35,22 @@ class OptionsTest(ProgramTest):
         # What is turned off and would not have been done is as wished.
         self.model("basic.ply", "--method", "basic", "--no-resample")
 
+    def test_a_draft_is_of_a_quarter(self):
+        draft = ["model", self.cloud, "-o", self.folder / "m.ply", "--labels", "semantickitti",
+                 "--draft"]
+        for option, value in [("--cell", "0.05"), ("--method", "basic"), ("--settle-rounds", "1"),
+                              ("--tile", "64"), ("--memory", "1")]:
+            self.refuse(option, *draft, option, value)
+        of_all = self.report("model", self.cloud, "-o", self.folder / "all.ply", "--labels",
+                             "semantickitti")
+        of_some = self.report(*draft)
+        self.assertNotIn("draft_of", of_all)
+        self.assertEqual(of_some["draft_of"], "points")
+        self.assertEqual(of_some["points_read"], of_all["points_read"])
+        self.assertLess(0.15 * of_all["points_in"], of_some["points_in"])
+        self.assertLess(of_some["points_in"], 0.35 * of_all["points_in"])
+        self.assertEqual(of_some["cell_m"], 0.1)
+
     def test_labels_and_removal(self):
         bare, paris = self.folder / "bare.ply", self.folder / "paris.ply"
         write_cloud(bare, tiny_place(), labels=False)

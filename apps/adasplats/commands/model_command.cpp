@@ -126,6 +126,7 @@ class ModelCommand final : public Command {
         ->group("Cities");
     add_labels_option(app, job_.labels, "semantickitti for sequence folders, else none");
     add_settings(app, job_.segment);
+    add_settings(app, job_.draft);
     add_settings(app, recipe_);
     add_removal_option(app, job_.build.remove);
     add_switch(
@@ -138,7 +139,8 @@ class ModelCommand final : public Command {
   }
 
   void run(Session& session) override {
-    for (const auto& list : {unused_settings(recipe_), unused_settings(job_.segment)}) {
+    for (const auto& list : {unused_settings(job_.draft, recipe_), unused_settings(recipe_),
+                             unused_settings(job_.segment)}) {
       for (const UnusedSetting& unused : list)
         reject({option_of(unused.setting).c_str()}, unused.why);
     }
@@ -150,6 +152,8 @@ class ModelCommand final : public Command {
       reject({"--max-shift"}, "without --add-to");
     else if (is_given("--tile") && job_.tiles.tile_m == 0)
       reject({"--add-to"}, "with --tile 0");
+    if (job_.draft.on)
+      reject({"--traffic", "--tile", "--memory", "--only-tile", "--add-to"}, "in a draft");
     if (traffic_) {
       reject({"--tile", "--halo", "--plan", "--only-tile", "--keep-points", "--add-to", "--memory"},
              "with --traffic");
@@ -159,7 +163,7 @@ class ModelCommand final : public Command {
     }
     if (!job_.add_to.empty())
       take_tiles_of_city();
-    else if (!is_given("--tile") && !only_tile_)
+    else if (!is_given("--tile") && !only_tile_ && !job_.draft.on)
       choose_tiles(session);
     if (job_.tiles.tile_m > 0) {
       if (recipe_.consistent.refine) reject({"--refine"}, "in tiles, which are opaque");
@@ -188,6 +192,7 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them removed by class" + text_of(built.removed_classes) + "\n" +
+          (result.draft_of.empty() ? "" : "A draft: a quarter of the " + result.draft_of + "\n") +
           (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
           "\n" + (built.consistent ? origins_text(built.consistent->origins) : "") +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));

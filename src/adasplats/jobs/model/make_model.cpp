@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/core/progress_meter.h"
@@ -19,6 +20,7 @@
 #include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/session/inputs.h"
+#include "adasplats/splats/rays/measured_ray.h"
 
 namespace adasplats {
 namespace {
@@ -81,6 +83,28 @@ std::size_t remove_parked(PointCloud& cloud, const MovingBoxes& parked, const Ex
   return removed;
 }
 
+/// The points of a draft: those whose hash says so, so their order does not matter.
+PointCloud thinned(const PointCloud& cloud) {
+  static_assert(DraftChoice::kEvery == kRayParts);
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (ray_part({}, cloud.positions[i]) == 0) kept.push_back(static_cast<std::uint32_t>(i));
+  return gather(cloud, kept);
+}
+
+/// Whether the scans of all inputs can be chosen.
+bool are_sequences(std::span<const std::filesystem::path> inputs) {
+  return std::ranges::all_of(inputs, [](const std::filesystem::path& path) {
+    const std::vector<CloudInput> parts = cloud_inputs(path, SensorScans::taken);
+    return std::ranges::all_of(parts, &CloudInput::is_sequence);
+  });
+}
+
+ModelOptions with_recipe(ModelOptions options) {
+  if (options.draft.on) options.build.recipe = ConsistentOptions::draft();
+  return options;
+}
+
 /// Makes one model from the points of `load_points`. Building consumes the points; if it fails on a
 /// GPU, they are loaded again.
 class ModelMaker {
@@ -90,7 +114,7 @@ class ModelMaker {
   /// `inputs`, `label_field`: what the points come from, where they come from files.
   ModelMaker(const ModelOptions& options, std::span<const std::filesystem::path> inputs,
              const std::string& label_field, LoadPoints load_points, Session& session)
-      : options_(options),
+      : options_(with_recipe(options)),
         classifier_(classifier_for(options)),  // says what is wrong before anything is loaded
         load_points_(std::move(load_points)),
         session_(session) {
@@ -187,7 +211,7 @@ class ModelMaker {
     return build(std::move(cloud), nullptr);
   }
 
-  const ModelOptions& options_;
+  ModelOptions options_;
   std::optional<LabelScheme> scheme_;
   std::optional<PointClassifier> classifier_;
   std::vector<std::uint16_t> classes_;  ///< by the network, of the points as they are loaded
@@ -223,6 +247,10 @@ std::optional<PointClassifier> classifier_for(const ModelOptions& options) {
   return classifier;
 }
 
+std::vector<UnusedSetting> unused_settings(const DraftChoice& draft, const MethodChoice& method) {
+  return draft.on ? all_unused(method, "in a draft") : std::vector<UnusedSetting>();
+}
+
 std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice) {
   return choice.on ? std::vector<UnusedSetting>() : all_unused(choice, "without segmentation");
 }
@@ -232,13 +260,16 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   const Stopwatch total;
   ModelResult result;
   LoadOptions load = job.load;
-  load.empty_beams = uses_empty_beams(job.build.recipe);
+  const bool skips_scans = job.draft.on && are_sequences(job.inputs);
+  if (job.draft.on) result.draft_of = skips_scans ? "scans" : "points";
+  if (skips_scans) load.scan_stride *= DraftChoice::kEvery;
+  load.empty_beams = job.draft.on || uses_empty_beams(job.build.recipe);
   load.lost_beams = load.empty_beams;
   load.other_columns = KeptColumns::colors;
   const auto load_points = [&] {
     auto [cloud, loaded] = load_cloud(job.inputs, load, session.executor, session.progress);
     result.loaded = loaded;
-    return std::move(cloud);
+    return job.draft.on && !skips_scans ? thinned(cloud) : std::move(cloud);
   };
   ModelOptions options = job;
   options.build.trust_origins |= job.load.trust_origins;
@@ -273,7 +304,8 @@ std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>&
   const auto load_points = [&] {
     PointCloud cloud = load();
     result.loaded.points_read = cloud.size();
-    return cloud;
+    if (options.draft.on) result.draft_of = "points";
+    return options.draft.on ? thinned(cloud) : cloud;
   };
   ModelMaker maker(options, {}, {}, load_points, session);
   SplatModel model = maker.run(result);
@@ -347,6 +379,7 @@ void add_consistent(const ConsistentReport& report, std::size_t splats,
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
+  if (!result.draft_of.empty()) json["draft_of"] = result.draft_of;
   json["points_read"] = result.loaded.points_read;
   json["points_not_finite"] = result.loaded.dropped_not_finite;
   json["points_no_return"] = result.loaded.no_returns;

@@ -75,15 +75,34 @@ void visit_settings(SegmentChoice& choice, Visit&& visit) {
         choice.network);
 }
 
+/// A quick first model, by ConsistentOptions::draft(), of a quarter of the scans of sequences, or of
+/// the points of other inputs.
+struct DraftChoice {
+  bool on = false;
+  static constexpr std::size_t kEvery = 4;
+};
+
+template <class Visit>
+void visit_settings(DraftChoice& choice, Visit&& visit) {
+  visit(Setting{.name = "draft",
+                .help = "Make a quick first model: a quarter of the scans or points, larger cells, "
+                        "fewer checks, opaque splats",
+                .basic = true},
+        choice.on);
+}
+
 /// The warning where points come with labels.
 inline constexpr const char* kLabelsReplaced =
     "the labels of the points are replaced by the network's (`segment`)";
 
+/// What has no effect in a draft: all options of methods.
+std::vector<UnusedSetting> unused_settings(const DraftChoice& draft, const MethodChoice& method);
 /// What has no effect where nothing is segmented.
 std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice);
 
 /// How a model is made of points.
 struct ModelOptions {
+  DraftChoice draft;  ///< on: then `build.recipe` has no effect
   std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
   SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
   /// Points in these boxes of objects at rest are removed after the calibration, which they help.
@@ -114,6 +133,7 @@ struct SegmentReport {
 };
 
 struct ModelResult {
+  std::string draft_of;  ///< "scans" or "points": a quarter of them was modelled; "": no draft
   LoadReport loaded;  ///< points_read alone, where nothing was loaded
   std::optional<SegmentReport> segmented;
   BuildReport built;

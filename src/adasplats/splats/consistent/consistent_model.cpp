@@ -73,6 +73,15 @@ CoverOptions ConsistentOptions::cover_options(bool checked) const {
   return chosen;
 }
 
+ConsistentOptions ConsistentOptions::draft() {
+  ConsistentOptions draft;
+  draft.cell_m = 0.1;
+  draft.small_cell_m = 0;
+  draft.balance_rounds = draft.strict_rounds = draft.settle_rounds = 1;
+  draft.refine = false;
+  return draft;
+}
+
 ConsistentOptions ConsistentOptions::scaled(double scale) const {
   ConsistentOptions made = *this;
   for (double* length_m :

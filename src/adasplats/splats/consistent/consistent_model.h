@@ -83,6 +83,9 @@ struct ConsistentOptions {
   /// share their cells.
   bool fit_scale = true;
 
+  /// Larger cells, one round of each check and no refinement: several times as fast.
+  static ConsistentOptions draft();
+
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
   /// The options for a scene of `scale` times the size: cells and all limits in metres, except the
   /// minimum range.
