@@ -59,9 +59,11 @@ SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
       begins_(seeds.size()),
       lengths_(seeds.size()) {
   const ProgressPass pass(executor, seeds.size());
-  const NeighborLimit limit = {options.neighbors, options.squared_reach_m2()};
   index.for_each_neighborhood(
-      executor, [&](std::uint32_t) { return limit; },
+      executor,
+      [&](std::uint32_t seed) {
+        return NeighborLimit{options.neighbors, options.squared_reach_m2(seeds_[seed].radius)};
+      },
       [&](std::uint32_t seed, const NeighborList& neighbors) {
         auto& list = lists_[seed / PointIndex::kQueriesPerTask];
         begins_[seed] = static_cast<std::uint32_t>(list.size());

@@ -122,6 +122,28 @@ TEST(SurfaceCover, NoDiskIsLargerThanAllowed) {
   expect_all_covered(seeds.disks, chosen);
 }
 
+// Seeds that are larger than the limit of grown disks keep their size, and cover what is within it.
+TEST(SurfaceCover, LargeSeedsCoverAllThatTheyReach) {
+  const Executor executor(2);
+  std::vector<Disk> unordered;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 12; ++x)
+      unordered.push_back(
+          {{0.5F * static_cast<float>(x), 0.5F * static_cast<float>(y), 0}, 2, {0, 0, 1}});
+  }
+  const Seeds seeds(unordered, executor);
+  CoverOptions options = tested_cover();
+  const auto chosen_of = [&] {
+    const SurfaceCover cover(seeds.disks, seeds.index, options, executor);
+    return std::ranges::count_if(cover.choose(executor),
+                                 [](const Disk& disk) { return disk.radius > 0; });
+  };
+  const auto small_limit = chosen_of();
+  options.largest_radius_m = 2;  // the same radii, and no seed within reach is left out
+  EXPECT_EQ(small_limit, chosen_of());
+  EXPECT_LT(small_limit, 30);
+}
+
 TEST(SurfaceCover, ParallelPlanesDoNotCoverEachOther) {
   // 10 cm apart, as the two sides of a thin wall; 40 cm apart, as floor and table.
   const Executor executor(2);
