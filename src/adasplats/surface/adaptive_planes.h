@@ -117,7 +117,8 @@ ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const Scaled
     }
     if (kept < kMinTrimmed) break;
     const Moments left = start.moments - outliers;
-    if (left.count == fitted.count && left.sum == fitted.sum) break;  // the same points: the same fit
+    if (left.count == fitted.count && left.sum == fitted.sum)
+      break;  // the same points: the same fit
     fit = plane_fit(left);
     fitted = left;
   }

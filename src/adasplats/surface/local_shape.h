@@ -93,9 +93,9 @@ ADASPLATS_HD inline SymmetricMat3d covariance(const Moments& m) {
           m.squares.yz / n - mean.y * mean.z, m.squares.zz / n - mean.z * mean.z};
 }
 
-/// Whether the smallest variance of a neighbourhood is at most `variance`: else the covariance minus
-/// `variance` in all directions is positive definite (Sylvester's criterion). Many times faster than
-/// local_shape().
+/// Whether the smallest variance of a neighbourhood is at most `variance`: else the covariance
+/// minus `variance` in all directions is positive definite (Sylvester's criterion). Many times
+/// faster than local_shape().
 ADASPLATS_HD inline bool is_flat(const Moments& moments, double variance) {
   const SymmetricMat3d c = covariance(moments);
   const double xx = c.xx - variance, yy = c.yy - variance, zz = c.zz - variance;

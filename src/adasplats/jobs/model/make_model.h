@@ -75,8 +75,8 @@ void visit_settings(SegmentChoice& choice, Visit&& visit) {
         choice.network);
 }
 
-/// A quick first model, by ConsistentOptions::draft(), of a quarter of the scans of sequences, or of
-/// the points of other inputs.
+/// A quick first model, by ConsistentOptions::draft(), of a quarter of the scans of sequences, or
+/// of the points of other inputs.
 struct DraftChoice {
   bool on = false;
   static constexpr std::size_t kEvery = 4;
@@ -102,7 +102,7 @@ std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice);
 
 /// How a model is made of points.
 struct ModelOptions {
-  DraftChoice draft;  ///< on: then `build.recipe` has no effect
+  DraftChoice draft;      ///< on: then `build.recipe` has no effect
   std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
   SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
   /// Points in these boxes of objects at rest are removed after the calibration, which they help.
@@ -134,7 +134,7 @@ struct SegmentReport {
 
 struct ModelResult {
   std::string draft_of;  ///< "scans" or "points": a quarter of them was modelled; "": no draft
-  LoadReport loaded;  ///< points_read alone, where nothing was loaded
+  LoadReport loaded;     ///< points_read alone, where nothing was loaded
   std::optional<SegmentReport> segmented;
   BuildReport built;
   std::optional<CalibrationReport> calibrated;  ///< nothing: it was not asked for

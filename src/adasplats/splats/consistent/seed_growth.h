@@ -26,12 +26,12 @@ struct CoverOptions {              // sources of the numbers: docs/research/cons
   double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
   double covered_within_m = 0.04;  ///< and within this distance of its plane
 
-  /// Squared distance beyond which no seed matters to a disk with this radius before it grows.
-  float squared_reach_m2(float radius_m) const {
+  /// Distance beyond which no seed matters to a disk with this radius before it grows.
+  double reach_m(float radius_m) const {
     constexpr double kRounding = 1.001;
     const double along_m = std::max(largest_radius_m, static_cast<double>(radius_m));
     const double height_m = std::max({edge_m, tolerance_m, covered_within_m});
-    return static_cast<float>(kRounding * (along_m * along_m + height_m * height_m));
+    return kRounding * std::sqrt(along_m * along_m + height_m * height_m);
   }
 };
 

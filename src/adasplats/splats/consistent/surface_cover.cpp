@@ -3,6 +3,7 @@
 #include "adasplats/splats/consistent/surface_cover.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adasplats/core/progress_meter.h"
 
@@ -47,6 +48,18 @@ float radius_grown(std::span<const Disk> seeds, const Disk& disk, std::span<cons
   return grown_radius(disk, reach_m, sectors);
 }
 
+/// The largest distance of a seed from its point of the index: seeds are on planes near the points.
+double largest_shift(std::span<const Disk> seeds, const PointIndex& index) {
+  const PointIndex::Tree tree = index.tree();
+  float largest2 = 0;
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    const Vec3f shift = seeds[i].center - Vec3f{tree.coordinates[0][i], tree.coordinates[1][i],
+                                                tree.coordinates[2][i]};
+    if (seeds[i].radius > 0) largest2 = std::max(largest2, dot(shift, shift));
+  }
+  return std::sqrt(static_cast<double>(largest2));
+}
+
 }  // namespace
 
 SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
@@ -59,10 +72,13 @@ SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
       begins_(seeds.size()),
       lengths_(seeds.size()) {
   const ProgressPass pass(executor, seeds.size());
+  const double largest_shift_m = largest_shift(seeds_, index);
   index.for_each_neighborhood(
       executor,
       [&](std::uint32_t seed) {
-        return NeighborLimit{options.neighbors, options.squared_reach_m2(seeds_[seed].radius)};
+        const auto reach_m =
+            static_cast<float>(options.reach_m(seeds_[seed].radius) + 2 * largest_shift_m);
+        return NeighborLimit{options.neighbors, reach_m * reach_m};
       },
       [&](std::uint32_t seed, const NeighborList& neighbors) {
         auto& list = lists_[seed / PointIndex::kQueriesPerTask];

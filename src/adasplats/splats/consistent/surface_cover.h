@@ -16,9 +16,9 @@ namespace adasplats {
 /// Covers all seeds by few large disks where the surface is flat and by the small seeds elsewhere.
 class SurfaceCover {
  public:
-  /// Grows every seed over its neighbours. `seeds`: one per point of `index`, in its order (radius
-  /// 0: none). `unchecked`: flags of seeds without rays, which use options.unchecked_sectors;
-  /// empty: no such seeds.
+  /// Grows every seed over its neighbours. `seeds`: one near each point of `index`, in its order
+  /// (radius 0: none). `unchecked`: flags of seeds without rays, which use
+  /// options.unchecked_sectors; empty: no such seeds.
   SurfaceCover(std::span<const Disk> seeds, const PointIndex& index, const CoverOptions& options,
                const Executor& executor, std::span<const std::uint8_t> unchecked = {});
 
