@@ -25,10 +25,9 @@ struct ExtentOptions {
   double scale_prior = 4;        ///< weight of the given radius
   double step = 0.7;             ///< share of the estimated change that a round makes
   float min_opacity = 0.05F;     ///< disks with a lower one are removed
-  /// Number of parts that rays are cast in (kRayParts or a smaller power of two), and the part to
-  /// cast. The first rounds need not see all rays: later ones correct them.
-  std::uint32_t parts = 4;
-  std::uint32_t part = 0;
+  /// Number of parts that rays are cast in (kRayParts or a smaller power of two)...
+  std::uint32_t parts = 1;
+  std::uint32_t part = 0;  ///< ...and the part to cast
 };
 
 /// Hits of a ray that are considered.
