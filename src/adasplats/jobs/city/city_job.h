@@ -20,16 +20,16 @@ struct TileChoice {
 template <class Visit>
 void visit_settings(TileChoice& choice, Visit&& visit) {
   constexpr const char* kGroup = "Cities";
-  visit(Setting{.name = "tile",
-                .help =
-                    "Split the scene into square tiles of this side, m, and model them one by one; "
-                    "the output is a folder. By default only if one model exceeds the memory",
-                .key = "tile_m",
-                .group = kGroup,
-                .min = 0,
-                .max = 10'000,
-                .basic = true},
-        choice.tile_m);
+  visit(
+      Setting{.name = "tile",
+              .help = "Model square tiles of this side, m, one by one; the output is a folder. By "
+                      "default only if one model exceeds the memory",
+              .key = "tile_m",
+              .group = kGroup,
+              .min = 0,
+              .max = 10'000,
+              .basic = true},
+      choice.tile_m);
   visit(Setting{.name = "halo",
                 .help = "Margin of points around a tile that it is modelled with, m; splats "
                         "farther than this from the tile's borders equal those of one large model",

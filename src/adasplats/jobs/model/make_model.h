@@ -85,8 +85,7 @@ struct DraftChoice {
 template <class Visit>
 void visit_settings(DraftChoice& choice, Visit&& visit) {
   visit(Setting{.name = "draft",
-                .help = "Make a quick first model: a quarter of the scans or points, larger cells, "
-                        "fewer checks, opaque splats",
+                .help = "Make a quick, coarse model of a quarter of the data",
                 .basic = true},
         choice.on);
 }
