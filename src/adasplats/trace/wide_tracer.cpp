@@ -70,9 +70,12 @@ std::vector<detail::WideVersion> detail::wide_versions() {
   versions.push_back(portable_wide());
   // For benchmarks: the fastest version that may be used.
   const char* const fastest = std::getenv("ADASPLATS_VECTORS");
-  const auto chosen =
-      std::ranges::find(versions, std::string_view(fastest ? fastest : ""), &WideVersion::name);
-  if (chosen != versions.end()) versions.erase(versions.begin(), chosen);
+  if (fastest == nullptr) return versions;
+  const auto chosen = std::ranges::find(versions, std::string_view(fastest), &WideVersion::name);
+  if (chosen == versions.end())
+    throw Error(ErrorKind::usage, "ADASPLATS_VECTORS: expected " + std::string(versions[0].name) +
+                                      " or slower (avx2, portable), found '" + fastest + "'");
+  versions.erase(versions.begin(), chosen);
   return versions;
 }
 

@@ -83,13 +83,16 @@ std::size_t remove_parked(PointCloud& cloud, const MovingBoxes& parked, const Ex
   return removed;
 }
 
-/// The points of a draft: those whose hash says so, so their order does not matter.
+/// The points and empty beams of a draft: those whose hash says so, so their order does not matter.
 PointCloud thinned(const PointCloud& cloud) {
   static_assert(DraftChoice::kEvery == kRayParts);
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (ray_part({}, cloud.positions[i]) == 0) kept.push_back(static_cast<std::uint32_t>(i));
-  return gather(cloud, kept);
+  PointCloud thin = gather(cloud, kept);
+  std::erase_if(thin.empty_beams,
+                [](const EmptyBeam& beam) { return ray_part(beam.origin, beam.direction) != 0; });
+  return thin;
 }
 
 /// Whether the scans of all inputs can be chosen.
