@@ -36,7 +36,7 @@ constexpr FuzzTarget kTargets[] = {
     {"gzip", "", "io/pickle/gzip.cpp", &read_gzip},
     {"arrow", "", "io/arrow", &read_arrow, 4 * kKiB, kZstdWindow_mb},
     {"potree", "octree.bin metadata.json", "io/ept/potree_octree.cpp", &read_point_file},
-    {"ept", "ept.json ept-data/0-0-0-0.bin", "io/ept", &read_ept},
+    {"ept", "ept.json ept-data/0-0-0-0.bin", "io/ept", &read_ept, 4 * kKiB, kZstdWindow_mb},
     {"kitti-label", "a.label", "cloud/sequence/kitti_sequence.cpp", &read_label_file},
     // Recordings
     {"mcap", "a.mcap", "io/bags io/mcap/mcap_file.cpp", &read_recording, 4 * kKiB, kZstdWindow_mb},
@@ -64,7 +64,7 @@ constexpr FuzzTarget kTargets[] = {
     {"glb", "a.glb", "io/text/gltf.cpp", &read_gltf},
     {"splats", "a.ply", "splats/model/splat_model.cpp splats/model/gaussians.cpp",
      &read_splat_model},
-    {"spz", "a.spz", "io/gaussians/spz_reader.cpp", &read_splat_model},
+    {"spz", "a.spz", "io/gaussians/spz_reader.cpp", &read_splat_model, 4 * kKiB, kZstdWindow_mb},
     {"world", "a.toml car.ply", "simulate/world/world_file.cpp", &read_world},
     {"city", "city.json", "city/city_manifest.cpp io/base/json_rows.cpp", &read_city},
     {"city-points", "points.json", "city/layer_facts.cpp", &read_layer_facts},
