@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "adasplats/core/maths/first_normals.h"
+
 namespace adasplats {
 namespace {
 
@@ -46,6 +48,15 @@ TEST(Random, NormalHasTheMomentsOfTheStandardNormal) {
   EXPECT_NEAR(m.mean, 0, 5e-3);
   EXPECT_NEAR(m.variance, 1, 5 * 1.414e-3);
   EXPECT_NEAR(m.fourth, 3, 5 * 9.8e-3);
+}
+
+TEST(Random, FirstNormalsAreThoseOfTheIndices) {
+  for (const std::size_t count : {0, 1, 127, 128, 129, 1000}) {
+    std::vector<double> normals(count);
+    first_normals(3, 5, 0xfffffff0, normals);
+    for (std::size_t i = 0; i < count; ++i)
+      ASSERT_EQ(normals[i], Random(3, 5, 0xfffffff0 + i).normal()) << i << " of " << count;
+  }
 }
 
 TEST(Random, UniformStaysInItsRange) {

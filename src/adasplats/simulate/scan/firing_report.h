@@ -78,6 +78,10 @@ struct ScanState {
   /// Reference from sensor, one per knot; null: points stay in the sensor's frame at their time.
   const ScanPose* frame_knots = nullptr;
   std::uint64_t scan_index = 0;
+  /// Normals of the range noise of the first returns of firings from `first_normal` on, all that
+  /// are reported with this state; null: drawn one by one.
+  const double* normals = nullptr;
+  std::uint32_t first_normal = 0;
 };
 
 /// One return that a sensor reports.
@@ -93,13 +97,18 @@ static_assert(sizeof(ReportedReturn) == 16);
 /// Purposes of random numbers; each has its own stream.
 enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2, intensity = 3, body = 4 };
 
-/// Keyed by (seed, scan, firing) and purpose. The range noise of a firing's first return uses the
-/// stream of the scan, for compatibility with earlier versions.
+/// The stream of a purpose in a scan. The range noise of a firing's first return uses that of the
+/// scan, for compatibility with earlier versions.
+ADASPLATS_HD inline std::uint64_t stream_of(Draw what, std::uint64_t scan_index,
+                                            std::uint32_t return_index) {
+  return scan_index ^
+         (static_cast<std::uint64_t>(what) << 56 | static_cast<std::uint64_t>(return_index) << 48);
+}
+
+/// Keyed by (seed, scan, firing) and purpose.
 ADASPLATS_HD inline Random scan_draw(std::uint64_t seed, Draw what, std::uint64_t scan_index,
                                      std::uint32_t firing, std::uint32_t return_index) {
-  const std::uint64_t stream = scan_index ^ (static_cast<std::uint64_t>(what) << 56 |
-                                             static_cast<std::uint64_t>(return_index) << 48);
-  return {seed, stream, firing};
+  return {seed, stream_of(what, scan_index, return_index), firing};
 }
 
 /// A different stream than that of the scan's own noise.
@@ -142,6 +151,13 @@ ADASPLATS_HD inline double range_noise_of(const FiringRules& rules, const Firing
                                               : rules.range_noise_m;
 }
 
+/// The normal of the range noise of return `k` of a firing.
+ADASPLATS_HD inline double range_normal(const FiringRules& rules, const ScanState& scan,
+                                        std::uint32_t firing, std::uint32_t k) {
+  if (k == 0 && scan.normals != nullptr) return scan.normals[firing - scan.first_normal];
+  return scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
+}
+
 /// The report of return `k` of a firing in clear air; false: none. The intensity is NaN if the
 /// scene has none.
 ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanState& scan,
@@ -172,7 +188,7 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   if (rules.field_noise)
     range_m += fields.noise_m;
   else if (noise_m > 0)
-    range_m += noise_m * scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
+    range_m += noise_m * range_normal(rules, scan, firing, k);
   reported.range_m = static_cast<float>(quantised(rules, range_m));
   if (!in_range(rules, reported.range_m)) return false;
   reported.primitive = echo.primitive;
@@ -300,11 +316,10 @@ ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState&
       lost ? 0
            : firing_returns<kMost>(&hits.of(firing), rules.weights, rules.beam, class_of, echoes);
   for (int k = 0; k < echo_count; ++k) {
-    ReportedReturn reported;
+    ReportedReturn& reported = out[count];
     if (!measure_return(rules, scan, firing, echoes[k], static_cast<std::uint32_t>(k), reported))
       continue;
-    reported.index = static_cast<std::uint16_t>(count);
-    out[count++] = reported;
+    reported.index = static_cast<std::uint16_t>(count++);
   }
   if (rules.air.is_clear()) return count;
   return in_air<kMost + 1>(rules, out, count, range_noise_of(rules, rules.firings[firing]),

@@ -3,8 +3,9 @@
 #include "adasplats/simulate/scan/scan_reporter.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
+
+#include "adasplats/core/maths/first_normals.h"
 
 namespace adasplats {
 namespace {
@@ -12,6 +13,10 @@ namespace {
 /// Firings per chunk: about kFineGrain hits, which fit the cache of a core.
 std::size_t chunk_of(const BeamOptions& beam) {
   return std::clamp<std::size_t>(kFineGrain / beam.hits_per_firing(), 64, kFineGrain);
+}
+
+bool draws_range_noise(const FiringRules& rules) {
+  return !rules.field_noise && (rules.range_noise_m > 0 || rules.ring_noise_count > 0);
 }
 
 }  // namespace
@@ -22,9 +27,11 @@ ScanReporter::ScanReporter(const ScanRules& rules, const Executor& executor)
       view_(rules.view()),
       firings_a_chunk_(chunk_of(rules.beam())) {}
 
+// Inlines everything: measured, complete scans come at 0.88 instead of 0.83 of the traced rate.
 template <int kMost>
-void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::size_t end,
-                               const ScanHits& hits, Chunk& chunk) const {
+[[gnu::flatten]] void ScanReporter::report_each(const ScanState& state, std::size_t begin,
+                                                std::size_t end, const ScanHits& hits,
+                                                Chunk& chunk) const {
   // Attributes of primitives are scattered in memory, so they are prefetched.
   constexpr std::size_t kAhead = 24;
   const auto prefetch = [&](const Hit& hit) {
@@ -35,32 +42,37 @@ void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::s
   ReportedReturn* const returns = chunk.returns.data();
   std::uint32_t* const firings = chunk.firings.data();
   std::size_t filled = 0;
-  std::array<ReportedReturn, kMost + 1> found{};
   for (std::size_t i = begin; i < end; ++i) {
     const auto firing = static_cast<std::uint32_t>(i);
     if (i + kAhead < end) prefetch(hits.of(firing + kAhead));
-    const int count = report_firing<kMost>(view_, state, firing, hits, found.data());
-    for (int k = 0; k < count; ++k) {
-      returns[filled] = found[static_cast<std::size_t>(k)];
-      firings[filled++] = firing;
-    }
+    const int count = report_firing<kMost>(view_, state, firing, hits, returns + filled);
+    for (int k = 0; k < count; ++k) firings[filled++] = firing;
   }
   chunk.count = filled;
 }
 
 void ScanReporter::report_firings(const ScanState& state, std::size_t begin, std::size_t end,
                                   const ScanHits& hits, Chunk& chunk) const {
-  const std::size_t most = (end - begin) * static_cast<std::size_t>(view_.beam.returns);
+  // report_firing() needs room for all pulses of the last firing.
+  const std::size_t most =
+      (end - begin) * static_cast<std::size_t>(view_.beam.returns) + kMaxSubRays + 1;
   if (chunk.returns.size() < most) {
     chunk.returns.resize(most);
     chunk.firings.resize(most);
   }
+  ScanState drawn = state;
+  if (draws_range_noise(view_)) {
+    chunk.normals.resize(end - begin);
+    first_normals(view_.seed, stream_of(Draw::range, state.scan_index, 0), begin, chunk.normals);
+    drawn.normals = chunk.normals.data();
+    drawn.first_normal = static_cast<std::uint32_t>(begin);
+  }
   if (view_.beam.sub_rays == 1) {
-    report_each<1>(state, begin, end, hits, chunk);
+    report_each<1>(drawn, begin, end, hits, chunk);
   } else if (view_.beam.sub_rays <= kFewSubRays) {
-    report_each<kFewSubRays>(state, begin, end, hits, chunk);
+    report_each<kFewSubRays>(drawn, begin, end, hits, chunk);
   } else {
-    report_each<static_cast<int>(kMaxSubRays)>(state, begin, end, hits, chunk);
+    report_each<static_cast<int>(kMaxSubRays)>(drawn, begin, end, hits, chunk);
   }
 }
 

@@ -35,6 +35,7 @@ class ScanReporter {
   struct Chunk {
     std::vector<ReportedReturn> returns;
     std::vector<std::uint32_t> firings;  ///< of the returns
+    std::vector<double> normals;         ///< of the range noise of the firings
     std::size_t count = 0;
     std::size_t first = 0;  ///< of its returns in the scan
   };
