@@ -59,7 +59,7 @@ EvidenceOptions ConsistentOptions::evidence_of_round(int round, std::size_t rays
 
 ExtentOptions ConsistentOptions::extent_of_round(int round, std::size_t rays) const {
   ExtentOptions chosen = extent;
-  chosen.parts = parts_of(rays, evidence_rays, round < 2 ? kRayParts >> round : 1);
+  chosen.parts = parts_of(rays, evidence_rays, round < 3 ? kRayParts >> round / 2 : 1);
   chosen.part = static_cast<std::uint32_t>(round) % chosen.parts;
   chosen.opacity_prior /= chosen.parts;
   chosen.scale_prior /= chosen.parts;
