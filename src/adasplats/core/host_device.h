@@ -6,6 +6,9 @@
 // the maths of one element is written once for all backends.
 #if defined(__CUDACC__)
 #define ADASPLATS_HD __host__ __device__
+#define ADASPLATS_HD_INLINED __host__ __device__ inline
 #else
 #define ADASPLATS_HD
+// For bodies that are also compiled for lanes: they take the instructions of their caller.
+#define ADASPLATS_HD_INLINED [[gnu::always_inline]] inline
 #endif

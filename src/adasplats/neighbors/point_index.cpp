@@ -84,6 +84,16 @@ PointIndex::Tree PointIndex::tree() const {
 void PointIndex::for_each_neighborhood(
     const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t)> limit,
     FunctionRef<void(std::uint32_t, const NeighborList&)> body) const {
+  for_each_group(executor, limit,
+                 [&](std::uint32_t first_rank, std::span<const NeighborList> neighbors) {
+                   for (std::uint32_t q = 0; q < neighbors.size(); ++q)
+                     body(first_rank + q, neighbors[q]);
+                 });
+}
+
+void PointIndex::for_each_group(
+    const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t)> limit,
+    FunctionRef<void(std::uint32_t, std::span<const NeighborList>)> body) const {
   const auto search = detail::search_functions().neighbors;
   const Tree search_tree = tree();
   executor.for_chunks(size_, kQueriesPerTask, [&](std::size_t begin, std::size_t end) {
@@ -99,8 +109,9 @@ void PointIndex::for_each_neighborhood(
       }
       detail::prepare(group, limits);
       search(search_tree, static_cast<std::uint32_t>(first / kLeafPoints), group);
-      for (std::uint32_t q = 0; q < group.size; ++q)
-        body(static_cast<std::uint32_t>(first + q), group.neighbors_of(q));
+      std::array<NeighborList, detail::Queries::kSize> lists{};
+      for (std::uint32_t q = 0; q < group.size; ++q) lists[q] = group.neighbors_of(q);
+      body(static_cast<std::uint32_t>(first), std::span(lists).first(group.size));
     }
   });
 }

@@ -73,6 +73,12 @@ class PointIndex {
       const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t rank)> limit,
       FunctionRef<void(std::uint32_t rank, const NeighborList& neighbors)> body) const;
 
+  /// The same for up to 16 consecutive points at once: body(first_rank, neighbours of each).
+  void for_each_group(
+      const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t rank)> limit,
+      FunctionRef<void(std::uint32_t first_rank, std::span<const NeighborList> neighbors)> body)
+      const;
+
   /// Number of indexed points within the radius of every indexed point, by rank, itself included.
   std::vector<std::uint32_t> count_within(float radius, const Executor& executor) const;
 

@@ -3,25 +3,16 @@
 #include "adasplats/surface/base_neighborhoods.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
 #include "adasplats/core/progress_meter.h"
+#include "adasplats/surface/local_shape.h"
+#include "adasplats/surface/shape_lanes.h"
 
 namespace adasplats {
 namespace {
-
-LocalShape shape_of(std::span<const Vec3f> points, std::uint32_t rank,
-                    const NeighborList& neighbors) {
-  float extent_m = 0;
-  for (std::uint32_t k = 0; k < neighbors.size; ++k)
-    extent_m = std::max(extent_m, extent(points[neighbors.ranks[k]] - points[rank]));
-  const ExactMoments exact(neighbors.size, extent_m);
-  Moments moments;
-  for (std::uint32_t k = 0; k < neighbors.size; ++k)
-    moments.add(points[neighbors.ranks[k]] - points[rank], exact);
-  return local_shape(moments);
-}
 
 PlaneDistances plane_distances(std::span<const Vec3f> points, std::uint32_t rank,
                                const NeighborList& neighbors, Vec3f normal) {
@@ -41,7 +32,18 @@ void add_relaxed(std::uint32_t& counter, std::uint32_t value) {
   std::atomic_ref<std::uint32_t>(counter).fetch_add(value, std::memory_order_relaxed);
 }
 
-/// Computes the neighbourhoods one by one.
+constexpr std::size_t kMostInGroup = PointIndex::kLeafPoints;
+
+/// The shapes of a group of PointIndex::for_each_group().
+std::span<const LocalShape> shapes_of(std::span<const Vec3f> points, std::uint32_t first_rank,
+                                      std::span<const NeighborList> lists) {
+  thread_local ShapeLanes lanes;  // reused memory
+  thread_local std::array<LocalShape, kMostInGroup> shapes;
+  lanes.find(points, first_rank, lists, shapes);
+  return std::span(shapes).first(lists.size());
+}
+
+/// Computes the neighbourhoods group by group.
 class Pass {
  public:
   Pass(std::span<const Vec3f> points, const BaseNeighborhoodOptions& options,
@@ -52,15 +54,10 @@ class Pass {
         error_sums_(points.size()),
         error_counts_(points.size()) {}
 
-  /// Sets the results of a point and counts its votes.
-  void set(std::uint32_t rank, const NeighborList& neighbors) {
-    const LocalShape shape = shape_of(points_, rank, neighbors);
-    const PlaneDistances distances = plane_distances(points_, rank, neighbors, shape.normal);
-    result_.normals[rank] = shape.normal;
-    result_.kinds[rank] = kind_of(shape);
-    error_sums_[rank] = static_cast<float>(distances.sum);
-    error_counts_[rank] = neighbors.size;
-    vote(rank, neighbors, shape.normal, distances.sigma(), 1);
+  /// Sets the results of consecutive points and counts their votes.
+  void set(std::uint32_t first_rank, std::span<const NeighborList> lists) {
+    const std::span<const LocalShape> shapes = shapes_of(points_, first_rank, lists);
+    for (std::uint32_t k = 0; k < lists.size(); ++k) set(first_rank + k, lists[k], shapes[k]);
   }
 
   /// Reverts the votes of set() for this point and these neighbours.
@@ -92,6 +89,15 @@ class Pass {
   }
 
  private:
+  void set(std::uint32_t rank, const NeighborList& neighbors, const LocalShape& shape) {
+    const PlaneDistances distances = plane_distances(points_, rank, neighbors, shape.normal);
+    result_.normals[rank] = shape.normal;
+    result_.kinds[rank] = kind_of(shape);
+    error_sums_[rank] = static_cast<float>(distances.sum);
+    error_counts_[rank] = neighbors.size;
+    vote(rank, neighbors, shape.normal, distances.sigma(), 1);
+  }
+
   void vote(std::uint32_t rank, const NeighborList& neighbors, Vec3f normal, double sigma,
             std::uint32_t weight) {
     if (options_.denoise_sigmas <= 0) return;
@@ -134,14 +140,16 @@ void speculate_then_correct(const PointIndex& index, std::uint32_t neighbors, Pa
   std::vector<float> kth_distances(index.size());
   {
     const ProgressPass speculating(executor, index.size());
-    index.for_each_neighborhood(
+    index.for_each_group(
         executor, [&](std::uint32_t) { return NeighborLimit{neighbors}; },
-        [&](std::uint32_t rank, const NeighborList& found) {
-          float farthest = 0.0F;
-          for (std::uint32_t k = 0; k < found.size; ++k)
-            farthest = std::max(farthest, found.squared_distances[k]);
-          kth_distances[rank] = std::sqrt(farthest);
-          pass.set(rank, found);
+        [&](std::uint32_t first_rank, std::span<const NeighborList> lists) {
+          for (std::size_t i = 0; i < lists.size(); ++i) {
+            float farthest = 0.0F;
+            for (std::uint32_t k = 0; k < lists[i].size; ++k)
+              farthest = std::max(farthest, lists[i].squared_distances[k]);
+            kth_distances[first_rank + i] = std::sqrt(farthest);
+          }
+          pass.set(first_rank, lists);
         });
   }
   result.radius_m = mean_of(kth_distances, executor);
@@ -163,7 +171,9 @@ void speculate_then_correct(const PointIndex& index, std::uint32_t neighbors, Pa
           distances.push_back(found.squared_distances[k]);
           ranks.push_back(found.ranks[k]);
         }
-        pass.set(rank, {distances.data(), ranks.data(), static_cast<std::uint32_t>(ranks.size())});
+        const NeighborList within = {distances.data(), ranks.data(),
+                                     static_cast<std::uint32_t>(ranks.size())};
+        pass.set(rank, std::span(&within, 1));
       });
 }
 
@@ -184,9 +194,11 @@ BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointI
     result.radius_m = *options.radius_m;
     const NeighborLimit limit{options.neighbors, squared_radius_of(result.radius_m)};
     const ProgressPass only(executor, points.size());
-    index.for_each_neighborhood(
+    index.for_each_group(
         executor, [&](std::uint32_t) { return limit; },
-        [&](std::uint32_t rank, const NeighborList& found) { pass.set(rank, found); });
+        [&](std::uint32_t first_rank, std::span<const NeighborList> lists) {
+          pass.set(first_rank, lists);
+        });
   } else {
     speculate_then_correct(index, options.neighbors, pass, result, executor);
   }
@@ -198,9 +210,13 @@ void refine_normals(std::span<const Vec3f> points, const PointIndex& index,
                     FunctionRef<NeighborLimit(std::uint32_t)> limit, std::span<Vec3f> normals,
                     const Executor& executor) {
   const ProgressPass only(executor, points.size());
-  index.for_each_neighborhood(executor, limit, [&](std::uint32_t rank, const NeighborList& found) {
-    if (!found.empty()) normals[rank] = shape_of(points, rank, found).normal;
-  });
+  index.for_each_group(
+      executor, limit, [&](std::uint32_t first_rank, std::span<const NeighborList> lists) {
+        if (std::ranges::all_of(lists, &NeighborList::empty)) return;
+        const std::span<const LocalShape> shapes = shapes_of(points, first_rank, lists);
+        for (std::size_t i = 0; i < lists.size(); ++i)
+          if (!lists[i].empty()) normals[first_rank + i] = shapes[i].normal;
+      });
 }
 
 }  // namespace adasplats

@@ -104,15 +104,18 @@ ADASPLATS_HD inline bool is_flat(const Moments& moments, double variance) {
   return !(xx > 0 && xy > 0 && all > 0);
 }
 
-/// PCA of a neighbourhood. With fewer than three points the normal has unit length but is
-/// arbitrary.
-ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
-  const SymmetricEigen eigen = symmetric_eigen(covariance(m));
+ADASPLATS_HD inline LocalShape shape_from(const SymmetricEigen& eigen) {
   LocalShape shape;
   shape.normal = vec_cast<float>(eigen.vectors[2]);
   // Rounding may leave a variance of zero slightly below it.
   for (int k = 0; k < 3; ++k) shape.lambda[k] = eigen.values[k] > 0.0 ? eigen.values[k] : 0.0;
   return shape;
+}
+
+/// PCA of a neighbourhood. With fewer than three points the normal has unit length but is
+/// arbitrary.
+ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
+  return shape_from(symmetric_eigen(covariance(m)));
 }
 
 /// The largest descriptor (paper section "Adaptive Splatting Using Local Descriptors").

@@ -25,6 +25,8 @@ class ExactAddends {
   }
 
   ADASPLATS_HD double operator()(double value) const { return (value + shift_) - shift_; }
+  /// What rounds a number when it is added and subtracted again.
+  ADASPLATS_HD double shift() const { return shift_; }
 
  private:
   double shift_;
