@@ -69,7 +69,7 @@ def main():
                 report = json.loads(pathlib.Path(f"{folder}/report.json").read_text())
                 of_street.append({"points": report["points_in"], "splats": report["primitives"], **run})
                 os.remove(f"{folder}/model.ply")
-        models = [median_of(of_street) for of_street in runs]
+        models = [{"name": f"{1 << k}x", **median_of(of_street)} for k, of_street in enumerate(runs)]
         logs = {key: [math.log(model[key]) for model in models]
                 for key in ("points", "seconds", "peak_bytes")}
         result = {"models": models, "runs": args.runs,

@@ -113,6 +113,8 @@ def test_a_missing_gpu():
     model = adasplats.Model([[0.0, 0, 0]], [[0, 0, 1.0]], [1.0])
     with pytest.raises(RuntimeError, match="cuda"):
         adasplats.Scene(model, device="cuda")
+    with pytest.raises(adasplats.UnavailableError, match="cuda"):
+        adasplats.limit_gpu_memory(8)
     scene = adasplats.Scene(model)
     assert scene.device == "cpu"
     with pytest.raises(RuntimeError, match="on the CPU"):

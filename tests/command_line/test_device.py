@@ -64,6 +64,12 @@ class AnyMachine(DeviceTest):
         self.run_bad(64, *self.simulate_words(self.model()), "--config", config,
                      says=["no effect with --device cpu"])
 
+    def test_gpu_memory_needs_a_gpu(self):
+        words = self.simulate_words(self.model())
+        self.run_bad(64, *words, "--device", "cpu", "--gpu-memory", "8G",
+                     says=["--gpu-memory has no effect with --device cpu"])
+        self.run_bad(64, *words, "--gpu-memory", "0", says=["--gpu-memory"])
+
     def test_info_lists_gpus(self):
         gpus = self.gpus()
         for arguments in [["info"], ["info", "--devices"]]:

@@ -202,14 +202,14 @@ class ModelCommand final : public Command {
   /// Chooses tiles if the inputs do not fit into memory.
   void choose_tiles(Session& session) {
     const bool can_be_tiles = std::holds_alternative<ConsistentOptions>(job_.build.recipe);
-    const bool is_asked = is_given("--memory");
+    const bool is_asked = is_given("--memory") || is_given("--gpu-memory");
     if (!can_be_tiles && !is_asked) return;
     for (const std::filesystem::path& input : job_.inputs) require_input(input);
     const TileAdvice advice = advise_tiles(job_, session);
     if (advice.tile_m == 0) {
       if (is_asked && job_.output.extension() != ".ply")
         throw Error(ErrorKind::usage,
-                    "the points fit into --memory as one model; name a file (-o " +
+                    "the points fit into the memory as one model; name a file (-o " +
                         job_.output.filename().string() +
                         ".ply), or use --tile 64 for a folder of tiles");
       return;
@@ -218,7 +218,9 @@ class ModelCommand final : public Command {
     const std::string why = "about " + grouped(static_cast<std::size_t>(advice.points)) +
                             " points need about " + gigabytes(advice.need_gb) +
                             " as one model, more than the " + gigabytes(advice.memory_gb) +
-                            (is_asked ? " of --memory" : " of available memory");
+                            (advice.of_gpu          ? " of the GPU"
+                             : is_given("--memory") ? " of --memory"
+                                                    : " of available memory");
     if (!can_be_tiles)
       throw Error(ErrorKind::usage, why + "; only the method consistent can model tiles");
     if (job_.output.extension() == ".ply")

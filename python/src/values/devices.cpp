@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/error.h"
 #include "adasplats/gpu/base/device.h"
+#include "adasplats/jobs/session/device_choice.h"
 #include "bindings.h"
 #include "keywords.h"
 
@@ -24,6 +26,18 @@ py::list devices() {
   return found;
 }
 
+constexpr const char* kLimitDoc =
+    R"(Limits the memory of a GPU that this process takes from now on, in GB (10^9 bytes), besides
+half a gigabyte for CUDA; 0: no limit. What exceeds it raises UnavailableError, as on a GPU with no
+more memory. Errors: UnavailableError without a GPU.)";
+
+void limit_memory(double gigabytes, int gpu) {
+  if (!(gigabytes >= 0 && gigabytes <= 1e6))
+    throw Error(ErrorKind::usage, "gigabytes must be from 0 to 1000000");
+  choose_device({.kind = DeviceKind::cuda, .gpus = {gpu}});  // an error without that GPU
+  limit_gpu_memory(gpu, static_cast<std::size_t>(gigabytes * 1e9));
+}
+
 }  // namespace
 
 void bind_devices(py::module_& module) {
@@ -33,6 +47,8 @@ void bind_devices(py::module_& module) {
       documented("why_no_gpu", "",
                  "Why no GPU is usable and what to do about it; empty if one is usable.")
           .c_str());
+  module.def("limit_gpu_memory", &limit_memory, py::arg("gigabytes"), py::arg("gpu") = 0,
+             documented("limit_gpu_memory", "gigabytes, gpu=0", kLimitDoc).c_str());
 }
 
 }  // namespace adasplats::python

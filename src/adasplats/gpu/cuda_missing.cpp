@@ -24,6 +24,10 @@ GpuSearch find_gpus() {
           .reason = "this build has no CUDA; build it where CMake finds nvcc (CUDA 12 or newer)"};
 }
 std::size_t free_memory_bytes(int) { return 0; }
+void limit_gpu_memory(int, std::size_t) {}
+std::size_t gpu_memory_limit(int) { return 0; }
+std::size_t usable_gpu_memory(int) { return 0; }
+std::size_t peak_gpu_memory(int) { return 0; }
 bool built_with_cuda() { return false; }
 
 std::unique_ptr<ModelEngine> make_cuda_model_engine(int) { throw_missing("build models"); }

@@ -117,25 +117,30 @@ bool shows_reflectances(const PointCloud& cloud) {
   return cloud.has_beams() && !cloud.intensities.empty();
 }
 
-/// The attributes that measuring reflectances needs; empty if the cloud lacks them.
-PointCloud rays_with_intensities(const PointCloud& cloud) {
+/// Keeps the attributes that measuring reflectances needs, and frees the others.
+void keep_rays_with_intensities(PointCloud& cloud) {
   PointCloud rays;
   rays.origin = cloud.origin;
-  if (!shows_reflectances(cloud)) return rays;
-  rays.positions = cloud.positions;
-  rays.sensor_positions = cloud.sensor_positions;
-  rays.origin_kinds = cloud.origin_kinds;
-  rays.intensities = cloud.intensities;
-  return rays;
+  rays.positions = std::move(cloud.positions);
+  rays.sensor_positions = std::move(cloud.sensor_positions);
+  rays.origin_kinds = std::move(cloud.origin_kinds);
+  rays.intensities = std::move(cloud.intensities);
+  cloud = std::move(rays);
 }
 
-/// Runs a method of the paper.
-void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
-                 const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
+/// Runs a method of the paper. Of `cloud` remains what reflectances are measured with, if they are.
+void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCloud& cloud,
+                 const ClassTables& tables, bool measures, StepSink step, SplatModel& model,
+                 BuildReport& report) {
   const std::unique_ptr<PaperSteps> made = engine.paper_steps();
   PaperSteps& steps = *made;
   step("order", 0);
-  report.points_used = steps.load(std::move(cloud), tables);
+  report.points_used = steps.load(cloud, tables);
+  if (measures) {
+    keep_rays_with_intensities(cloud);
+  } else {
+    cloud = {};
+  }
   report.points_dynamic = report.points_in - report.points_used;
   if (options.denoise) {
     step("denoising", base_passes(options.radius_m));
@@ -155,16 +160,15 @@ void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCl
   put_splats(steps.take_splats(), model, report);
 }
 
-/// Runs a method of the paper and measures reflectances. Its steps change the points, so a copy of
-/// the measured ones is kept.
+/// Runs a method of the paper and measures reflectances.
 void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
          const ClassTables& tables, const BuildOptions& build, StepSink step, SplatModel& model,
          BuildReport& report) {
-  const PointCloud measured = build.reflectances ? rays_with_intensities(cloud) : PointCloud();
-  make_splats(options, engine, std::move(cloud), tables, step, model, report);
-  if (measured.empty() || model.intensities.empty()) return;
+  const bool measures = build.reflectances && shows_reflectances(cloud);
+  make_splats(options, engine, cloud, tables, measures, step, model, report);
+  if (!measures || model.intensities.empty()) return;
   step("reflectances", 1);
-  put_reflectances(engine.measure_reflectances(model.disks, model.intensities, measured), model,
+  put_reflectances(engine.measure_reflectances(model.disks, model.intensities, cloud), model,
                    report);
 }
 

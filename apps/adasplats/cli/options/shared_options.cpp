@@ -70,6 +70,14 @@ void add_device_options(OptionSet& app, DeviceOptions& options, GpuCount count) 
                          "Where to compute; auto: on an NVIDIA GPU with cuda, else on the CPU")
       ->group(kGroup)
       ->basic();
+  const Setting limit = {.name = "gpu_memory",
+                         .help =
+                             "Memory limit of each GPU, GB or with a unit (8G, 500M), besides "
+                             "half a gigabyte for CUDA (default: all that is free)",
+                         .value = "GB",
+                         .min = 0.1,
+                         .max = 1e6};
+  add_memory(app, limit, options.memory_gb)->group(kGroup);
   if (count == GpuCount::one) return;
   app.add_option_function<std::string>(
          "--gpus",

@@ -20,8 +20,11 @@ std::string gigabytes(std::size_t bytes) {
 
 std::string out_of_memory() {
   std::size_t free_bytes = 0, total_bytes = 0;
+  int device = 0;
   std::string message = "the GPU has not enough memory";
-  if (cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess) {
+  if (cudaGetDevice(&device) == cudaSuccess && gpu_memory_limit(device) > 0) {
+    message += " (the limit is " + gigabytes(gpu_memory_limit(device)) + ")";
+  } else if (cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess) {
     message += " (" + gigabytes(free_bytes) + " of " + gigabytes(total_bytes) + " are free)";
   }
   return message + "; use `device` cpu, fewer points or a GPU with more memory";

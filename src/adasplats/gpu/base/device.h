@@ -32,6 +32,16 @@ GpuSearch find_gpus();
 /// a while and some memory.
 std::size_t free_memory_bytes(int device);
 
+/// Limits the memory of a GPU that this process takes, without what CUDA itself needs (about half a
+/// gigabyte); 0: no limit. What exceeds it fails as if the GPU had no more.
+void limit_gpu_memory(int device, std::size_t bytes);
+/// 0 without a limit.
+std::size_t gpu_memory_limit(int device);
+/// What can still be taken: as free_memory_bytes(), within the limit.
+std::size_t usable_gpu_memory(int device);
+/// Most memory of a GPU that this process has taken at a time, without what CUDA itself needs.
+std::size_t peak_gpu_memory(int device);
+
 /// Whether this build has CUDA code.
 bool built_with_cuda();
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adasplats/gpu/base/cuda_check.h"
+#include "adasplats/gpu/base/memory_account.h"
 
 namespace adasplats::gpu {
 
@@ -78,8 +79,13 @@ class DeviceBuffer {
   DeviceBuffer() = default;
   DeviceBuffer(std::size_t size, cudaStream_t stream) : size_(size), stream_(stream) {
     if (size == 0) return;
+    constexpr const char* kDoing = "get memory of the GPU";
+    account_ = &MemoryAccount::current();
+    account_->take(bytes(), kDoing);
     void* memory = nullptr;
-    cuda_check(cudaMallocAsync(&memory, size * sizeof(T), stream), "get memory of the GPU");
+    const cudaError_t status = cudaMallocAsync(&memory, bytes(), stream);
+    if (status != cudaSuccess) account_->give_back(bytes());
+    cuda_check(status, kDoing);
     data_ = static_cast<T*>(memory);
   }
   /// A copy of host memory; pageable memory may be reused when this returns.
@@ -88,7 +94,9 @@ class DeviceBuffer {
     upload(values);
   }
   ~DeviceBuffer() {
-    if (data_ != nullptr) cudaFreeAsync(data_, stream_);
+    if (data_ == nullptr) return;
+    cudaFreeAsync(data_, stream_);
+    account_->give_back(bytes());
   }
   DeviceBuffer(DeviceBuffer&& other) noexcept { swap(other); }
   DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
@@ -131,11 +139,13 @@ class DeviceBuffer {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     std::swap(stream_, other.stream_);
+    std::swap(account_, other.account_);
   }
 
   T* data_ = nullptr;
   std::size_t size_ = 0;
   cudaStream_t stream_ = nullptr;
+  MemoryAccount* account_ = nullptr;
 };
 
 /// Page-locked host memory: copies run at full speed, and the GPU can access it directly.

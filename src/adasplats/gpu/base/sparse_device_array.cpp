@@ -12,6 +12,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/cuda_check.h"
+#include "adasplats/gpu/base/memory_account.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -114,7 +115,11 @@ void ReservedDeviceMemory::map(std::size_t page) {
   constexpr const char* kDoing = "get memory of the GPU for a tile";
   const CUmemAllocationProp properties = memory_of(device_);
   CUmemGenericAllocationHandle memory = 0;
-  check(driver().create(&memory, page_bytes_, &properties, 0), kDoing);
+  MemoryAccount& account = MemoryAccount::of(device_);
+  account.take(page_bytes_, kDoing);
+  const CUresult created = driver().create(&memory, page_bytes_, &properties, 0);
+  if (created != CUDA_SUCCESS) account.give_back(page_bytes_);
+  check(created, kDoing);
   const CUdeviceptr at = address(data_ + page * page_bytes_);
   const CUmemAccessDesc access = {properties.location, CU_MEM_ACCESS_FLAGS_PROT_READWRITE};
   const CUresult mapped = driver().map(at, page_bytes_, 0, memory, 0);
@@ -123,6 +128,7 @@ void ReservedDeviceMemory::map(std::size_t page) {
   if (result != CUDA_SUCCESS) {
     if (mapped == CUDA_SUCCESS) driver().unmap(at, page_bytes_);
     driver().release(memory);
+    account.give_back(page_bytes_);
     check(result, kDoing);
   }
   pages_[page].memory = memory;
@@ -131,6 +137,7 @@ void ReservedDeviceMemory::map(std::size_t page) {
 void ReservedDeviceMemory::unmap(std::size_t page) {
   driver().unmap(address(data_ + page * page_bytes_), page_bytes_);
   driver().release(pages_[page].memory);
+  MemoryAccount::of(device_).give_back(page_bytes_);
   pages_[page] = {};
 }
 

@@ -19,6 +19,7 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/engines.h"
 #include "adasplats/gpu/base/hilbert_order.h"
+#include "adasplats/gpu/base/memory_account.h"
 #include "adasplats/gpu/base/sort_keys.h"
 #include "adasplats/gpu/neighbors/cloud_on_device.h"
 #include "adasplats/gpu/neighbors/neighborhoods_lists.h"
@@ -512,6 +513,25 @@ TEST(PaperModel, TooLittleMemoryIsAnError) {
     EXPECT_EQ(thrown.kind, ErrorKind::unavailable);
     EXPECT_NE(thrown.what.find("not enough memory"), std::string::npos) << thrown.what;
   }
+  EXPECT_GT(build(cloud, options, true).first.size(), 100U);
+}
+
+TEST(PaperModel, MoreThanTheLimitIsAnError) {
+  ADASPLATS_NEEDS_GPU();
+  const PointCloud cloud = dense_room();
+  PaperOptions options;
+  options.variant = PaperVariant::basic;
+  EXPECT_GT(build(cloud, options, true).first.size(), 100U);
+  const std::size_t held = MemoryAccount::of(0).held();
+  const std::size_t room = std::size_t{1} << 20;  // less than the points
+  limit_gpu_memory(0, held + room);
+  EXPECT_LE(usable_gpu_memory(0), room);
+  const Thrown thrown = error_of([&] { build(cloud, options, true); });
+  limit_gpu_memory(0, 0);
+  EXPECT_EQ(thrown.kind, ErrorKind::unavailable);
+  EXPECT_NE(thrown.what.find("the limit is"), std::string::npos) << thrown.what;
+  EXPECT_EQ(MemoryAccount::of(0).held(), held);
+  EXPECT_GT(peak_gpu_memory(0), held + room);
   EXPECT_GT(build(cloud, options, true).first.size(), 100U);
 }
 

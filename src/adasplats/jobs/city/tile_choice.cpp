@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/gpu/base/device.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/jobs/city/tile_workers.h"
@@ -63,8 +65,36 @@ Sample sample_of(const OpenInputs& inputs, std::size_t k) {
   return sample;
 }
 
-TileAdvice one_piece(double points, double memory_gb) {
-  return {0, points, points * kModelBytesAPoint / 1e9, memory_gb};
+/// A memory that modelling takes from.
+struct MemoryLimit {
+  double limit_gb = 0;
+  double bytes_a_point = 0;
+  double tiles_at_once = 1;
+  bool of_gpu = false;
+
+  double need_gb(double points) const { return points * bytes_a_point / 1e9; }
+  bool fits(double points) const { return need_gb(points) <= limit_gb; }
+};
+
+/// The memory of the machine and of the smallest GPU; none if unknown.
+std::vector<MemoryLimit> limits_of(const CityJob& job, const Session& session) {
+  std::vector<MemoryLimit> limits;
+  double memory_gb = job.memory.memory_gb;
+  if (memory_gb == 0) memory_gb = 0.75 * static_cast<double>(usable_memory_bytes()) / 1e9;
+  const auto at_once = static_cast<double>(tiles_at_once(session));
+  if (memory_gb > 0) limits.push_back({memory_gb, kModelBytesAPoint, at_once, false});
+  double gpu_gb = 0;
+  for (const GpuDevice& gpu : session.device.gpus) {
+    const double usable_gb = static_cast<double>(usable_gpu_memory(gpu.index)) / 1e9;
+    gpu_gb = gpu_gb == 0 ? usable_gb : std::min(gpu_gb, usable_gb);
+  }
+  const auto gpus = static_cast<double>(std::max<std::size_t>(1, session.device.gpus.size()));
+  if (gpu_gb > 0) limits.push_back({gpu_gb, kGpuModelBytesAPoint, std::ceil(at_once / gpus), true});
+  return limits;
+}
+
+TileAdvice one_piece(double points, const MemoryLimit& limit) {
+  return {0, points, limit.need_gb(points), limit.limit_gb, limit.of_gpu};
 }
 
 }  // namespace
@@ -125,25 +155,31 @@ PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session) {
 }
 
 TileAdvice advise_tiles(const CityJob& job, Session& session) {
-  double memory_gb = job.memory.memory_gb;
-  if (memory_gb == 0) memory_gb = 0.75 * static_cast<double>(usable_memory_bytes()) / 1e9;
+  const std::vector<MemoryLimit> limits = limits_of(job, session);
+  const auto fits = [&](double points) {
+    return std::ranges::all_of(limits, [&](const MemoryLimit& one) { return one.fits(points); });
+  };
   const double most = max_points_of(job.inputs);
-  if (memory_gb == 0 || most * kModelBytesAPoint <= memory_gb * 1e9)
-    return one_piece(most, memory_gb);
+  if (limits.empty() || fits(most))
+    return one_piece(most, limits.empty() ? MemoryLimit{} : limits.front());
   LoadOptions load = job.load;
   load.empty_beams = false;
   load.own_body_m = 0;   // cannot be estimated from single scans
   load.max_dropped = 1;  // nor whether too much of the whole is dropped
   const OpenInputs inputs(job.inputs, load, session.executor, session.progress);
   const PlaceEstimate place = estimate_place(inputs, session);
-  TileAdvice advice = one_piece(place.points, memory_gb);
-  if (advice.need_gb <= memory_gb) return advice;
-  const auto at_once = static_cast<double>(tiles_at_once(session));
+  // The memory that is scarcest for one piece is the one to name.
+  const MemoryLimit& scarcest = *std::ranges::max_element(
+      limits, {}, [](const MemoryLimit& one) { return one.bytes_a_point / one.limit_gb; });
+  TileAdvice advice = one_piece(place.points, scarcest);
+  if (fits(place.points)) return advice;
   double need_gb = 0;
   for (const double tile_m : {64.0, 32.0, 16.0}) {
-    need_gb =
-        at_once * place.max_points_of_tile(tile_m, job.tiles.halo_m) * kModelBytesAPoint / 1e9;
-    if (need_gb > memory_gb) continue;
+    const double points = place.max_points_of_tile(tile_m, job.tiles.halo_m);
+    need_gb = scarcest.need_gb(scarcest.tiles_at_once * points);
+    if (!std::ranges::all_of(
+            limits, [&](const MemoryLimit& one) { return one.fits(one.tiles_at_once * points); }))
+      continue;
     advice.tile_m = tile_m;
     return advice;
   }
@@ -151,8 +187,8 @@ TileAdvice advise_tiles(const CityJob& job, Session& session) {
                                    decimal_text(std::round(place.points / 1e6)) +
                                    " million points; modelling even tiles of 16 m takes about " +
                                    decimal_text(std::ceil(need_gb * 10) / 10) +
-                                   " GB, more than the " + decimal_text(memory_gb) +
-                                   " GB of `memory`");
+                                   " GB, more than the " + decimal_text(scarcest.limit_gb) +
+                                   " GB of " + (scarcest.of_gpu ? "the GPU" : "`memory`"));
 }
 
 }  // namespace adasplats

@@ -18,6 +18,9 @@ namespace adasplats {
 /// (KITTI-0005, 9.4 M) and 318 (a street with beams without return, 12.3 M).
 inline constexpr double kModelBytesAPoint = 340;
 
+/// The same of a GPU's memory.
+inline constexpr double kGpuModelBytesAPoint = 340;
+
 /// About how many points a place has, and where.
 struct PlaceEstimate {
   static constexpr double kCell_m = 16;
@@ -41,12 +44,13 @@ struct TileAdvice {
   double points = 0;   ///< about as many
   double need_gb = 0;  ///< that these take in one piece
   double memory_gb = 0;
+  bool of_gpu = false;  ///< the memory that is too small, or would be first, is a GPU's
 };
 
 /// The largest tiles of 64, 32 or 16 m that fit into `memory_gb` (MemoryChoice; 0: three quarters
-/// of what the process may use) as often as several are modelled at a time; of places that fit as
-/// they are, none. The inputs are opened where their size alone does not say that. Errors: data
-/// (not even the smallest tiles fit), those of OpenInputs.
+/// of what the process may use) and into that of every GPU, as often as several are modelled at a
+/// time; of places that fit as they are, none. The inputs are opened where their size alone does
+/// not say that. Errors: data (not even the smallest tiles fit), those of OpenInputs.
 TileAdvice advise_tiles(const CityJob& job, Session& session);
 
 }  // namespace adasplats

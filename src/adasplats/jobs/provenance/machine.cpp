@@ -9,6 +9,7 @@
 #include <string>
 
 #include "adasplats/core/setting.h"
+#include "adasplats/gpu/base/device.h"
 
 namespace adasplats {
 namespace {
@@ -85,6 +86,8 @@ Json device_json(const DeviceChoice& device) {
     json["driver"] = device.driver;
     json["kernel_driver"] = kernel_driver();
     json["gpus"] = device.gpu_numbers();
+    for (const GpuDevice& gpu : device.gpus)
+      json["peak_bytes"].push_back(peak_gpu_memory(gpu.index));
   } else {
     json["name"] = cpu_name();
     json["driver"] = nullptr;

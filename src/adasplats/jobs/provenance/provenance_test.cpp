@@ -69,6 +69,8 @@ TEST(DeviceJson, NamesWhatComputes) {
   Json json = device_json(gpus);
   EXPECT_TRUE(json.contains("kernel_driver"));
   json.erase("kernel_driver");  // of this machine
+  EXPECT_EQ(json["peak_bytes"].size(), 2U);
+  json.erase("peak_bytes");
   EXPECT_EQ(json.dump(),
             R"({"kind":"cuda","name":"Imagined 0, Imagined 2","driver":"13.0","gpus":[0,2]})");
   const std::string cpu = device_json(DeviceChoice()).dump();

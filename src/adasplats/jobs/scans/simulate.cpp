@@ -23,6 +23,7 @@
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/rig_writer.h"
 #include "adasplats/dataset/scan_values.h"
+#include "adasplats/gpu/base/device.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/folder_task.h"
@@ -354,7 +355,9 @@ class OpenScene {
       model_ = std::make_unique<ModelScene>(job.model, job.labels, session, WorldFiles::taken);
       return;
     }
-    const double usual_gb = session.device.on_gpu() ? kGpuTiles_gb : kCpuTiles_gb;
+    double usual_gb = session.device.on_gpu() ? kGpuTiles_gb : kCpuTiles_gb;
+    for (const GpuDevice& gpu : session.device.gpus)  // the other half: points and scans
+      usual_gb = std::min(usual_gb, 0.5e-9 * static_cast<double>(usable_gpu_memory(gpu.index)));
     const double memory_gb = job.tile_memory_gb > 0 ? job.tile_memory_gb : usual_gb;
     city_ = std::make_unique<CityScene>(job.model, job.labels, session,
                                         static_cast<std::size_t>(memory_gb * 1e9));

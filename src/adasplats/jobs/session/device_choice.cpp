@@ -81,6 +81,8 @@ DeviceChoice choose_device(const DeviceOptions& options) {
     if (options.all_gpus || !options.gpus.empty()) {
       throw Error(ErrorKind::usage, "`gpus` has no effect with `device` cpu; give one of them");
     }
+    if (options.memory_gb > 0)
+      throw Error(ErrorKind::usage, "`gpu_memory` has no effect with `device` cpu");
     return choice;
   }
   const GpuSearch search = find_gpus();
@@ -93,6 +95,9 @@ DeviceChoice choose_device(const DeviceOptions& options) {
   }
   choice.kind = options.kind == DeviceKind::automatic ? DeviceKind::cuda : options.kind;
   choice.gpus = chosen_gpus(options, search.devices);
+  for (const GpuDevice& gpu : choice.gpus)
+    if (options.memory_gb > 0)
+      limit_gpu_memory(gpu.index, static_cast<std::size_t>(options.memory_gb * 1e9));
   choice.driver = search.driver;
   return choice;
 }

@@ -32,6 +32,7 @@ struct DeviceOptions {
   DeviceKind kind = DeviceKind::automatic;
   std::vector<int> gpus;  ///< by CUDA's numbers; empty: the first one
   bool all_gpus = false;
+  double memory_gb = 0;  ///< that each GPU may give, 10^9 bytes; 0: all that it has
 };
 
 /// The device of a run.

@@ -37,7 +37,7 @@ class PaperSteps {
 
   /// Loads the cloud in canonical order (of all points), without points of removed classes. With
   /// `tables.groups` every point gets the group of its class. Returns the number of points kept.
-  virtual std::size_t load(PointCloud cloud, const ClassTables& tables) = 0;
+  virtual std::size_t load(const PointCloud& cloud, const ClassTables& tables) = 0;
 
   /// Paper section "Splat-Based Resampling and Denoising", first paragraph. Returns the
   /// number of points kept.

@@ -20,7 +20,7 @@ class PaperStepsOn final : public PaperSteps {
   template <class Where>
   explicit PaperStepsOn(const Where& where) : backend_(where) {}
 
-  std::size_t load(PointCloud cloud, const ClassTables& tables) override {
+  std::size_t load(const PointCloud& cloud, const ClassTables& tables) override {
     [[maybe_unused]] const auto entered = backend_.enter();
     cloud_ = backend_.load(cloud, tables.removed);
     groups_ = {};
