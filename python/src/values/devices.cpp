@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/device.h"
-#include "adasplats/jobs/session/device_choice.h"
 #include "bindings.h"
 #include "keywords.h"
 
@@ -34,7 +36,10 @@ more memory. Errors: UnavailableError without a GPU.)";
 void limit_memory(double gigabytes, int gpu) {
   if (!(gigabytes >= 0 && gigabytes <= 1e6))
     throw Error(ErrorKind::usage, "gigabytes must be from 0 to 1000000");
-  choose_device({.kind = DeviceKind::cuda, .gpus = {gpu}});  // an error without that GPU
+  const GpuSearch search = find_gpus();
+  if (search.devices.empty()) throw Error(ErrorKind::unavailable, search.reason);
+  if (std::ranges::find(search.devices, gpu, &GpuDevice::index) == search.devices.end())
+    throw Error(ErrorKind::usage, "there is no GPU " + std::to_string(gpu));
   limit_gpu_memory(gpu, static_cast<std::size_t>(gigabytes * 1e9));
 }
 

@@ -99,8 +99,8 @@ struct ConsistentOptions {
   }
   /// Selects as many of `rays` as a round needs; different ones in every round.
   EvidenceOptions evidence_of_round(int round, std::size_t rays) const;
-  /// A quarter of `rays` in each of the first two rounds, half of them in the third, then all: later
-  /// rounds correct the first ones. More if that are fewer than a round needs.
+  /// A quarter of `rays` in each of the first two rounds, half of them in the third, then all:
+  /// later rounds correct the first ones. More if that are fewer than a round needs.
   ExtentOptions extent_of_round(int round, std::size_t rays) const;
   /// For growing disks; `checked`: rays show where surfaces end.
   CoverOptions cover_options(bool checked) const;
