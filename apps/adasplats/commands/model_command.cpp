@@ -202,7 +202,7 @@ class ModelCommand final : public Command {
   /// Chooses tiles if the inputs do not fit into memory.
   void choose_tiles(Session& session) {
     const bool can_be_tiles = std::holds_alternative<ConsistentOptions>(job_.build.recipe);
-    const bool is_asked = is_given("--memory") || is_given("--gpu-memory");
+    const bool is_asked = is_given("--memory") || (can_be_tiles && is_given("--gpu-memory"));
     if (!can_be_tiles && !is_asked) return;
     for (const std::filesystem::path& input : job_.inputs) require_input(input);
     const TileAdvice advice = advise_tiles(job_, session);
@@ -228,6 +228,7 @@ class ModelCommand final : public Command {
                   why + ": name a folder (-o " + job_.output.stem().string() +
                       ") for a model in tiles, or use --tile 0 for one model all the same");
     job_.tiles.tile_m = advice.tile_m;
+    job_.memory.tiles_at_once = advice.at_once;
     session.report["tile_m"] = advice.tile_m;
     session.progress.warn(why + "; modelling in tiles of " + fixed(advice.tile_m, 0) + " m");
   }

@@ -27,7 +27,7 @@ std::string out_of_memory() {
   } else if (cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess) {
     message += " (" + gigabytes(free_bytes) + " of " + gigabytes(total_bytes) + " are free)";
   }
-  return message + "; use `device` cpu, fewer points or a GPU with more memory";
+  return message + "; use `device` cpu, fewer points or splats, or a GPU with more memory";
 }
 
 }  // namespace

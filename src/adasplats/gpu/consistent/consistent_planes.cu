@@ -3,13 +3,19 @@
 #include <algorithm>
 
 #include "adasplats/gpu/base/launch.cuh"
+#include "adasplats/gpu/base/memory_account.h"
 #include "adasplats/gpu/consistent/consistent_planes.h"
 #include "adasplats/gpu/neighbors/neighborhoods.cuh"
 
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kListBytes = std::size_t{1} << 30;  // of the lists of neighbours in memory
+/// Of the lists of neighbours in memory.
+std::size_t list_bytes() {
+  constexpr std::size_t kMost = std::size_t{1} << 30;
+  const std::size_t limit = MemoryAccount::current().limit();
+  return limit == 0 ? kMost : std::min(kMost, limit / 8);
+}
 
 struct alignas(16) WeightedCell {
   Vec3f position;
@@ -71,7 +77,7 @@ DeviceBuffer<LocalPlane> planes_on_device(const CellsView& cells, const DevicePo
   lists.places = options.scales.back();
   check_neighbors(lists.places);
   const std::size_t at_once =
-      std::max<std::size_t>(1, kListBytes / (sizeof(std::uint32_t) * std::max(lists.places, 1U)));
+      std::max<std::size_t>(1, list_bytes() / (sizeof(std::uint32_t) * std::max(lists.places, 1U)));
   for (std::size_t first = 0; first < cells.size; first += at_once) {
     const std::size_t count = std::min<std::size_t>(at_once, cells.size - first);
     lists.first = static_cast<std::uint32_t>(first);

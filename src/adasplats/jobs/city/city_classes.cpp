@@ -99,7 +99,7 @@ void segment_squares(const std::vector<SquareGroup>& groups, const PointClassifi
   RepeatedWarnings warnings(progress, "squares");
   std::vector<FileDigest> digests(to_do.size());
   work_side_by_side(
-      to_do.size(), work.session, warnings,
+      to_do.size(), 0, work.session, warnings,
       [&](std::size_t k, Session& session) {
         const std::string file = squares_file_of(to_do[k].tile);
         write_square_classes(work.path(file),

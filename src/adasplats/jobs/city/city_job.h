@@ -43,6 +43,7 @@ void visit_settings(TileChoice& choice, Visit&& visit) {
 /// By what the size of tiles is chosen (advise_tiles()).
 struct MemoryChoice {
   double memory_gb = 0;  ///< that modelling may take; 0: three quarters of what the process may use
+  std::size_t tiles_at_once = 0;  ///< at most; 0: as many as suit the threads and GPUs
 };
 
 template <class Visit>

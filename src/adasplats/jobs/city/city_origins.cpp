@@ -76,7 +76,7 @@ OriginCheck check_tiles(const CityWork& work) {
       of_tiles[k] = evidence_in(chosen[k], scheme ? &*scheme : nullptr, whole, engine, work);
     });
   };
-  work_side_by_side(chosen.size(), work.session, warnings, check,
+  work_side_by_side(chosen.size(), work.job.memory.tiles_at_once, work.session, warnings, check,
                     [&](std::size_t) { progress.advance(++done); });
   progress.end_step();
   warnings.end();

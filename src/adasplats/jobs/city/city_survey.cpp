@@ -92,7 +92,7 @@ void survey_spacing(CityWork& work, ResumableFolder& folder) {
       of_tiles[k] = spacings_in(chosen[k], scheme ? &*scheme : nullptr, engine, work);
     });
   };
-  work_side_by_side(chosen.size(), work.session, warnings, survey,
+  work_side_by_side(chosen.size(), work.job.memory.tiles_at_once, work.session, warnings, survey,
                     [&](std::size_t) { progress.advance(++done); });
   progress.end_step();
   warnings.end();

@@ -69,11 +69,15 @@ Sample sample_of(const OpenInputs& inputs, std::size_t k) {
 struct MemoryLimit {
   double limit_gb = 0;
   double bytes_a_point = 0;
-  double tiles_at_once = 1;
+  double shared_by = 1;  ///< GPUs of this size
   bool of_gpu = false;
 
   double need_gb(double points) const { return points * bytes_a_point / 1e9; }
   bool fits(double points) const { return need_gb(points) <= limit_gb; }
+  /// How many tiles of so many points fit at a time.
+  double tiles(double points) const {
+    return shared_by * std::floor(limit_gb / std::max(need_gb(points), 1e-9));
+  }
 };
 
 /// The memory of the machine and of the smallest GPU; none if unknown.
@@ -81,20 +85,20 @@ std::vector<MemoryLimit> limits_of(const CityJob& job, const Session& session) {
   std::vector<MemoryLimit> limits;
   double memory_gb = job.memory.memory_gb;
   if (memory_gb == 0) memory_gb = 0.75 * static_cast<double>(usable_memory_bytes()) / 1e9;
-  const auto at_once = static_cast<double>(tiles_at_once(session));
-  if (memory_gb > 0) limits.push_back({memory_gb, kModelBytesAPoint, at_once, false});
+  if (memory_gb > 0) limits.push_back({memory_gb, kModelBytesAPoint, 1, false});
   double gpu_gb = 0;
   for (const GpuDevice& gpu : session.device.gpus) {
     const double usable_gb = static_cast<double>(usable_gpu_memory(gpu.index)) / 1e9;
     gpu_gb = gpu_gb == 0 ? usable_gb : std::min(gpu_gb, usable_gb);
   }
-  const auto gpus = static_cast<double>(std::max<std::size_t>(1, session.device.gpus.size()));
-  if (gpu_gb > 0) limits.push_back({gpu_gb, kGpuModelBytesAPoint, std::ceil(at_once / gpus), true});
+  if (gpu_gb > 0)
+    limits.push_back(
+        {gpu_gb, kGpuModelBytesAPoint, static_cast<double>(session.device.gpus.size()), true});
   return limits;
 }
 
 TileAdvice one_piece(double points, const MemoryLimit& limit) {
-  return {0, points, limit.need_gb(points), limit.limit_gb, limit.of_gpu};
+  return {0, points, limit.need_gb(points), limit.limit_gb, 0, limit.of_gpu};
 }
 
 }  // namespace
@@ -173,16 +177,20 @@ TileAdvice advise_tiles(const CityJob& job, Session& session) {
       limits, {}, [](const MemoryLimit& one) { return one.bytes_a_point / one.limit_gb; });
   TileAdvice advice = one_piece(place.points, scarcest);
   if (fits(place.points)) return advice;
-  double need_gb = 0;
-  for (const double tile_m : {64.0, 32.0, 16.0}) {
-    const double points = place.max_points_of_tile(tile_m, job.tiles.halo_m);
-    need_gb = scarcest.need_gb(scarcest.tiles_at_once * points);
-    if (!std::ranges::all_of(
-            limits, [&](const MemoryLimit& one) { return one.fits(one.tiles_at_once * points); }))
-      continue;
-    advice.tile_m = tile_m;
-    return advice;
+  const auto wanted = static_cast<double>(tiles_at_once(session));
+  double points = 0;  // of the smallest tile tried
+  for (const double at_once : {wanted, 1.0}) {
+    for (const double tile_m : {64.0, 32.0, 16.0}) {
+      points = place.max_points_of_tile(tile_m, job.tiles.halo_m);
+      double fitting = wanted;
+      for (const MemoryLimit& one : limits) fitting = std::min(fitting, one.tiles(points));
+      if (fitting < at_once) continue;
+      advice.tile_m = tile_m;
+      advice.at_once = fitting < wanted ? static_cast<std::size_t>(fitting) : 0;
+      return advice;
+    }
   }
+  const double need_gb = scarcest.need_gb(points);
   throw Error(ErrorKind::data, job.inputs.front().string() + ": about " +
                                    decimal_text(std::round(place.points / 1e6)) +
                                    " million points; modelling even tiles of 16 m takes about " +

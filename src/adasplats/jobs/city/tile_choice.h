@@ -44,13 +44,15 @@ struct TileAdvice {
   double points = 0;   ///< about as many
   double need_gb = 0;  ///< that these take in one piece
   double memory_gb = 0;
-  bool of_gpu = false;  ///< the memory that is too small, or would be first, is a GPU's
+  std::size_t at_once = 0;  ///< tiles that fit at a time; 0: as many as suit threads and GPUs
+  bool of_gpu = false;      ///< the memory that is too small, or would be first, is a GPU's
 };
 
 /// The largest tiles of 64, 32 or 16 m that fit into `memory_gb` (MemoryChoice; 0: three quarters
 /// of what the process may use) and into that of every GPU, as often as several are modelled at a
-/// time; of places that fit as they are, none. The inputs are opened where their size alone does
-/// not say that. Errors: data (not even the smallest tiles fit), those of OpenInputs.
+/// time, or fewer at a time if none does; of places that fit as they are, none. The inputs are
+/// opened where their size alone does not say that. Errors: data (not even the smallest tiles fit),
+/// those of OpenInputs.
 TileAdvice advise_tiles(const CityJob& job, Session& session);
 
 }  // namespace adasplats

@@ -72,6 +72,11 @@ TEST_F(TileChoices, TilesFitIntoTheMemory) {
   EXPECT_EQ(advice(gb(0.9 * 64 * 800)).tile_m, 16);
   // Two tiles at a time need twice as much.
   EXPECT_EQ(advice(gb(1.1 * 96 * 800), 16).tile_m, 16);
+  EXPECT_EQ(advice(gb(1.1 * 96 * 800), 16).at_once, 0U);  // as many as there are threads for
+  // Not even two of 16 m with 48 m of points each fit: one of 32 m.
+  const TileAdvice one_by_one = advice(gb(0.95 * 96 * 800), 16);
+  EXPECT_EQ(one_by_one.tile_m, 32);
+  EXPECT_EQ(one_by_one.at_once, 1U);
   try {
     advice(gb(1000));
     ADD_FAILURE() << "no error";

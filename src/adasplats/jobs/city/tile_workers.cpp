@@ -159,10 +159,12 @@ CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileMo
   return made;
 }
 
-void work_side_by_side(std::size_t count, const Session& session, ProgressSink& warnings,
+void work_side_by_side(std::size_t count, std::size_t most, const Session& session,
+                       ProgressSink& warnings,
                        const std::function<void(std::size_t, Session&)>& work,
                        const std::function<void(std::size_t)>& take) {
-  const std::size_t at_once = std::min(count, tiles_at_once(session));
+  const std::size_t wanted = tiles_at_once(session);
+  const std::size_t at_once = std::min(count, most == 0 ? wanted : std::min(most, wanted));
   const Executor& executor = session.executor;
   if (at_once <= 1) {
     Session own = {executor, warnings, session.seed, session.device};
@@ -197,7 +199,7 @@ void model_tiles(const CityWork& work, const TileModeller& modeller,
                  const std::function<void(const CityTile&)>& take) {
   std::vector<CityTile> made(tiles.begin(), tiles.end());
   work_side_by_side(
-      made.size(), work.session, warnings,
+      made.size(), work.job.memory.tiles_at_once, work.session, warnings,
       [&](std::size_t k, Session& session) {
         made[k] = model_and_save(tiles[k], work, modeller, session);
       },

@@ -16,11 +16,13 @@ namespace adasplats {
 std::size_t tiles_at_once(const Session& session);
 
 /// Does `count` pieces of work, each about a tile, several at a time where the session has the
-/// threads for it, or a GPU, which is idle while a tile is read or written; of several GPUs each
-/// takes pieces in turn. Calls work(k, session) with a session of the thread's own, and take(k) on
-/// this thread when piece k is done, in any order. Warnings go to `warnings` there, too. Errors:
-/// the first of a piece, when the others that had begun are ended.
-void work_side_by_side(std::size_t count, const Session& session, ProgressSink& warnings,
+/// threads for it, or a GPU, which is idle while a tile is read or written, and not more than
+/// `most` (0: no limit); of several GPUs each takes pieces in turn. Calls work(k, session) with a
+/// session of the thread's own, and take(k) on this thread when piece k is done, in any order.
+/// Warnings go to `warnings` there, too. Errors: the first of a piece, when the others that had
+/// begun are ended.
+void work_side_by_side(std::size_t count, std::size_t most, const Session& session,
+                       ProgressSink& warnings,
                        const std::function<void(std::size_t k, Session& session)>& work,
                        const std::function<void(std::size_t k)>& take);
 
