@@ -63,7 +63,7 @@ if [[ -n $sequence ]]; then
   "$bin/bench_gpu_generate" "$sequence" consistent resample 3 >"$work/generate_kitti0005.json"
 fi
 
-python3 - "$work" "$out" "bench/results_gpu.sh BIN_DIR OUT.json${sequence:+ SEQUENCE}" <<'PYTHON'
+python3 - "$work" "$out" "bench/results_gpu.sh BIN_DIR OUT.json${sequence:+ SEQUENCE}" ${sequence:+"$sequence"} <<'PYTHON'
 import json, pathlib, sys
 
 work, out, command = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
@@ -105,6 +105,9 @@ if len(versions) != 1:
     sys.exit(f"results_gpu: the programs come from several versions: {sorted(map(str, versions))}")
 if provenance["commit"] == "unknown" or provenance["dirty"]:
     sys.exit(f"results_gpu: the programs were not built from a clean commit: {versions}")
-pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
+text = json.dumps(result, indent=2).replace(f"{work}/", "")  # folders of the machine
+if len(sys.argv) > 4:
+    text = text.replace(sys.argv[4], "SEQUENCE")
+pathlib.Path(out).write_text(text + "\n")
 print(json.dumps({k: v for k, v in result.items() if k not in ("runs", "provenance")}, indent=2))
 PYTHON
