@@ -51,10 +51,10 @@ def main():
         subprocess.run([args.program, "synth", "street", "--points", str(args.points), "-o",
                         f"{folder}/street"], check=True, capture_output=True)
         street = f"{folder}/street/mapping.ply"
-        result = {"limit_gb": args.limit, "points": args.points}
+        runs = {}
 
         def model(name, source, words, output):
-            result[name], device = report_of(args.program, ["model", source, "-o", f"{folder}/{output}",
+            runs[name], device = report_of(args.program, ["model", source, "-o", f"{folder}/{output}",
                                                             *words], folder)
             return device
 
@@ -66,11 +66,12 @@ def main():
         model("city", street, limit, "city")
         scans = {}
         for name, words in (("simulate", []), ("simulate_limited", ["--gpu-memory", str(args.limit / 4)])):
-            result[name], _ = report_of(args.program, [
+            runs[name], _ = report_of(args.program, [
                 "simulate", f"{folder}/city", "--trajectory",
                 f"{folder}/street/true_driving_trajectory.csv", "-o", f"{folder}/{name}", *words], folder)
             scans[name] = digest_of(f"{folder}/{name}")
-        result["same_scans"] = len(set(scans.values())) == 1
+        result = {"limit_gb": args.limit, "points": args.points, "runs": runs,
+                  "same_scans": len(set(scans.values())) == 1}
     provenance.publish(result, args.program, args.json, device)
 
 
