@@ -80,7 +80,8 @@ struct MemoryLimit {
   }
 };
 
-/// The memory of the machine and of the smallest GPU; none if unknown.
+/// The memory of the machine and of the smallest GPU; none if unknown. A GPU that the user did not
+/// ask for counts if its memory is limited: the CPU replaces it where it is too small.
 std::vector<MemoryLimit> limits_of(const CityJob& job, const Session& session) {
   std::vector<MemoryLimit> limits;
   double memory_gb = job.memory.memory_gb;
@@ -88,6 +89,7 @@ std::vector<MemoryLimit> limits_of(const CityJob& job, const Session& session) {
   if (memory_gb > 0) limits.push_back({memory_gb, kModelBytesAPoint, 1, false});
   double gpu_gb = 0;
   for (const GpuDevice& gpu : session.device.gpus) {
+    if (session.device.is_automatic && gpu_memory_limit(gpu.index) == 0) continue;
     const double usable_gb = static_cast<double>(usable_gpu_memory(gpu.index)) / 1e9;
     gpu_gb = gpu_gb == 0 ? usable_gb : std::min(gpu_gb, usable_gb);
   }
