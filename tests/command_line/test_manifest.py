@@ -10,7 +10,7 @@ from support import SENSOR, ProgramTest, tree_digest, write_poses
 
 # Options that change where results go, who computes, or what is said, but no scan.
 DECIDE_NOTHING = {"--output", "--help", "--help-all", "--version", "--threads", "--report", "--config",
-                  "--overwrite", "--device", "--gpus",
+                  "--overwrite", "--device", "--gpus", "--gpu-memory",
                   # Who makes which of the scans.
                   "--plan", "--only-scans", "--tile-memory",
                   # They choose among poses of a recording: those that are chosen are in it.
