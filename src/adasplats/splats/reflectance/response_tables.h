@@ -23,15 +23,11 @@ struct GainTable {
 ADASPLATS_HD inline float gain_of(const GainTable& table, float value) {
   if (table.count == 0) return 1.0F;
   const std::uint32_t last = table.count - 1;
-  const float first = table.nodes[0];
-  if (last == 0 || !(value > first)) return table.gains[0];
+  if (last == 0 || !(value > table.nodes[0])) return table.gains[0];
   if (value >= table.nodes[last]) return table.gains[last];
-  // Exact for equally spaced nodes.
-  const float position = (value - first) / (table.nodes[last] - first) * static_cast<float>(last);
-  auto below = static_cast<std::uint32_t>(position);
-  if (below >= last) below = last - 1;
-  while (below > 0 && table.nodes[below] > value) --below;
-  while (below + 1 < last && table.nodes[below + 1] <= value) ++below;
+  // Without branches on the value; tables are short.
+  std::uint32_t below = 0;
+  for (std::uint32_t k = 1; k < last; ++k) below += table.nodes[k] <= value ? 1U : 0U;
   const float low = table.nodes[below];
   const float share = (value - low) / (table.nodes[below + 1] - low);
   return table.gains[below] + share * (table.gains[below + 1] - table.gains[below]);
