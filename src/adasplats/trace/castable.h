@@ -8,13 +8,15 @@
 
 namespace adasplats {
 
+/// Beyond it squares overflow, and Embree's limit for coordinates is 1.8e18.
+inline constexpr float kLargestCastable = 1e18F;
+
 /// Whether a ray can hit anything: its components are finite and its direction is not zero. Private
-/// to tracers, which all check it first. Embree asserts finite rays (Debian's build aborts); beyond
-/// 1e18 squares overflow, and Embree's limit for coordinates is 1.8e18.
+/// to tracers, which all check it first. Embree asserts finite rays (Debian's build aborts).
 ADASPLATS_HD inline bool castable(const Ray& ray) {
-  constexpr float kLargest = 1e18F;
   const auto usable = [](Vec3f v) {
-    return std::fabs(v.x) <= kLargest && std::fabs(v.y) <= kLargest && std::fabs(v.z) <= kLargest;
+    return std::fabs(v.x) <= kLargestCastable && std::fabs(v.y) <= kLargestCastable &&
+           std::fabs(v.z) <= kLargestCastable;
   };
   const bool has_direction =
       ray.direction.x != 0.0F || ray.direction.y != 0.0F || ray.direction.z != 0.0F;

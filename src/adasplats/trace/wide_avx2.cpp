@@ -100,8 +100,8 @@ inline U16 choose(Mask mask, U16 x, U16 y) {
           _mm256_blendv_epi8(x.b, y.b, _mm256_castps_si256(mask.b))};
 }
 
-inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from, float* to_from,
-                     std::uint32_t* to_children) {
+inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from,
+                     std::uint32_t first, float* to_from, std::uint32_t* to_entries) {
   alignas(64) float begin[kWide];
   store(begin, from);
   // One byte per child, from far to near.
@@ -115,7 +115,7 @@ inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from,
   for (; kept != 0; kept &= kept - 1) {
     const unsigned child = node.far_first[octant][__builtin_ctz(kept)];
     to_from[count] = begin[child];
-    to_children[count++] = child;
+    to_entries[count++] = first + child;
   }
   return count;
 }

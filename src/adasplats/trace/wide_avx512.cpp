@@ -60,14 +60,15 @@ inline void store(std::uint32_t* p, U16 v) { _mm512_store_si512(p, v); }
 inline Mask less(U16 a, U16 b) { return {_mm512_cmplt_epu32_mask(a, b)}; }
 inline U16 choose(Mask mask, U16 a, U16 b) { return _mm512_mask_blend_epi32(mask.lanes, a, b); }
 
-inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from, float* to_from,
-                     std::uint32_t* to_children) {
+inline unsigned push(const WideNode& node, unsigned octant, Mask mask, F16 from,
+                     std::uint32_t first, float* to_from, std::uint32_t* to_entries) {
   const U16 order = _mm512_cvtepu8_epi32(
       _mm_load_si128(reinterpret_cast<const __m128i*>(node.far_first[octant])));
   const F16 ordered = _mm512_permutexvar_ps(order, choose(mask, all(HUGE_VALF), from));
   const __mmask16 kept = _mm512_cmp_ps_mask(ordered, all(HUGE_VALF), _CMP_LT_OQ);
   _mm512_storeu_ps(to_from, _mm512_maskz_compress_ps(kept, ordered));
-  _mm512_storeu_si512(to_children, _mm512_maskz_compress_epi32(kept, order));
+  _mm512_storeu_si512(to_entries,
+                      _mm512_add_epi32(_mm512_maskz_compress_epi32(kept, order), all(first)));
   return static_cast<unsigned>(__builtin_popcount(kept));
 }
 
