@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/city/passing_rays.h"
 
-#include <fstream>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/line_reader.h"
 #include "adasplats/splats/rays/measured_ray.h"
 
 namespace adasplats {
@@ -104,25 +106,26 @@ void write_rays(const fs::path& file, const RaysByTile& rays) {
 RayFiles::RayFiles(const fs::path& folder, const std::set<TileKey>& tiles, RaySort sort) {
   for (const TileKey from : tiles) {
     const fs::path file = folder / rays_file_of(from, sort);
-    std::ifstream in(file, std::ios::binary);
-    if (!in) continue;
+    if (!fs::exists(file)) continue;
+    InputFile in(file);
+    LineReader lines(in);
     const auto fail = [&](const char* what) {
       throw Error(ErrorKind::data, file.string() + ": damaged: " + what);
     };
-    std::string line;
-    if (!std::getline(in, line) || !line.starts_with(kRaysHeader)) fail("not a file of rays");
+    const std::string first(lines.next().value_or(""));
+    if (!first.starts_with(kRaysHeader)) fail("not a file of rays");
     std::size_t count = 0;
-    std::istringstream(line.substr(kRaysHeader.size())) >> count;
+    std::istringstream(first.substr(kRaysHeader.size())) >> count;
     std::vector<std::pair<TileKey, std::size_t>> heads;
     for (std::size_t k = 0; k < count; ++k) {
       TileKey tile;
       std::size_t rays = 0;
-      if (!std::getline(in, line) || !(std::istringstream(line) >> tile.x >> tile.y >> rays))
-        fail("the file ends within its header");
+      std::istringstream line{std::string(lines.next().value_or(""))};
+      if (!(line >> tile.x >> tile.y >> rays)) fail("the file ends within its header");
       heads.emplace_back(tile, rays);
     }
-    auto at = static_cast<std::size_t>(in.tellg());
-    const std::size_t size = fs::file_size(file);
+    std::uint64_t at = in.offset();
+    const std::uint64_t size = in.size_bytes();
     for (const auto& [tile, rays] : heads) {
       if (rays > (size - at) / (2 * sizeof(Vec3f))) fail("the file ends within its rays");
       blocks_[tile].push_back({from, file, at, rays});
@@ -151,14 +154,13 @@ PointCloud RayFiles::read(TileKey tile) const {
   const auto found = blocks_.find(tile);
   if (found == blocks_.end()) return all;
   for (const Block& block : found->second) {
-    std::ifstream in(block.file, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(block.at));
+    const InputDescriptor in(block.file);
+    std::uint64_t at = block.at;
     for (auto* values : {&all.positions, &all.sensor_positions}) {
       const std::size_t before = values->size();
       values->resize(before + block.rays);
-      if (!in.read(reinterpret_cast<char*>(values->data() + before),
-                   static_cast<std::streamsize>(block.rays * sizeof(Vec3f))))
-        throw Error(ErrorKind::io, block.file.string() + ": cannot be read");
+      in.read_at(at, std::as_writable_bytes(std::span(*values).subspan(before)));
+      at += block.rays * sizeof(Vec3f);
     }
   }
   return all;

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/city/tile_points.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <type_traits>
@@ -13,6 +15,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/line_reader.h"
 
 namespace adasplats {
 namespace {
@@ -86,15 +90,11 @@ void extend(const fs::path& file, const Write& write) {
 template <class T>
 std::vector<T> values_of(const fs::path& file) {
   static_assert(std::is_trivially_copyable_v<T>);
-  std::error_code none;
-  const auto bytes = fs::file_size(file, none);
-  if (none) throw Error(ErrorKind::no_input, file.string() + ": no such file");
-  if (bytes % sizeof(T) != 0)
+  const InputDescriptor in(file);
+  if (in.size_bytes() % sizeof(T) != 0)
     throw Error(ErrorKind::data, file.string() + ": damaged: the file ends within a value");
-  std::vector<T> values(bytes / sizeof(T));
-  std::ifstream in(file, std::ios::binary);
-  if (!in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes)))
-    throw Error(ErrorKind::io, file.string() + ": cannot be read");
+  std::vector<T> values(in.size_bytes() / sizeof(T));
+  in.read_at(0, std::as_writable_bytes(std::span(values)));
   return values;
 }
 
@@ -127,21 +127,18 @@ std::vector<TilePart> parts_of(const PointCloud& cloud, const TileGrid& grid,
 /// Reads the blocks of one file.
 class BlockReader {
  public:
-  explicit BlockReader(fs::path file) : file_(std::move(file)), in_(file_, std::ios::binary) {
-    if (!in_) throw Error(ErrorKind::no_input, file_.string() + ": no such file");
-  }
+  explicit BlockReader(const fs::path& file) : file_(file), lines_(file_) {}
 
   /// Reads the next block; false at the end of the file.
   bool read(PointCloud& block) {
-    std::string head;
-    if (!std::getline(in_, head)) return false;
+    if (file_.remaining() == 0) return false;
+    const std::string head(lines_.next().value_or(""));
     if (!head.starts_with(kPointsHeader)) fail("not a file of points, or from another version");
     std::istringstream words(head.substr(kPointsHeader.size()));
     std::size_t count = 0;
     if (!(words >> count)) fail("the number of points is missing");
     std::vector<std::string> names;
     for (std::string name; words >> name;) names.push_back(name);
-    if (count > left() / sizeof(Vec3f)) fail("the file ends within its points");
     block = {};
     get(block.positions, count);
     std::size_t known = 0;
@@ -156,27 +153,25 @@ class BlockReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::data, file_.string() + ": damaged: " + what);
-  }
-
-  std::size_t left() {
-    const auto at = in_.tellg();
-    in_.seekg(0, std::ios::end);
-    const auto end = in_.tellg();
-    in_.seekg(at);
-    return static_cast<std::size_t>(end - at);
+    throw Error(ErrorKind::data, file_.path().string() + ": damaged: " + what);
   }
 
   template <class T>
   void get(std::vector<T>& values, std::size_t count) {
+    if (count > file_.remaining() / sizeof(T)) fail("the file ends within its points");
     values.resize(count);
-    const auto bytes = static_cast<std::streamsize>(count * sizeof(T));
-    if (!in_.read(reinterpret_cast<char*>(values.data()), bytes))
-      fail("the file ends within its points");
+    auto left = std::as_writable_bytes(std::span(values));
+    while (!left.empty()) {
+      const auto buffered = file_.peek(1);
+      const std::size_t bytes = std::min(buffered.size(), left.size());
+      std::memcpy(left.data(), buffered.data(), bytes);
+      file_.skip(bytes);
+      left = left.subspan(bytes);
+    }
   }
 
-  fs::path file_;
-  std::ifstream in_;
+  InputFile file_;
+  LineReader lines_;
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string_view>
 
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/base64.h"
 #include "adasplats/report/chart.h"
 #include "adasplats/report/report_page.h"
@@ -220,8 +219,7 @@ std::string picture_data_uri(const std::filesystem::path& folder, const std::str
   if (relative.empty() || path.is_absolute() || leaves) return {};
   std::error_code error;
   if (!std::filesystem::is_regular_file(folder / path, error)) return {};
-  std::ifstream file(folder / path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string bytes = read_file(folder / path);
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return "data:image/png;base64," + to_base64(bytes);
   if (bytes.starts_with("\xff\xd8\xff")) return "data:image/jpeg;base64," + to_base64(bytes);
   return {};

@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/cloud/load/box_files.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <fstream>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "adasplats/cloud/load/nuscenes_drive.h"
 #include "adasplats/cloud/load/pandaset_drive.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/input_file.h"
 
 namespace adasplats {
 namespace {
@@ -25,9 +27,11 @@ enum class BoxFormat : std::uint8_t { csv, av2, kitti_tracklets, json, pandaset_
 
 BoxFormat format_of_file(const fs::path& path) {
   std::array<char, 6> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  std::string_view start(bytes.data(), static_cast<std::size_t>(file.gcount()));
+  const InputDescriptor file(path);
+  const auto size =
+      static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), file.size_bytes()));
+  file.read_at(0, std::as_writable_bytes(std::span(bytes)).first(size));
+  std::string_view start(bytes.data(), size);
   if (start == "ARROW1") return BoxFormat::av2;
   if (start.starts_with("\x1f\x8b") || start.starts_with('\x80')) return BoxFormat::pandaset_frame;
   if (start.starts_with("\xef\xbb\xbf")) start.remove_prefix(3);  // byte order mark

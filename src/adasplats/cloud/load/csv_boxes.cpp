@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "adasplats/cloud/load/box_collector.h"
 #include "adasplats/cloud/load/box_files.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -75,10 +75,9 @@ BoxNumbers numbers_of_box(const std::vector<std::string>& cells, const BoxPlaces
 }  // namespace
 
 BoxContent read_csv_boxes(const std::filesystem::path& path) {
-  std::ifstream file(path);
+  std::istringstream file(read_file(path));
   std::string line;
-  if (!std::getline(file, line))
-    throw Error(ErrorKind::no_input, path.string() + ": cannot be read, or is empty");
+  if (!std::getline(file, line)) throw Error(ErrorKind::no_input, path.string() + ": is empty");
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
   const std::vector<std::string> names = cells_of(line);

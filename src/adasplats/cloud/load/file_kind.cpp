@@ -32,7 +32,8 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The complete lines at the start of a file, with any line ends; nothing if it cannot be read.
+/// The complete lines at the start of a file, with any line ends; nothing if it is absent or
+/// empty. Errors: io, no_input (it cannot be opened).
 std::optional<std::vector<std::string>> first_lines(const std::filesystem::path& path) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::vector<std::string> lines;
@@ -50,7 +51,11 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
       while (line.ends_with(' ')) line.remove_suffix(1);
       if (!line.empty()) lines.emplace_back(line);
     }
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    std::error_code ignored;
+    const bool is_there =
+        error.kind() == ErrorKind::no_input && std::filesystem::is_regular_file(path, ignored);
+    if (error.kind() == ErrorKind::io || is_there) throw;
     return std::nullopt;  // reading the file reports the error
   }
   return lines;

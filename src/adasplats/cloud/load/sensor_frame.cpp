@@ -149,11 +149,7 @@ bool is_simulated(const fs::path& folder) {
   const fs::path manifest = folder / "adasplats.json";
   if (!fs::exists(folder / "poses.csv", ignored) || !fs::is_regular_file(manifest, ignored))
     return false;
-  try {
-    return read_file(manifest).find("\"command\": \"simulate\"") != std::string::npos;
-  } catch (const Error&) {
-    return false;
-  }
+  return read_file(manifest).find("\"command\": \"simulate\"") != std::string::npos;
 }
 
 }  // namespace

@@ -244,7 +244,8 @@ KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index) {
 std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index) {
   try {
     return read_kitti_points(sequence, index);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::io) throw;
     return std::nullopt;
   }
 }
