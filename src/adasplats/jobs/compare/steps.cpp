@@ -9,12 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/provenance/provenance.h"
 
@@ -171,6 +171,13 @@ ChildResult run_cleanly(const Step& step, const std::vector<std::string>& argume
   }
 }
 
+/// A full or broken disk is no result of a method.
+void reject_disk_errors(const Step& step, const ChildResult& child) {
+  for (const ErrorKind kind : {ErrorKind::io, ErrorKind::cannot_create})
+    if (child.exit_code == exit_code(kind))
+      throw Error(kind, step.name + ": " + child.message + " (the same command resumes)");
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directory(folder, failure);
@@ -183,18 +190,7 @@ void make_folder(const fs::path& folder) {
 bool same_bytes(const fs::path& a, const fs::path& b) {
   std::error_code failure;
   if (!fs::is_regular_file(b, failure) || fs::file_size(a) != fs::file_size(b)) return false;
-  std::ifstream left(a, std::ios::binary), right(b, std::ios::binary);
-  constexpr std::streamsize kPartBytes = 1 << 20;
-  std::vector<char> left_part(kPartBytes), right_part(kPartBytes);
-  while (left && right) {
-    left.read(left_part.data(), kPartBytes);
-    right.read(right_part.data(), kPartBytes);
-    if (left.gcount() != right.gcount() ||
-        !std::equal(left_part.begin(), left_part.begin() + left.gcount(), right_part.begin())) {
-      return false;
-    }
-  }
-  return left.eof() && right.eof();
+  return sha256_of_file(a) == sha256_of_file(b);
 }
 
 /// Rejects a folder with other content than a comparison of the same data.
@@ -310,6 +306,7 @@ StepResult StepRunner::run(const Step& step) const {
   progress_.begin_step(folder_.filename().string() + ": " + step.name, 0);
   result.child =
       run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"), progress_);
+  reject_disk_errors(step, result.child);
   progress_.end_step();
   if (result.done()) result.report = Json::parse(read_file(report_file));
   const Json state = {{"key", key},
