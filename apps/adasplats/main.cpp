@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -253,7 +257,23 @@ int guarded_run(int argc, char** argv) {
   }
 }
 
+/// Memory can also run out where no exception may leave, such as in a destructor of a library.
+[[noreturn]] void end_at_once() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception())
+      std::rethrow_exception(failure);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kMessage = "adasplats: error: not enough memory\n";
+    if (::write(STDERR_FILENO, kMessage.data(), kMessage.size()) >= 0) _exit(kExitNoMemory);
+  } catch (...) {  // a bug
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace adasplats::app
 
-int main(int argc, char** argv) { return adasplats::app::guarded_run(argc, argv); }
+int main(int argc, char** argv) {
+  std::set_terminate(adasplats::app::end_at_once);
+  return adasplats::app::guarded_run(argc, argv);
+}

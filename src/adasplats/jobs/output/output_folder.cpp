@@ -95,7 +95,11 @@ int create_and_lock(const fs::path& partial, const fs::path& folder) {
   std::error_code failure;
   fs::create_directory(partial, failure);
   const int lock = open(partial.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock < 0) throw system_error(ErrorKind::cannot_create, partial, "cannot create", errno);
+  if (lock < 0) {
+    const int reason = errno;
+    fs::remove(partial, failure);  // only if it is empty
+    throw system_error(ErrorKind::cannot_create, partial, "cannot create", reason);
+  }
   if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
     close(lock);
     throw cannot_create(folder, "another process is writing it (" + partial.string() + ")");
