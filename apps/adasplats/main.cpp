@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -257,16 +258,26 @@ int guarded_run(int argc, char** argv) {
   }
 }
 
-/// Memory can also run out where no exception may leave, such as in a destructor of a library.
-[[noreturn]] void end_at_once() {
+std::terminate_handler default_terminate = nullptr;
+
+[[noreturn]] void end_without_memory() {
+  constexpr std::string_view kMessage = "adasplats: error: not enough memory\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  _exit(kExitNoMemory);
+}
+
+/// Memory can also run out where no exception may escape, such as in a library's destructor.
+[[noreturn]] void terminate() {
+  static std::atomic_flag entered;
+  if (entered.test_and_set()) end_without_memory();  // rethrowing needs memory, too
   try {
     if (const std::exception_ptr failure = std::current_exception())
       std::rethrow_exception(failure);
   } catch (const std::bad_alloc&) {
-    constexpr std::string_view kMessage = "adasplats: error: not enough memory\n";
-    if (::write(STDERR_FILENO, kMessage.data(), kMessage.size()) >= 0) _exit(kExitNoMemory);
+    end_without_memory();
   } catch (...) {  // a bug
   }
+  default_terminate();
   std::abort();
 }
 
@@ -274,6 +285,6 @@ int guarded_run(int argc, char** argv) {
 }  // namespace adasplats::app
 
 int main(int argc, char** argv) {
-  std::set_terminate(adasplats::app::end_at_once);
+  adasplats::app::default_terminate = std::set_terminate(adasplats::app::terminate);
   return adasplats::app::guarded_run(argc, argv);
 }

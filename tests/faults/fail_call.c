@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Fails chosen calls of the C library; preloaded by run_faults.py.
-//   ADASPLATS_FAULT=KIND:N       fails call N of a kind, counted from 1; KIND:N+ all later ones,
-//   too ADASPLATS_FAULT_FOLDER=DIR   only files below it count ADASPLATS_FAULT_COUNTS=FILE  gets
-//   the number of calls of each kind when main() returns
+// Fails chosen calls of the C library; preloaded by run_faults.py. Environment:
+//
+// ADASPLATS_FAULT=KIND:N fails call N of a kind, counted from 1; KIND:N+ also all later ones.
+//
+// ADASPLATS_FAULT_FOLDER: only files below this folder count.
+//
+// ADASPLATS_FAULT_FIRED: a file that is created when a call fails.
+//
+// ADASPLATS_FAULT_COUNTS: a file that gets the number of calls of each kind when main() returns.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -32,12 +37,15 @@ static atomic_bool running;                // within main()
 static long fail_at;                       // 0: never
 static int fail_kind, fail_later;
 static const char* folder;
+static const char* fired_file;
 
 static int fails(enum Kind kind) {
   if (!atomic_load(&running)) return 0;
   const long call = atomic_fetch_add(&calls[kind], 1) + 1;
   if (fail_at == 0 || (int)kind != fail_kind) return 0;
   if (call != fail_at && !(fail_later && call > fail_at)) return 0;
+  if (fired_file != NULL)
+    syscall(SYS_close, syscall(SYS_openat, AT_FDCWD, fired_file, O_WRONLY | O_CREAT, 0644));
   errno = kErrors[kind];
   return 1;
 }
@@ -50,9 +58,13 @@ static int in_folder(int at, const char* path) {
 
 static int is_counted(int fd) { return fd >= 0 && fd < kDescriptors && atomic_load(&counted[fd]); }
 
-static int opened(int fd) {
-  if (fd >= 0 && fd < kDescriptors) atomic_store(&counted[fd], 1);
+static int note(int fd, int is_in_folder) {
+  if (fd >= 0 && fd < kDescriptors) atomic_store(&counted[fd], is_in_folder);
   return fd;
+}
+
+static int has_mode(int flags) {
+  return (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE;
 }
 
 #define NEXT(result, name, ...)       \
@@ -86,26 +98,26 @@ int posix_memalign(void** memory, size_t alignment, size_t bytes) {
 
 // ---- files
 
-#define OPEN_AT(name)                                                                    \
-  int name(int at, const char* path, int flags, ...) {                                   \
-    NEXT(int, #name, int, const char*, int, ...);                                        \
-    va_list list;                                                                        \
-    va_start(list, flags);                                                               \
-    const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0; \
-    va_end(list);                                                                        \
-    if (!in_folder(at, path)) return next(at, path, flags, mode);                        \
-    return fails(kOpen) ? -1 : opened(next(at, path, flags, mode));                      \
+#define OPEN_AT(name)                                                      \
+  int name(int at, const char* path, int flags, ...) {                     \
+    NEXT(int, #name, int, const char*, int, ...);                          \
+    va_list list;                                                          \
+    va_start(list, flags);                                                 \
+    const mode_t mode = has_mode(flags) ? va_arg(list, mode_t) : 0;        \
+    va_end(list);                                                          \
+    if (!in_folder(at, path)) return note(next(at, path, flags, mode), 0); \
+    return fails(kOpen) ? -1 : note(next(at, path, flags, mode), 1);       \
   }
 OPEN_AT(openat)
 OPEN_AT(openat64)
 
-#define OPEN(name)                                                                       \
-  int name(const char* path, int flags, ...) {                                           \
-    va_list list;                                                                        \
-    va_start(list, flags);                                                               \
-    const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0; \
-    va_end(list);                                                                        \
-    return openat(AT_FDCWD, path, flags, mode);                                          \
+#define OPEN(name)                                                  \
+  int name(const char* path, int flags, ...) {                      \
+    va_list list;                                                   \
+    va_start(list, flags);                                          \
+    const mode_t mode = has_mode(flags) ? va_arg(list, mode_t) : 0; \
+    va_end(list);                                                   \
+    return openat(AT_FDCWD, path, flags, mode);                     \
   }
 OPEN(open)
 OPEN(open64)
@@ -115,7 +127,7 @@ OPEN(open64)
     NEXT(FILE*, #name, const char*, const char*);              \
     if (!in_folder(AT_FDCWD, path)) return next(path, mode);   \
     FILE* const file = fails(kOpen) ? NULL : next(path, mode); \
-    if (file != NULL) opened(fileno(file));                    \
+    if (file != NULL) note(fileno(file), 1);                   \
     return file;                                               \
   }
 FOPEN(fopen)
@@ -123,8 +135,12 @@ FOPEN(fopen64)
 
 int close(int fd) {
   NEXT(int, "close", int);
-  if (fd >= 0 && fd < kDescriptors) atomic_store(&counted[fd], 0);
-  return next(fd);
+  return next(note(fd, 0));
+}
+int fclose(FILE* file) {
+  NEXT(int, "fclose", FILE*);
+  note(fileno(file), 0);
+  return next(file);
 }
 
 ssize_t read(int fd, void* to, size_t bytes) {
@@ -201,11 +217,14 @@ int mkdir(const char* path, mode_t mode) {
 
 static void read_settings(void) {
   folder = getenv("ADASPLATS_FAULT_FOLDER");
+  fired_file = getenv("ADASPLATS_FAULT_FIRED");
   const char* const fault = getenv("ADASPLATS_FAULT");
   const char* const colon = fault == NULL ? NULL : strchr(fault, ':');
   if (colon == NULL) return;
+  fail_kind = -1;
   for (int kind = 0; kind < kKinds; ++kind)
     if (strncmp(fault, kNames[kind], (size_t)(colon - fault)) == 0) fail_kind = kind;
+  if (fail_kind < 0) abort();
   char* end = NULL;
   fail_at = strtol(colon + 1, &end, 10);
   fail_later = *end == '+';

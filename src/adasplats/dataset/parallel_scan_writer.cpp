@@ -23,11 +23,12 @@ namespace {
 
 constexpr std::size_t kScansUnderWayPerThread = 3;
 
-/// Lets threads that simulate go first: one that is interrupted within a loop makes the others wait
-/// for it. Measured on two cores, 5 to 7 % more scans.
+/// Lets threads that simulate go first: if one of them is interrupted in a parallel loop, the
+/// others wait for it. Measured on two idle cores: 5 to 7 % more scans.
 void yield_to_simulation() {
-  constexpr int kNice = 10;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  constexpr int kNicer = 10, kNicest = 19;
+  const auto thread = static_cast<id_t>(gettid());
+  setpriority(PRIO_PROCESS, thread, std::min(kNicest, getpriority(PRIO_PROCESS, thread) + kNicer));
 }
 
 }  // namespace

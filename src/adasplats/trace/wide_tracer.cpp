@@ -24,6 +24,9 @@ class WideTracer final : public Tracer {
       throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
                                        " primitives; the maximum is 2^32 - 2");
     bvh_ = build_wide_bvh(scene, executor);
+    constexpr std::size_t kMaxNodes = std::size_t{1} << 28;  // see Walk::entries
+    if (bvh_.nodes.size() > kMaxNodes)
+      throw Error(ErrorKind::data, "the tree of the scene has more than 2^28 nodes");
   }
 
   std::string_view name() const override { return "wide"; }

@@ -32,9 +32,10 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The complete lines at the start of a file, with any line ends; nothing if it is absent or
-/// empty. Errors: io, no_input (it cannot be opened).
-std::optional<std::vector<std::string>> first_lines(const std::filesystem::path& path) {
+/// The complete lines at the start of a file, with any line ends; nothing if it cannot be opened or
+/// is empty. Errors: io; with `is_needed` also no_input, of a file that cannot be opened.
+std::optional<std::vector<std::string>> first_lines(const std::filesystem::path& path,
+                                                    bool is_needed) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::vector<std::string> lines;
   try {
@@ -53,9 +54,9 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
     }
   } catch (const Error& error) {
     std::error_code ignored;
-    const bool is_there =
-        error.kind() == ErrorKind::no_input && std::filesystem::is_regular_file(path, ignored);
-    if (error.kind() == ErrorKind::io || is_there) throw;
+    const bool is_closed = is_needed && error.kind() == ErrorKind::no_input &&
+                           std::filesystem::is_regular_file(path, ignored);
+    if (error.kind() == ErrorKind::io || is_closed) throw;
     return std::nullopt;  // reading the file reports the error
   }
   return lines;
@@ -177,7 +178,7 @@ FileKind kind_of_file(const std::filesystem::path& file) {
   const PointFormat* const format = format_of_extension(file);
   // Reading a damaged file reports the error.
   if (format != nullptr && format->means == ExtensionMeaning::points) return FileKind::points;
-  const auto lines = first_lines(file);
+  const auto lines = first_lines(file, format != nullptr);
   if (format != nullptr && format->means == ExtensionMeaning::text)
     return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";

@@ -17,7 +17,8 @@ enum class FileKind : std::uint8_t {
   other,        ///< none of these, such as prose
 };
 
-/// Reads at most 64 KiB. An unreadable file is classified by its name.
+/// Reads at most 64 KiB. An absent or empty file is classified by its name. Errors: io; no_input (a
+/// file with the extension of a format cannot be opened).
 FileKind kind_of_file(const std::filesystem::path& file);
 
 /// Whether a file with this extension can be of another kind than FileKind::other.

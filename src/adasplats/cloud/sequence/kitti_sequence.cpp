@@ -245,7 +245,7 @@ std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::si
   try {
     return read_kitti_points(sequence, index);
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::io) throw;
+    if (error.kind() != ErrorKind::data) throw;
     return std::nullopt;
   }
 }

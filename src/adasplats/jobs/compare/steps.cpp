@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "adasplats/core/error.h"
@@ -171,11 +172,14 @@ ChildResult run_cleanly(const Step& step, const std::vector<std::string>& argume
   }
 }
 
-/// A full or broken disk is no result of a method.
-void reject_disk_errors(const Step& step, const ChildResult& child) {
+/// A full or failing disk says nothing about a method.
+void reject_disk_errors(const std::string& name, const ChildResult& child) {
+  constexpr std::string_view kPrefix = "adasplats: error: ";
+  std::string_view message = child.message;
+  if (message.starts_with(kPrefix)) message.remove_prefix(kPrefix.size());
   for (const ErrorKind kind : {ErrorKind::io, ErrorKind::cannot_create})
     if (child.exit_code == exit_code(kind))
-      throw Error(kind, step.name + ": " + child.message + " (the same command resumes)");
+      throw Error(kind, name + ": " + std::string(message) + " (the same command resumes)");
 }
 
 void make_folder(const fs::path& folder) {
@@ -306,7 +310,7 @@ StepResult StepRunner::run(const Step& step) const {
   progress_.begin_step(folder_.filename().string() + ": " + step.name, 0);
   result.child =
       run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"), progress_);
-  reject_disk_errors(step, result.child);
+  reject_disk_errors(folder_.filename().string() + ": " + step.name, result.child);
   progress_.end_step();
   if (result.done()) result.report = Json::parse(read_file(report_file));
   const Json state = {{"key", key},

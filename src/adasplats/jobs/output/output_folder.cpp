@@ -93,11 +93,11 @@ fs::path checked_output_folder(const fs::path& folder, bool overwrite, const std
 
 int create_and_lock(const fs::path& partial, const fs::path& folder) {
   std::error_code failure;
-  fs::create_directory(partial, failure);
+  const bool is_new = fs::create_directory(partial, failure);
   const int lock = open(partial.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock < 0) {
     const int reason = errno;
-    fs::remove(partial, failure);  // only if it is empty
+    if (is_new) fs::remove(partial, failure);
     throw system_error(ErrorKind::cannot_create, partial, "cannot create", reason);
   }
   if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
