@@ -118,7 +118,7 @@ TEST(MovingBoxes, WhatIsWrongIsNamed) {
   reject("1,1,1,Car,0,0,0,0,4,0,1,0\n", "the size of the box is not positive");
   reject("1,1,1.5,Car,0,0,0,0,4,1,1,0\n", "'id' is not a whole number");
   reject("1,0,1,Car,0,5,0,0,4,1,1,0\n", "object 1 has two boxes at 0.000000 s");
-  expect_error(ErrorKind::no_input, {"cannot be read"},
+  expect_error(ErrorKind::no_input, {"cannot be opened"},
                [&] { boxes_of(folder.path() / "none.csv"); });
 }
 

@@ -245,7 +245,10 @@ std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::si
   try {
     return read_kitti_points(sequence, index);
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::data) throw;
+    std::error_code ignored;
+    const bool is_closed = error.kind() == ErrorKind::no_input &&
+                           std::filesystem::exists(sequence.scans.at(index), ignored);
+    if (error.kind() == ErrorKind::io || is_closed) throw;
     return std::nullopt;
   }
 }

@@ -120,8 +120,8 @@ KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index);
 /// All points with their labels and with KittiScan::in_boxes: beams into boxes returned, too.
 KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index);
 
-/// read_kitti_points(); nothing if the scan is damaged: for checks of scans that the user may not
-/// have selected. Errors: no_input, io.
+/// read_kitti_points(); nothing if the scan is absent or damaged: for checks of scans that the user
+/// may not have selected. Errors: no_input (it cannot be opened), io.
 std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index);
 
 /// True for a drive as KITTI's raw data have it: folders `velodyne_points/data` and `oxts/data`.
