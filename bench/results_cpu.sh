@@ -7,7 +7,7 @@
 # usage: bench/results_cpu.sh [--bin DIR] [--out FILE] [--small] REAL_DATA WORK [PART...]
 #   REAL_DATA  folder with the recordings as SemanticKITTI trees: kitti-0005, semantickitti-00
 #   WORK       folder for models, scans and reports
-#   PART       kitti semantickitti street large bytes sensors speed python live (default: all)
+#   PART       kitti semantickitti street large bytes sensors lidar4d speed python live (default: all)
 #   --bin      folder of the built programs (default: build/release/bin)
 #   --out      write to this file and leave the pictures of docs unchanged
 #   --small    small synthetic data, to test that all parts run; needs --out
@@ -40,7 +40,7 @@ done
 $small && [[ -z ${own_out:-} ]] && usage
 mkdir -p "$2"
 work=$(realpath "$2")
-readonly all_parts="kitti semantickitti street large bytes sensors speed python live"
+readonly all_parts="kitti semantickitti street large bytes sensors lidar4d speed python live"
 named=" ${*:3} "
 for part in $named; do [[ " $all_parts " == *" $part "* ]] || usage; done
 # Reported commands contain these paths instead of those of this machine.
@@ -200,6 +200,16 @@ pairs = [ring["points_a_scan"] for ring in json.loads((folder / "rings.json").re
 ratios = [simulated / real for real, simulated in pairs if real > 0]
 (folder / "ring_ratio.json").write_text(json.dumps({"least": min(ratios), "most": max(ratios)}))
 PYTHON
+}
+
+measure_lidar4d() {
+  local s=$kitti/00 name
+  model as-given $s --no-calibrate
+  model calibrated $s --calibrate
+  for name in as-given calibrated; do
+    report "models/$name/beams" evaluate resimulate "$(file $name.ply)" $kitti/01 \
+      --labels semantickitti --protocol lidar4d
+  done
 }
 
 measure_speed() {

@@ -23,6 +23,8 @@ again; elsewhere in the documents of STRICT and STRICT_FOLDERS a figure without 
 
 usage: tools/make_figures.py               writes the documents
        tools/make_figures.py --check       runs a self-test, reports differences; exit code 1 if any
+       tools/make_figures.py --commits     lists the commits of the figures of STRICT outside of logs,
+                                           with their files; exit code 1 if there are several
 """
 import json
 import pathlib
@@ -112,12 +114,16 @@ class Files:
             self.read[path] = json.loads(path.read_text()) if path.exists() else {}
         return self.read[path]
 
+    def sources(self, root):
+        """(name, content, provenances of its parts) of every file that was read."""
+        for path, data in sorted(self.read.items()):
+            parts = list(data.get("parts", {}).values()) or [data]
+            name = str(path.relative_to(root.resolve()))
+            yield name, data, [x.get("provenance", x) for x in parts]
+
     def faults(self, root):
         """Files without a commit, and entries of BEFORE_COMMITS that are not needed."""
-        for path, data in sorted(self.read.items()):
-            name = str(path.relative_to(root.resolve()))
-            parts = list(data.get("parts", {}).values()) or [data]
-            sources = [x.get("provenance", x) for x in parts]
+        for name, data, sources in self.sources(root):
             has_commit = all(x.get("commit") not in (None, "", "unknown") for x in sources)
             if any(x.get("dirty") for x in sources):
                 yield name + ": measured with uncommitted changes"
@@ -205,14 +211,14 @@ STREETS = [
     *((f"{thing} beams within 50 cm", f"beams_within_50cm/{thing}", "0.0 %") for thing in THIN),
     ("within 10 cm", "beams/within_10cm", "0.0 %"), ("median", "beams/median_m", "0.00 cm")]
 LIDAR4D = [
-    ("Chamfer, m2", "points/chamfer_m2", "0.0000"), ("F-score", "points/f_score", "0.0000"),
-    ("F-score at 5 cm", "points/f_score_5cm", "0.0000"), *(
-        (f"{image} {measure}", f"{key}/{of}", form)
+    ("Chamfer, m2", "beams/lidar4d/points/chamfer_m2", "0.0000"), ("F-score", "beams/lidar4d/points/f_score", "0.0000"),
+    ("F-score at 5 cm", "beams/lidar4d/points/f_score_5cm", "0.0000"), *(
+        (f"{image} {measure}", f"beams/lidar4d/{key}/{of}", form)
         for image, key in (("depth", "depth_m"), ("intensity", "intensity"))
         for measure, of, form in (("RMSE", "rmse", "0.0000"), ("MedAE", "medae", "0.0000"),
                                   ("SSIM", "ssim", "0.0000"), ("PSNR", "psnr_db", "0.00"))),
-    ("ray drop RMSE", "ray_drop/rmse", "0.0000"), ("accuracy", "ray_drop/accuracy", "0.0000"),
-    ("F", "ray_drop/f_score", "0.0000")]
+    ("ray drop RMSE", "beams/lidar4d/ray_drop/rmse", "0.0000"), ("accuracy", "beams/lidar4d/ray_drop/accuracy", "0.0000"),
+    ("F", "beams/lidar4d/ray_drop/f_score", "0.0000")]
 SEGMENTATION = [
     ("groups", "groups/miou", "0.0 %"), *(
         (group, f"groups/iou/{group}", "0.0 %")
@@ -278,13 +284,21 @@ LAZ_SPEED = [("points", "points", "0,000"), ("format", "point_format", "0"), *(
         ("1 thread", "read_las/1"), ("2 threads", "read_las/2"), ("16 threads", "read_las/16"),
         ("LASzip, 1 thread", "LASzip/1"), ("unpacking alone, 1 thread", "decoder/1"),
         ("2 threads", "decoder/2")))]
+HEADLINES = [("before", "before", "text"), ("this release", "now", "text")]
+DENSITY = [("splats", "primitives", "0.00 M"), ("C2C, scans of the model", "own_scans/c2c_m", "0.00 cm"),
+           ("C2C, all scans", "all_scans/c2c_m", "0.00 cm"), *(
+               (thing, f"all_scans/by_class/{thing}/c2c_m", "0.0 cm")
+               for thing in ("road", "building", "vegetation", *THIN)),
+           ("rays with a hit", "hits", "0.0 %"),
+           ("measured to simulated", "all_scans/completeness_m", "0.0 cm")]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (default key of the rows, columns). A column without values is omitted.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
           "parts": ("drives", CALIBRATION_PARTS), "refinement": ("drives", REFINEMENT),
           "mounts": ("mounts", MOUNTS), "streets": ("streets", STREETS),
-          "lidar4d": ("lidar4d", LIDAR4D),
+          "lidar4d": (None, LIDAR4D),
+          "headlines": ("figures", HEADLINES), "density": (None, DENSITY),
           "segmentation": ("networks", SEGMENTATION),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
@@ -382,7 +396,7 @@ def differences(name, before, after):
             continue
         shown = {m[2]: m[1] for m in LINK.finditer(old)}
         changed = [f"[{m[2]}] is '{m[1]}' in its file, not '{shown[m[2]]}'"
-                   for m in LINK.finditer(new) if shown.get(m[2]) != m[1]]
+                   for m in LINK.finditer(new) if shown.get(m[2], m[1]) != m[1]]
         yield f"{name}:{number}: " + ("; ".join(changed) or f"'{new}' expected, not '{old}'")
     if len(before.splitlines()) != len(after.splitlines()):
         yield f"{name}: a table has other lines than its file"
@@ -414,6 +428,28 @@ def work(root, check):
     if missing:
         print(f"make_figures: {missing} figures have not been measured yet ('{MISSING}')")
     return faults
+
+
+def print_commits(root):
+    """The commits of the figures of STRICT, with their files; returns how many there are."""
+    files = Files()
+    for name in STRICT:
+        document = root / name
+        text = document.read_text(encoding="utf-8")
+        shown = hidden(text, QUIET[:1])
+        links = {link for _, link in LINK.findall(shown)}
+        for one, file, *_ in DEFINITION.findall(text):
+            if one in links:
+                files.at(document, file)
+        for _, _, file, *_ in TABLE.findall(shown):
+            files.at(document, file)
+    commits = {}
+    for name, _, sources in files.sources(root):
+        for commit in {str(source.get("commit")) for source in sources}:
+            commits.setdefault(commit, []).append(name)
+    for commit, names in commits.items():
+        print(f"{commit}: {', '.join(names)}")
+    return len(commits)
 
 
 def self_test():
@@ -452,8 +488,10 @@ def self_test():
 
 
 def main():
-    if sys.argv[1:] not in ([], ["--check"]):
+    if sys.argv[1:] not in ([], ["--check"], ["--commits"]):
         sys.exit(__doc__)
+    if sys.argv[1:] == ["--commits"]:
+        sys.exit(print_commits(ROOT) > 1)
     check = sys.argv[1:] == ["--check"]
     if check:
         self_test()
