@@ -176,6 +176,17 @@ export class Check {
     return this.call('pixels', 110, 70);
   }
 
+  /** Waits until more than 2 % of the pixels differ from a picture, then for its rest. */
+  async pictureOtherThan(picture, what) {
+    const end = Date.now() + kPatienceMs;
+    while (changed(picture, await this.pixels()) <= 0.02) {
+      if (Date.now() > end) throw new Error(`${what}: not visible after ${kPatienceMs / 1000} s`);
+      await sleep(200);
+    }
+    await this.settled();
+    return this.pixels();
+  }
+
   /** Looks at the middle of the scene from a distance of `times` its size. */
   async lookFrom(times) {
     const [low, high] = this.scene.middle_box;
