@@ -3,6 +3,8 @@
 #include "adasplats/io/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +18,8 @@
 namespace adasplats {
 namespace {
 
+constexpr std::size_t kMaxNameBytes = 200;
+constexpr int kMaxAttempts = 10000;
 constexpr std::size_t kWriteBytes = std::size_t{64} << 10;
 // One system call moves at most about 2 GiB; see write(2).
 constexpr std::size_t kLargestCallBytes = std::size_t{1} << 30;
@@ -56,6 +60,37 @@ void write_all(int descriptor, const std::filesystem::path& path, const char* da
   }
 }
 
+/// Whether a path still is the open file, a regular one without other names.
+bool is_at(const std::filesystem::path& path, int descriptor) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         S_ISREG(named.st_mode) && named.st_nlink == 1 && open.st_dev == named.st_dev &&
+         open.st_ino == named.st_ino;
+}
+
+/// Creates a temporary file, or takes over one that nobody has locked, and locks it; -1: in use.
+int create_or_take_over(const std::filesystem::path& temporary, const std::filesystem::path& path) {
+  constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NOFOLLOW;
+  int descriptor = ::open(temporary.c_str(), kFlags | O_CREAT | O_EXCL, 0666);
+  const bool is_new = descriptor >= 0;
+  if (!is_new && errno != EEXIST && errno != EINTR)
+    throw system_error(ErrorKind::cannot_create, path, "cannot be created", errno);
+  if (!is_new) descriptor = ::open(temporary.c_str(), kFlags);
+  if (descriptor < 0) return -1;
+  // Without locks (some network file systems) files of others are never taken over.
+  const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  const bool has_no_locks = !is_locked && errno != EWOULDBLOCK;
+  if ((!is_locked && !(is_new && has_no_locks)) || !is_at(temporary, descriptor)) {
+    ::close(descriptor);
+    return -1;
+  }
+  if (is_new || ::ftruncate(descriptor, 0) == 0) return descriptor;
+  const int error = errno;
+  ::close(descriptor);
+  throw system_error(ErrorKind::io, path, "cannot be written", error);
+}
+
 /// Closes a descriptor when an exception is thrown.
 struct OpenDescriptor {
   int number;
@@ -73,18 +108,22 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(target_of(path
     // rename() over /dev/null would replace the device.
     throw Error(ErrorKind::cannot_create, path_.string() + ": exists and is not a regular file");
   }
+  // Names of files have at most 255 bytes.
+  const std::string name = ".adasplats-" + path_.filename().string().substr(0, kMaxNameBytes);
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = folder_of(path_) / (".adasplats-" + std::to_string(::getpid()) + "-" +
-                                     std::to_string(attempt) + ".tmp");
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && errno != EEXIST && errno != EINTR)
-      throw system_error(ErrorKind::cannot_create, path_, "cannot be created", errno);
+    if (attempt == kMaxAttempts)
+      throw Error(ErrorKind::cannot_create,
+                  path_.string() + ": cannot be created: the folder contains " + name +
+                      "-0.tmp to " + std::to_string(attempt - 1) + ".tmp, of other programs");
+    temporary_ = folder_of(path_) / (name + "-" + std::to_string(attempt) + ".tmp");
+    descriptor_ = create_or_take_over(temporary_, path_);
   }
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  // In this order, since the next writer may take the name as soon as the lock is gone.
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
@@ -112,12 +151,14 @@ void AtomicFile::commit() {
   buffer_.clear();
   if (::fsync(descriptor_) != 0)
     throw system_error(ErrorKind::io, path_, "cannot be flushed to disk", errno);
-  // Some network file systems report a full disk only here.
-  if (::close(std::exchange(descriptor_, -1)) != 0)
+  // Some network file systems report a full disk only when a file is closed. The lock stays.
+  const int copy = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+  if (copy >= 0 && ::close(copy) != 0)
     throw system_error(ErrorKind::io, path_, "cannot be closed", errno);
   if (::rename(temporary_.c_str(), path_.c_str()) != 0)
     throw system_error(ErrorKind::cannot_create, path_, "cannot be put in place", errno);
   temporary_.clear();
+  ::close(std::exchange(descriptor_, -1));
   flush_folder(folder_of(path_));
 }
 

@@ -12,8 +12,10 @@
 namespace adasplats {
 
 /// An output file that appears complete or not at all: it is written to a temporary file in the
-/// same folder, then flushed and renamed, and the folder is flushed. Without commit() (e.g. after
-/// an exception) the temporary file is removed and an older file of that name is unchanged. Small
+/// same folder, .adasplats-NAME-0.tmp, then flushed and renamed, and the folder is flushed. Without
+/// commit() (e.g. after an exception) the temporary file is removed and an older file of that name
+/// is unchanged. The temporary file is locked (flock), so the next writer of that name replaces one
+/// that a killed program left; programs that write the same file at once use -1, -2 ... Small
 /// writes are buffered. Follows symbolic links; rejects anything else that is not a regular file.
 /// Errors: cannot_create (no such folder, no permission), io (disk full).
 class AtomicFile final : public ByteSink {

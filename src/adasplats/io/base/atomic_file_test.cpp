@@ -71,6 +71,32 @@ TEST(AtomicFile, TwoWritersOfOneFileDoNotMix) {
   EXPECT_EQ(read_file(folder.path() / "file"), "second");
 }
 
+TEST(AtomicFile, ReplacesWhatAKilledWriterLeft) {
+  const TemporaryFolder folder;
+  folder.write(".adasplats-file-0.tmp", "longer than the new file");
+  write_file(folder.path() / "file", "new");
+  EXPECT_EQ(read_file(folder.path() / "file"), "new");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicFile, NeverWritesToAnotherFileThroughALink) {
+  const TemporaryFolder folder;
+  folder.write("other", "of the user");
+  std::filesystem::create_symlink(folder.path() / "other", folder.path() / ".adasplats-file-0.tmp");
+  std::filesystem::create_hard_link(folder.path() / "other",
+                                    folder.path() / ".adasplats-file-1.tmp");
+  write_file(folder.path() / "file", "new");
+  EXPECT_EQ(read_file(folder.path() / "file"), "new");
+  EXPECT_EQ(read_file(folder.path() / "other"), "of the user");
+}
+
+TEST(AtomicFile, NamesMayBeLong) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / std::string(255, 'n');
+  write_file(path, "new");
+  EXPECT_EQ(read_file(path), "new");
+}
+
 TEST(AtomicFile, FollowsALinkAndKeepsIt) {
   const TemporaryFolder folder;
   const std::filesystem::path target = folder.write("target", "old");
