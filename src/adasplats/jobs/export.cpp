@@ -18,6 +18,7 @@
 #include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/core/words.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/scan_values.h"
@@ -603,8 +604,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
 std::uint64_t bytes_of(const fs::path& output) {
   if (!fs::is_directory(output)) return fs::file_size(output);
   std::uint64_t bytes = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(output))
-    if (entry.is_regular_file()) bytes += entry.file_size();
+  for (const fs::path& file : files_below(output)) bytes += fs::file_size(file);
   return bytes;
 }
 

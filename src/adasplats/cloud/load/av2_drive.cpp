@@ -24,6 +24,7 @@
 #include "adasplats/cloud/sequence/sensor_cones.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/arrow/arrow_file.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -273,10 +274,8 @@ Av2Units units_of_log(const DriveInput& drive) {
 bool is_av2_log(const fs::path& folder) {
   std::error_code ignored;  // an unreadable folder is not a log
   if (fs::is_regular_file(folder / "city_SE3_egovehicle.feather", ignored)) return true;
-  fs::directory_iterator entry(folder / "sensors" / "lidar", ignored);
-  return std::any_of(entry, fs::directory_iterator(), [](const fs::directory_entry& file) {
-    return file.path().extension() == ".feather";
-  });
+  return std::ranges::any_of(list_folder_if_any(folder / "sensors" / "lidar"),
+                             [](const fs::path& file) { return file.extension() == ".feather"; });
 }
 
 ClassNames av2_class_names(const fs::path&) { return {}; }

@@ -13,6 +13,7 @@
 #include "adasplats/cloud/load/sensor_frame.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
@@ -28,15 +29,10 @@ namespace fs = std::filesystem;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().front() == '.'; }
 
-/// The entries of a folder, by name.
-std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
-  std::vector<fs::directory_entry> entries;
-  std::error_code problem;
-  fs::directory_iterator entry(folder, problem);
-  for (; !problem && entry != fs::directory_iterator(); entry.increment(problem))
-    if (!is_hidden(entry->path())) entries.push_back(*entry);
-  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
-  std::ranges::sort(entries, {}, [](const fs::directory_entry& e) { return e.path(); });
+/// The entries of a folder that are not hidden, by name.
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries = list_folder(folder);
+  std::erase_if(entries, is_hidden);
   return entries;
 }
 
@@ -55,12 +51,12 @@ struct Folder {
 
 Folder read_folder(const fs::path& path) {
   Folder folder{path, sequences_of_tree(path), {}, false};
-  for (const fs::directory_entry& entry : entries_of(path)) {
+  for (const fs::path& entry : entries_of(path)) {
     std::error_code ignored;  // a broken link is not a file
-    if (!entry.is_regular_file(ignored)) continue;
-    if (entry.path().filename() == "poses.csv") folder.has_poses = true;
-    if (const FileKind kind = kind_of_file(entry.path()); kind != FileKind::other)
-      folder.files[kind].push_back(entry.path());
+    if (!fs::is_regular_file(entry, ignored)) continue;
+    if (entry.filename() == "poses.csv") folder.has_poses = true;
+    if (const FileKind kind = kind_of_file(entry); kind != FileKind::other)
+      folder.files[kind].push_back(entry);
   }
   return folder;
 }
@@ -141,12 +137,13 @@ bool is_folder_of_scans(const Folder& folder) {
 
 /// The drive in a folder of simulated scans that are not files of points; empty: none.
 fs::path drive_in(const fs::path& folder) {
-  constexpr int kMaxDepth = 1;  // KITTI's raw data: DATE/DRIVE
-  std::error_code ignored;
-  for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end;
-       entry.increment(ignored)) {
-    if (is_self_contained_drive(*entry) || is_kitti_raw_drive(*entry)) return entry->path();
-    if (entry.depth() >= kMaxDepth) entry.disable_recursion_pending();
+  const auto is_drive = [](const fs::path& path) {
+    return is_self_contained_drive(path) || is_kitti_raw_drive(path);
+  };
+  for (const fs::path& path : list_folder_if_any(folder)) {
+    if (is_drive(path)) return path;
+    for (const fs::path& deeper : list_folder_if_any(path))  // KITTI's raw data: DATE/DRIVE
+      if (is_drive(deeper)) return deeper;
   }
   return {};
 }
@@ -256,8 +253,8 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::path& place : {folder, folder / "sequences"}) {
     if (!fs::is_directory(place, ignored)) continue;
-    for (const fs::directory_entry& entry : entries_of(place))
-      if (is_kitti_sequence(entry.path())) sequences.push_back(entry.path());
+    for (const fs::path& entry : entries_of(place))
+      if (is_kitti_sequence(entry)) sequences.push_back(entry);
   }
   return sequences;
 }

@@ -16,6 +16,7 @@
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/json_table.h"
 
@@ -177,17 +178,13 @@ class SceneReader {
 
 std::vector<fs::path> nuscenes_tables(const fs::path& root) {
   std::vector<fs::path> folders;
-  std::error_code problem;
-  fs::directory_iterator entry(root, problem);
-  for (; !problem && entry != fs::directory_iterator(); entry.increment(problem)) {
+  for (const fs::path& folder : list_folder_if_any(root)) {
     std::error_code ignored;
-    const fs::path& folder = entry->path();
     if (folder.filename().string().starts_with("v1.0-") &&
         (fs::is_regular_file(folder / "scene.json", ignored) ||
          fs::is_regular_file(folder / "sample_data.json", ignored)))
       folders.push_back(folder);
   }
-  std::ranges::sort(folders);
   return folders;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/sensors/packet_layout.h"
 
@@ -217,15 +218,13 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
   const fs::path own = folder / (capture.stem().string() + ".json");
   if (fs::is_regular_file(own, ignored)) return own.string();
   std::vector<std::string> found;
-  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
-       entry.increment(ignored)) {
-    const std::string name = entry->path().filename().string();
+  for (const fs::path& file : list_folder_if_any(folder)) {
+    const std::string name = file.filename().string();
     const bool is_hesais = name.starts_with("correction") || name.starts_with("angle");
     if (name == "metadata.json" || (name.starts_with("calibration") && name.ends_with(".yaml")) ||
         (is_hesais && (name.ends_with(".csv") || name.ends_with(".dat"))))
-      found.push_back(entry->path().string());
+      found.push_back(file.string());
   }
-  std::ranges::sort(found);
   if (found.size() > 1)
     throw Error(ErrorKind::usage, capture.string() + ": its folder contains " + found[0] + " and " +
                                       found[1] + "; choose one with `packet_sensor`");

@@ -13,6 +13,7 @@
 #include "adasplats/cloud/origins/track.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
@@ -186,15 +187,12 @@ std::vector<fs::path> scan_files(const fs::path& folder) {
   if (!fs::is_directory(folder, ignored) || !sequences_of_tree(folder).empty()) return {};
   std::vector<fs::path> files;
   std::vector<std::pair<double, fs::path>> numbered;
-  fs::directory_iterator entry(folder, ignored);
-  for (; !ignored && entry != fs::directory_iterator(); entry.increment(ignored)) {
-    const fs::path& path = entry->path();
-    if (path.filename().string().front() == '.' || !entry->is_regular_file()) continue;
+  for (const fs::path& path : list_folder(folder)) {
+    if (path.filename().string().front() == '.' || !fs::is_regular_file(path, ignored)) continue;
     const FileKind kind = kind_of_file(path);
     if (kind == FileKind::mesh || kind == FileKind::splat_model) return {};
     if (kind == FileKind::points) files.push_back(path);
   }
-  std::ranges::sort(files);
   for (const fs::path& file : files) {
     if (lower_case(file.extension().string()) != lower_case(files.front().extension().string()))
       return {};

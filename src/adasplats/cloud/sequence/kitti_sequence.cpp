@@ -12,6 +12,7 @@
 
 #include "adasplats/cloud/sequence/moving_boxes.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/point_files.h"
 
@@ -20,17 +21,13 @@ namespace adasplats {
 std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& folder,
                                                  const std::string& extension) {
   std::vector<std::filesystem::path> files;
-  std::error_code problem;
-  if (!std::filesystem::is_directory(folder, problem)) return files;
-  std::filesystem::directory_iterator entry(folder, problem);
-  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
-    const std::filesystem::path& path = entry->path();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) return files;
+  for (const std::filesystem::path& path : list_folder(folder)) {
     // A leading dot marks files that are being written or belong to some tool.
     if (path.extension() == extension && path.filename().string().front() != '.')
       files.push_back(path);
   }
-  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
-  std::ranges::sort(files);
   return files;
 }
 

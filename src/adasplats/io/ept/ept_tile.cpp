@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/bags/unpack.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -123,13 +124,11 @@ std::uint64_t ept_tile_points(const fs::path& path) {
 }
 
 std::optional<std::uint64_t> ept_stated_points(const fs::path& folder) {
-  std::error_code none;  // without a hierarchy
   std::optional<std::uint64_t> points;
-  for (fs::directory_iterator entry(folder / "ept-hierarchy", none), end; !none && entry != end;
-       entry.increment(none)) {
-    if (entry->path().extension() != ".json") continue;
+  for (const fs::path& file : list_folder_if_any(folder / "ept-hierarchy")) {
+    if (file.extension() != ".json") continue;
     // -1: the counts below are in another file.
-    for (const EptJson& count : read_json_object(entry->path()))
+    for (const EptJson& count : read_json_object(file))
       if (count.is_number_unsigned()) points = points.value_or(0) + count.get<std::uint64_t>();
   }
   if (points) return points;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/point_format.h"
@@ -133,9 +134,7 @@ double max_points_of(std::span<const fs::path> inputs) {
       points += max_points_of_file(input);
       continue;
     }
-    fs::recursive_directory_iterator entry(input, problem), end;
-    for (; !problem && entry != end; entry.increment(problem))
-      if (entry->is_regular_file(problem)) points += max_points_of_file(entry->path());
+    for (const fs::path& file : files_below(input)) points += max_points_of_file(file);
   }
   return points;
 }

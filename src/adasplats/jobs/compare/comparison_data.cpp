@@ -9,6 +9,7 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/compare/steps.h"
@@ -65,16 +66,12 @@ std::string first_number(const std::string& text) {
 /// The PLY file below `data` with a name that begins with "soufflot" and contains `number` first.
 fs::path soufflot_file(const fs::path& data, const std::string& number) {
   std::vector<fs::path> matches;
-  std::error_code failure;
-  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator entry(data, kOptions, failure), end;
-       !failure && entry != end; entry.increment(failure)) {
-    const std::string name = lower_case(entry->path().filename().string());
-    if (lower_case(entry->path().extension().string()) != ".ply") continue;
+  for (const fs::path& file : files_below(data)) {
+    const std::string name = lower_case(file.filename().string());
+    if (lower_case(file.extension().string()) != ".ply") continue;
     if (name.rfind("soufflot", 0) != 0 || first_number(name) != number) continue;
-    matches.push_back(entry->path());
+    matches.push_back(file);
   }
-  std::sort(matches.begin(), matches.end());
   if (matches.empty()) {
     throw Error(ErrorKind::data, data.string() + ": contains no PLY file of Soufflot-" + number +
                                      ", expected the layout of Paris-CARLA-3D");

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/jobs/output/output_folder.h"
@@ -33,14 +34,13 @@ constexpr std::array<const char*, 4> kEndNames = {"done", "failed", "timeout", "
 void stamp_files_in(const fs::path& folder, Json& stamp) {
   std::uint64_t files = 0, bytes = 0;
   fs::file_time_type newest = fs::file_time_type::min();
-  std::error_code failure;
-  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-       entry.increment(failure)) {
+  for (const fs::path& path : list_folder_if_any(folder)) {
     std::error_code gone;
-    if (!entry->is_regular_file(gone)) continue;
+    const fs::directory_entry entry(path, gone);
+    if (!entry.is_regular_file(gone)) continue;
     ++files;
-    bytes += entry->file_size(gone);
-    newest = std::max(newest, entry->last_write_time(gone));
+    bytes += entry.file_size(gone);
+    newest = std::max(newest, entry.last_write_time(gone));
   }
   stamp["files"] = files;
   stamp["bytes"] = bytes;
@@ -149,11 +149,8 @@ void remove_unfinished(const Step& step) {
     const std::string hidden = "." + output.filename().string();
     std::vector<fs::path> unfinished = {output.parent_path() / (hidden + ".partial"),
                                         output.parent_path() / (hidden + ".unfinished")};
-    for (fs::directory_iterator entry(output.parent_path(), failure), end; !failure && entry != end;
-         entry.increment(failure)) {
-      const std::string name = entry->path().filename().string();
-      if (name.rfind(".adasplats-", 0) == 0) unfinished.push_back(entry->path());
-    }
+    for (const fs::path& path : list_folder_if_any(output.parent_path()))
+      if (path.filename().string().starts_with(".adasplats-")) unfinished.push_back(path);
     for (const fs::path& path : unfinished) fs::remove_all(path, failure);
   }
 }

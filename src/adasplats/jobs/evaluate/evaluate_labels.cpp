@@ -12,6 +12,7 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/jobs/session/inputs.h"
 
@@ -57,12 +58,10 @@ LabelFolder label_folder(const fs::path& folder, LabelSide side) {
 
 std::vector<fs::path> folders_in(const fs::path& folder) {
   std::vector<fs::path> folders;
-  std::error_code ignored;  // an unreadable folder counts as empty
-  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
-       entry.increment(ignored)) {
+  for (const fs::path& path : list_folder_if_any(folder)) {
     std::error_code broken;  // a broken link is not a folder
-    const bool is_hidden = entry->path().filename().string().front() == '.';
-    if (!is_hidden && entry->is_directory(broken)) folders.push_back(entry->path());
+    const bool is_hidden = path.filename().string().front() == '.';
+    if (!is_hidden && fs::is_directory(path, broken)) folders.push_back(path);
   }
   return folders;
 }

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
@@ -137,9 +138,7 @@ OutputFolder::OutputFolder(const fs::path& folder, bool overwrite, const std::st
       partial_(parent_of(folder_) / ("." + folder_.filename().string() + ".partial")),
       lock_(create_and_lock(partial_, folder_)) {
   try {
-    for (const fs::directory_entry& left_over : fs::directory_iterator(partial_)) {
-      fs::remove_all(left_over.path());
-    }
+    for (const fs::path& left_over : list_folder(partial_)) fs::remove_all(left_over);
     write_file(partial_ / kContentFile, content_text(command, content));
   } catch (...) {
     std::error_code failure;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/jobs/output/unfinished_folder.h"
@@ -36,10 +37,8 @@ bool is_temporary(const fs::path& file) {
 }
 
 void remove_temporaries(const fs::path& folder) {
-  std::set<fs::path> found;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && is_temporary(entry.path())) found.insert(entry.path());
-  for (const fs::path& file : found) fs::remove(file);
+  for (const fs::path& file : files_below(folder))
+    if (is_temporary(file)) fs::remove(file);
 }
 
 std::string relative_name(const fs::path& file, const fs::path& folder) {
@@ -156,8 +155,8 @@ void ResumableFolder::commit(const Json& summary, std::span<const std::string> u
   Json content = *content_;
   content.update(summary);
   std::set<std::string> names;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(unfinished_))
-    if (entry.is_regular_file()) names.insert(relative_name(entry.path(), unfinished_));
+  for (const fs::path& file : files_below(unfinished_))
+    names.insert(relative_name(file, unfinished_));
   Json outputs = Json::object();
   for (const std::string& name : names) {
     if (name == kContentFile || name == kJournalFile) continue;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -69,11 +70,8 @@ fs::path note_of_span(const fs::path& folder, std::size_t first, std::size_t cou
 }
 
 std::set<fs::path> files_of_spans(const fs::path& folder) {
-  std::set<fs::path> files;
-  if (!fs::is_directory(folder / kSpansFolder)) return files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder / kSpansFolder))
-    files.insert(entry.path());
-  return files;
+  const std::vector<fs::path> files = list_folder_if_any(folder / kSpansFolder);
+  return {files.begin(), files.end()};
 }
 
 bool are_unchanged(const fs::path& folder, const std::vector<FileDigest>& files) {
