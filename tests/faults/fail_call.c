@@ -11,6 +11,7 @@
 //
 // ADASPLATS_FAULT_COUNTS: a file that gets the number of calls of each kind when main() returns.
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -25,10 +26,10 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-enum Kind { kMemory, kOpen, kRead, kMap, kWrite, kSync, kRename, kMkdir, kKinds };
-static const char* const kNames[kKinds] = {"memory", "open", "read",   "map",
-                                           "write",  "sync", "rename", "mkdir"};
-static const int kErrors[kKinds] = {ENOMEM, EMFILE, EIO, ENOMEM, ENOSPC, EIO, EIO, ENOSPC};
+enum Kind { kMemory, kOpen, kRead, kMap, kWrite, kSync, kRename, kMkdir, kList, kKinds };
+static const char* const kNames[kKinds] = {"memory", "open",   "read",  "map", "write",
+                                           "sync",   "rename", "mkdir", "list"};
+static const int kErrors[kKinds] = {ENOMEM, EMFILE, EIO, ENOMEM, ENOSPC, EIO, EIO, ENOSPC, EIO};
 
 enum { kDescriptors = 4096 };
 static atomic_long calls[kKinds];
@@ -212,6 +213,25 @@ int mkdir(const char* path, mode_t mode) {
   NEXT(int, "mkdir", const char*, mode_t);
   return in_folder(AT_FDCWD, path) && fails(kMkdir) ? -1 : next(path, mode);
 }
+
+DIR* opendir(const char* path) {
+  NEXT(DIR*, "opendir", const char*);
+  DIR* const listed = next(path);
+  if (listed != NULL) note(dirfd(listed), in_folder(AT_FDCWD, path));
+  return listed;
+}
+int closedir(DIR* listed) {
+  NEXT(int, "closedir", DIR*);
+  note(dirfd(listed), 0);
+  return next(listed);
+}
+#define READDIR(name, type)                                                 \
+  struct type* name(DIR* listed) {                                          \
+    NEXT(struct type*, #name, DIR*);                                        \
+    return is_counted(dirfd(listed)) && fails(kList) ? NULL : next(listed); \
+  }
+READDIR(readdir, dirent)
+READDIR(readdir64, dirent64)
 
 // ---- the run
 
