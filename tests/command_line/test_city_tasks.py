@@ -219,6 +219,16 @@ class CityTasks(ProgramTest):
         tile.write_bytes(tile.read_bytes() + b" ")
         self.run_bad(65, *self.task(name), says=[tile.name, "--overwrite"])
 
+    def test_points_that_a_stopped_run_removed_are_read_again(self):
+        self.plan()
+        layer = self.unfinished / "layers" / "0" / "points"
+        for name in ["common.ply", "points.json", next(layer.glob("x*")).name]:
+            (layer / name).unlink()
+            self.plan()
+            self.assertTrue((layer / name).exists())
+        self.run_good(*self.command())
+        self.assertEqual(tree_digest(self.city), self.whole())
+
     def test_other_settings_and_versions(self):
         name = self.tiles()[0]
         self.run_bad(73, *self.command("--only-tile", name, "--cell", "0.07"),

@@ -162,14 +162,29 @@ void find_tiles(LayerWork& work) {
     if (count.points > 0) work.tiles.tiles.insert(tile);
 }
 
-std::vector<std::string> files_of_points(const LayerWork& work) {
+std::vector<std::string> files_of_points(const LayerFacts& facts, const LayerWork& work) {
   std::vector<std::string> files;
-  for (const auto& [tile, count] : work.layer.facts.tiles) {
+  for (const auto& [tile, count] : facts.tiles) {
     if (count.points > 0) files.push_back(points_file_of(tile));
     if (count.points > 0 && work.job.segment.on) files.push_back(order_file_of(tile));
     if (count.empty_beams > 0) files.push_back(beams_file_of(tile));
   }
   return files;
+}
+
+/// Whether an earlier run left all points. Errors: data (a file has changed).
+bool has_points(const LayerWork& work, const ResumableFolder& folder) {
+  const std::string needed[] = {work.layer.file(kPointsFile), work.layer.file(kLayerCommonFile)};
+  if (!folder.has(needed)) return false;
+  for (const std::string& file : files_of_points(load_facts(work.path(kPointsFile)), work)) {
+    if (folder.has(work.layer.file(file))) continue;
+    // A run that was stopped at its end has removed some files.
+    if (!fs::exists(work.path(file))) return false;
+    throw Error(ErrorKind::data, work.path(file).string() +
+                                     ": changed since it was written; remove " +
+                                     work.city.string() + " to start again");
+  }
+  return true;
 }
 
 }  // namespace
@@ -182,13 +197,8 @@ void load_sorted(LayerWork& work) {
 }
 
 void sort_points(LayerWork& work, ResumableFolder& folder) {
-  if (folder.has(work.layer.file(kPointsFile))) {
+  if (has_points(work, folder)) {
     load_sorted(work);
-    for (const std::string& file : files_of_points(work))
-      if (!folder.has(work.layer.file(file)))
-        throw Error(ErrorKind::data, work.path(file).string() +
-                                         ": changed since it was written; remove " +
-                                         work.city.string() + " to start again");
     return;
   }
   fs::remove_all(work.folder());  // what a killed run left half done
@@ -197,7 +207,7 @@ void sort_points(LayerWork& work, ResumableFolder& folder) {
   save_model(work.path(kLayerCommonFile), work.common);
   write_file_in_place(work.path(kPointsFile), text_of(work.layer.facts));
   folder.record(work.layer.file(kLayerCommonFile));
-  folder.record(digests_of(files_of_points(work), work));
+  folder.record(digests_of(files_of_points(work.layer.facts, work), work));
   folder.record(work.layer.file(kPointsFile));
   find_tiles(work);
 }

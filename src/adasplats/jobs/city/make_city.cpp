@@ -80,13 +80,22 @@ class CityMaker {
     result_.steps.push_back({name, watch.seconds()});
   }
 
+  void discard_after(const Error& rejection) {
+    try {
+      folder_.discard();
+    } catch (const Error& error) {
+      throw Error(error.kind(), std::string(rejection.what()) + "; " + error.what() + "; remove " +
+                                    folder_.path().string() + " to start again");
+    }
+  }
+
   /// Discards rejected points, so that the next run reads the corrected inputs.
   template <class Check>
   void discard_if_rejected(const Check& check_points) {
     try {
       check_points();
     } catch (const Error& error) {
-      if (error.kind() == ErrorKind::data) folder_.discard();
+      if (error.kind() == ErrorKind::data) discard_after(error);
       throw;
     }
   }

@@ -130,6 +130,9 @@ void put_in_place(const fs::path& partial, const fs::path& folder) {
     throw system_error(ErrorKind::cannot_create, folder, "cannot create", reason);
   }
   fs::remove_all(old, failure);
+  if (failure)
+    throw system_error(ErrorKind::io, old, "the replaced folder cannot be removed",
+                       failure.value());
 }
 
 OutputFolder::OutputFolder(const fs::path& folder, bool overwrite, const std::string& command,

@@ -143,6 +143,12 @@ bool ResumableFolder::take(const std::string& file) {
   return true;
 }
 
+void ResumableFolder::discard() {
+  recorded_.clear();
+  if (ftruncate(journal_, 0) != 0)
+    throw system_error(ErrorKind::io, unfinished_ / kJournalFile, "cannot be emptied", errno);
+}
+
 /// Removes the notes of all recorded files and the temporary files of killed tasks.
 void ResumableFolder::remove_notes() {
   for (const auto& [file, digest] : recorded_) fs::remove(note_of(unfinished_ / file));

@@ -45,8 +45,9 @@ class ResumableFolder {
   /// Records a file that a task made (FolderTask::record). Returns false if no task made it or it
   /// has changed since.
   bool take(const std::string& file);
-  /// Leaves nothing for another process.
-  void discard() { recorded_.clear(); }
+  /// Leaves nothing for another process: not even files that cannot be removed count as recorded.
+  /// Errors: io.
+  void discard();
   /// SHA-256 of the recorded files, by name.
   const std::map<std::string, std::string>& recorded() const { return recorded_; }
 

@@ -9,6 +9,7 @@
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
 
 namespace adasplats {
 namespace {
@@ -79,6 +80,7 @@ TEST(ResumableFolder, WhatIsDiscardedIsMadeAnew) {
     EXPECT_TRUE(again.has("part/1"));
     again.discard();
     EXPECT_FALSE(again.has("part/1"));
+    EXPECT_TRUE(fs::is_empty(again.path() / kJournalFile)) << "even if the files stay";
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
   EXPECT_EQ(attempt(output, 9).size(), 4U);
