@@ -28,7 +28,7 @@ namespace {
 
 constexpr float kNoError = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* kErrorName = "error_m";
-constexpr std::string_view kCountComment = "adasplats.splats ";
+constexpr std::string_view kCountComment = "adasplats.model_splats ";
 /// The limits of load_cloud: beyond, doubles do not resolve 0.1 mm; maximum distance from the
 /// median.
 constexpr double kLargest_m = 1e12;
@@ -132,7 +132,7 @@ void require_model(const ErrorPoints& points, std::size_t splats,
   if (points.primitive_count == 0)
     throw Error(ErrorKind::data,
                 path.string() +
-                    ": has no comment 'adasplats.splats N' with the number of splats of "
+                    ": has no comment 'adasplats.model_splats N' with the number of splats of "
                     "its model; write it again with 'evaluate resimulate --errors'");
   if (points.primitive_count != splats)
     throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +

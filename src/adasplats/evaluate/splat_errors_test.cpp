@@ -47,7 +47,7 @@ TEST(SplatErrors, RejectBeamsOfOtherModels) {
   expect_error(ErrorKind::data, {"e.ply", "splat 4 of 4"}, [&] {
     errors.add(beams({0.1F, 0.2F}, {0, 4}, 4), "e.ply");
   });
-  expect_error(ErrorKind::data, {"e.ply", "adasplats.splats"},
+  expect_error(ErrorKind::data, {"e.ply", "adasplats.model_splats"},
                [&] { errors.add(beams({0.1F}, {0}, 0), "e.ply"); });
   const ErrorPoints old = beams({0.1F}, {}, 0);
   EXPECT_FALSE(has_splat_hits(old));

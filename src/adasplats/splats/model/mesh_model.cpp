@@ -22,8 +22,6 @@
 namespace adasplats {
 namespace {
 
-constexpr const char* kMeshComment = "adasplats.mesh 1";
-
 bool is_ply(const std::filesystem::path& path) {
   InputFile file(path);
   constexpr std::string_view kMagic = "ply";
@@ -90,6 +88,7 @@ std::vector<std::uint16_t> face_classes(const std::filesystem::path& path, const
 }
 
 MeshModel to_model(const std::filesystem::path& path, MeshTable table) {
+  require_version_1(table.vertices, kMeshComment, path);
   MeshModel model;
   set_vertices(model, path, table.vertices);
   model.label_scheme = comment_value(table.vertices, kLabelsComment);
@@ -128,7 +127,7 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model) {
   std::vector<ColumnView> face_columns;
   if (!mesh.classes.empty())
     face_columns.push_back({"class", ColumnType::u16, mesh.classes.data(), sizeof(std::uint16_t)});
-  std::vector<std::string> comments = {kMeshComment};
+  std::vector<std::string> comments = {std::string(kMeshComment) + "1"};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty())
     comments.push_back(std::string(kLabelsComment) + model.label_scheme);

@@ -30,7 +30,6 @@ constexpr const char* kNetworkComment = "adasplats.network_sha256 ";
 constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
-constexpr const char* kFormatComment = "adasplats.splats 1";
 
 const Column& required(const Table& table, const std::filesystem::path& path,
                        std::string_view name) {
@@ -226,7 +225,7 @@ SplatModel opaque(SplatModel model) {
 }
 
 std::vector<std::string> comments_of(const SplatModel& model) {
-  std::vector<std::string> comments = {kFormatComment};
+  std::vector<std::string> comments = {std::string(kSplatsComment) + "1"};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty())
     comments.push_back(std::string(kLabelsComment) + model.label_scheme);
@@ -280,6 +279,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
 
 SplatModel load_model(const std::filesystem::path& path) {
   const Table table = read_splats(path);
+  require_version_1(table, kSplatsComment, path);
   const std::array<const Column*, 3> position = {
       &required(table, path, "x"), &required(table, path, "y"), &required(table, path, "z")};
   const std::array<const Column*, 3> normal = {

@@ -45,6 +45,16 @@ TEST(SplatModel, ValuesThatASplatCannotHaveAreErrors) {
     rejected(model_text("6", "0.1", "50", group), "group");
 }
 
+TEST(SplatModel, OtherVersionsOfTheFormatAreRejected) {
+  const TemporaryFolder folder;
+  std::string text = model_text("6", "0.1", "50", "1");
+  text.insert(text.find("element"), "comment adasplats.splats 2\n");
+  expect_error(ErrorKind::data, {"m.ply", "format version 2", "reads version 1"},
+               [&] { load_model(folder.write("m.ply", text)); });
+  text.replace(text.find("splats 2"), 8, "splats 1");
+  EXPECT_EQ(load_model(folder.write("m.ply", text)).size(), 2U);
+}
+
 // Oracle: the opacity at the rim of the opaque disks (scene/soft_disk.h).
 TEST(SplatModel, SoftDisksBecomeOpaqueOnes) {
   SplatModel soft;
