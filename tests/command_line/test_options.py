@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """No option is taken and ignored: each does something or is refused."""
+import json
 import unittest
 
 from support import ProgramTest, run, tiny_place, write_cloud
@@ -45,11 +46,25 @@ class OptionsTest(ProgramTest):
                              "semantickitti")
         of_some = self.report(*draft)
         self.assertNotIn("draft_of", of_all)
-        self.assertEqual(of_some["draft_of"], "points")
+        self.assertEqual((of_some["draft_of"], of_some["draft_every"]), ("points", 4))
         self.assertEqual(of_some["points_read"], of_all["points_read"])
         self.assertLess(0.15 * of_all["points_in"], of_some["points_in"])
         self.assertLess(of_some["points_in"], 0.35 * of_all["points_in"])
         self.assertEqual(of_some["cell_m"], 0.1)
+
+    def test_a_draft_of_a_drive_keeps_eight_scans(self):
+        self.model()
+        poses = self.folder / "slow.csv"
+        poses.write_text("time,x,y,z,qw,qx,qy,qz\n" +
+                         "".join(f"{0.1 * k:.1f},{4 + 0.3 * k},0,2,1,0,0,0\n" for k in range(25)))
+        run("simulate", self.folder / "model.ply", "--trajectory", poses, "--sensor", self.sensor,
+            "-o", self.folder / "scans", check=True)
+        for scans, every in [("0:5", 1), ("0:15", 1), ("0:16", 2), ("0:25", 3)]:
+            report = self.folder / "draft.json"
+            run("model", self.folder / "scans" / "sequences" / "00", "-o", self.folder / "m.ply",
+                "--draft", "--scans", scans, "--report", report, check=True)
+            draft = json.loads(report.read_text(encoding="utf-8"))
+            self.assertEqual((draft["draft_of"], draft["draft_every"]), ("scans", every), scans)
 
     def test_labels_and_removal(self):
         bare, paris = self.folder / "bare.ply", self.folder / "paris.ply"

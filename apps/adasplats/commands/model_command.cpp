@@ -39,6 +39,12 @@ constexpr const char* kModelExamples =
     "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model strips/ -o city --tile 64 --plan --trajectory drive.csv > tasks\n";
 
+std::string draft_text(const DraftFacts& draft) {
+  const std::string what(draft.of);
+  if (draft.every == 1) return "A draft: all " + what + "\n";
+  return "A draft: 1 of " + std::to_string(draft.every) + " " + what + "\n";
+}
+
 /// How well the sensor positions explain the points; empty without evidence.
 std::string origins_text(const std::optional<OriginCheck>& check) {
   if (!check || check->near_rise == 0) return {};
@@ -192,7 +198,7 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them removed by class" + text_of(built.removed_classes) + "\n" +
-          (result.draft_of.empty() ? "" : "A draft: a quarter of the " + result.draft_of + "\n") +
+          (result.draft ? draft_text(*result.draft) : "") +
           (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
           "\n" + (built.consistent ? origins_text(built.consistent->origins) : "") +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));

@@ -250,6 +250,15 @@ std::size_t OpenInputs::chosen_scans(std::size_t input) const {
                   (scans - options_.first_scan - 1) / options_.scan_stride + 1);
 }
 
+std::size_t OpenInputs::thin_scans(std::size_t every, std::size_t min_scans) {
+  std::size_t longest = 0;
+  for (std::size_t k = 0; k < inputs_.size(); ++k)
+    if (inputs_[k].sequence) longest = std::max(longest, chosen_scans(k));
+  every = std::clamp(longest / min_scans, std::size_t{1}, every);
+  options_.scan_stride *= every;
+  return every;
+}
+
 /// Sensor positions of all scans of all drives outside the piece.
 PathBeyond OpenInputs::path_beyond(const InputPiece& piece) const {
   PathBeyond beyond;

@@ -57,6 +57,9 @@ class OpenInputs {
   const std::optional<Rig>& rig() const { return rig_; }
   /// Number of scans of a drive that the options choose; 0 if the first is after its end.
   std::size_t chosen_scans(std::size_t input) const;
+  /// Chooses every `every`-th of the chosen scans, or more, so that the longest drive keeps
+  /// `min_scans` if it has them. Returns n for every n-th scan.
+  std::size_t thin_scans(std::size_t every, std::size_t min_scans);
 
   /// Same as load_cloud().
   std::pair<PointCloud, LoadReport> load(const Executor& executor, ProgressSink& progress) const;

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/core/progress_meter.h"
@@ -95,12 +95,10 @@ PointCloud thinned(const PointCloud& cloud) {
   return thin;
 }
 
-/// Whether the scans of all inputs can be chosen.
-bool are_sequences(std::span<const std::filesystem::path> inputs) {
-  return std::ranges::all_of(inputs, [](const std::filesystem::path& path) {
-    const std::vector<CloudInput> parts = cloud_inputs(path, SensorScans::taken);
-    return std::ranges::all_of(parts, &CloudInput::is_sequence);
-  });
+/// Chooses the scans of a draft.
+DraftFacts draft_of(OpenInputs& inputs) {
+  if (!inputs.are_drives()) return {};
+  return {DraftFacts::kScans, inputs.thin_scans(DraftChoice::kEvery, DraftChoice::kMinScans)};
 }
 
 ModelOptions with_recipe(ModelOptions options) {
@@ -263,16 +261,16 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
   const Stopwatch total;
   ModelResult result;
   LoadOptions load = job.load;
-  const bool skips_scans = job.draft.on && are_sequences(job.inputs);
-  if (job.draft.on) result.draft_of = skips_scans ? "scans" : "points";
-  if (skips_scans) load.scan_stride *= DraftChoice::kEvery;
   load.empty_beams = job.draft.on || uses_empty_beams(job.build.recipe);
   load.lost_beams = load.empty_beams;
   load.other_columns = KeptColumns::colors;
   const auto load_points = [&] {
-    auto [cloud, loaded] = load_cloud(job.inputs, load, session.executor, session.progress);
+    OpenInputs inputs(job.inputs, load, session.executor, session.progress);
+    if (job.draft.on) result.draft = draft_of(inputs);
+    auto [cloud, loaded] = inputs.load(session.executor, session.progress);
     result.loaded = loaded;
-    return job.draft.on && !skips_scans ? thinned(cloud) : std::move(cloud);
+    return result.draft && result.draft->of == DraftFacts::kPoints ? thinned(cloud)
+                                                                   : std::move(cloud);
   };
   ModelOptions options = job;
   options.build.trust_origins |= job.load.trust_origins;
@@ -307,7 +305,7 @@ std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>&
   const auto load_points = [&] {
     PointCloud cloud = load();
     result.loaded.points_read = cloud.size();
-    if (options.draft.on) result.draft_of = "points";
+    if (options.draft.on) result.draft = DraftFacts();
     return options.draft.on ? thinned(cloud) : cloud;
   };
   ModelMaker maker(options, {}, {}, load_points, session);
@@ -382,7 +380,8 @@ void add_consistent(const ConsistentReport& report, std::size_t splats,
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
-  if (!result.draft_of.empty()) json["draft_of"] = result.draft_of;
+  if (result.draft) json["draft_of"] = result.draft->of;
+  if (result.draft) json["draft_every"] = result.draft->every;
   json["points_read"] = result.loaded.points_read;
   json["points_not_finite"] = result.loaded.dropped_not_finite;
   json["points_no_return"] = result.loaded.no_returns;

@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -75,11 +76,13 @@ void visit_settings(SegmentChoice& choice, Visit&& visit) {
         choice.network);
 }
 
-/// A quick first model, by ConsistentOptions::draft(), of a quarter of the scans of sequences, or
-/// of the points of other inputs.
+/// A quick first model, by ConsistentOptions::draft(), of a quarter of the scans of drives, or of
+/// the points of other inputs.
 struct DraftChoice {
   bool on = false;
   static constexpr std::size_t kEvery = 4;
+  /// Of a drive. Fewer scans have too few rays to find wrong poses by.
+  static constexpr std::size_t kMinScans = 8;
 };
 
 template <class Visit>
@@ -131,9 +134,16 @@ struct SegmentReport {
   bool replaced_labels = false;  ///< that the input had
 };
 
+/// What a draft was made of.
+struct DraftFacts {
+  static constexpr std::string_view kScans = "scans", kPoints = "points";
+  std::string_view of = kPoints;
+  std::size_t every = DraftChoice::kEvery;  ///< one of so many
+};
+
 struct ModelResult {
-  std::string draft_of;  ///< "scans" or "points": a quarter of them was modelled; "": no draft
-  LoadReport loaded;     ///< points_read alone, where nothing was loaded
+  std::optional<DraftFacts> draft;
+  LoadReport loaded;  ///< points_read alone, where nothing was loaded
   std::optional<SegmentReport> segmented;
   BuildReport built;
   std::optional<CalibrationReport> calibrated;  ///< nothing: it was not asked for
