@@ -260,7 +260,8 @@ class Street(CompareTest):
         # More memory, too little time: it is tried again and fails otherwise.
         self.compare(*three, "--time-limit", "0.01")
         row = rows_of(self.output)["descriptors"]
-        self.assertEqual((row["state"], row["failed_step"]), ("timeout", "generate"))
+        self.assertEqual((row["state"], row["failed_step"], row["is_error"]),
+                         ("timeout", "generate", False))
         self.assertIn("0.01 s", row["message"])
         for report in ["report.md", "report.html"]:
             self.assertIn("0.01 s", (self.output / report).read_text(encoding="utf-8"))
@@ -276,22 +277,22 @@ class Street(CompareTest):
 
     def test_failure_and_retry(self):
         (self.folder / "broken.obj").write_text("v 0 0 0\nf 1 2 3\n")
-        self.compare(*self.BOTH, "--mesh", "cloud=street/mapping.ply")
+        self.refuse(65, *self.BOTH, "--mesh", "cloud=street/mapping.ply", says=["by an error: cloud"])
         row = rows_of(self.output)["cloud"]
-        self.assertEqual(row["state"], "failed")
+        self.assertEqual((row["state"], row["is_error"]), ("failed", True))
         self.assertIn("no mesh but a point cloud", row["message"])
 
         broken = [*self.BOTH, "--mesh", "artist=broken.obj"]
-        self.compare(*broken)
+        self.refuse(65, *broken)
         rows = rows_of(self.output)
         self.assertEqual([rows[name]["state"] for name in ["basic", "imls", "artist"]],
                          ["done", "done", "failed"])
         self.assertEqual(rows["artist"]["failed_step"], "info")
         self.assertIn("broken.obj:2:", rows["artist"]["message"])
         before = states(self.output)
-        self.compare(*broken)
+        self.refuse(65, *broken)
         self.assertEqual(self.run_again(before), set())
-        self.compare(*broken, "--retry")
+        self.refuse(65, *broken, "--retry")
         self.assertEqual(self.run_again(before), {"artist/info"})
 
     def test_poisson_without_its_programs(self):
@@ -301,7 +302,8 @@ class Street(CompareTest):
         self.compare(*self.RUN, "--methods", "poisson", program=str(alone / "adasplats"),
                      env=dict(os.environ, PATH=""))
         row = rows_of(self.output)["poisson"]
-        self.assertEqual((row["state"], row["failed_step"]), ("failed", "generate"))
+        self.assertEqual((row["state"], row["failed_step"], row["is_error"]),
+                         ("failed", "generate", False))
         self.assertIn("PoissonRecon", row["message"])
 
     def interrupt(self, sent, step):

@@ -46,6 +46,7 @@ OUTPUT = {73, 74}
 CODES = {"memory": {71}, "open": {66, *OUTPUT}, "read": {74}, "map": {71, 74}, "write": OUTPUT,
          "sync": OUTPUT, "rename": OUTPUT, "mkdir": OUTPUT, "list": {74}}
 LIBRARY_ABORT = "terminate called without an active exception"
+FAILED_ROWS = "rows of the comparison failed by an error"
 FAST = ("--device", "cpu", "--threads", "1")
 
 
@@ -138,7 +139,7 @@ class Runner:
                 return "wrong", "changed its input"
             if any((work / "tmp").iterdir()):
                 return "wrong", f"left {next((work / 'tmp').iterdir())}"
-            if done.returncode == 0 and self.words[0] == "compare" and " failed " in done.stdout:
+            if self.words[0] == "compare" and FAILED_ROWS in done.stderr:
                 return self.next_run(work, expected, "after a failed row", "--retry")
             if done.returncode == 0:
                 other = differences(found, expected)

@@ -3,7 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "adasplats/core/error.h"
 #include "adasplats/jobs/compare/compare.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
@@ -41,15 +44,35 @@ std::string with_unit(double number, int digits, const char* unit) {
   return std::isnan(number) ? "-" : fixed(number, digits) + " " + unit;
 }
 
-/// One line for each competitor that failed.
+/// The competitors that failed, and the picture of the points if it did.
+std::vector<nlohmann::ordered_json> failed_rows(const nlohmann::ordered_json& results) {
+  std::vector<nlohmann::ordered_json> rows;
+  for (const auto& entry : results["competitors"])
+    if (entry["state"] != "done") rows.push_back(entry);
+  if (results["original"].contains("failed_step")) {
+    rows.push_back(results["original"]);
+    rows.back()["name"] = "original";
+  }
+  return rows;
+}
+
 std::string failures_of(const nlohmann::ordered_json& results) {
   std::string lines;
-  for (const auto& entry : results["competitors"]) {
-    if (entry["state"] == "done") continue;
+  for (const auto& entry : failed_rows(results)) {
     lines += entry["name"].get<std::string>() + ": " + entry["failed_step"].get<std::string>() +
              ": " + entry["message"].get<std::string>() + "\n";
   }
   return lines;
+}
+
+/// Errors: data (a row has an error).
+void require_no_error(const nlohmann::ordered_json& results) {
+  std::string names;
+  for (const auto& entry : failed_rows(results))
+    if (entry["is_error"]) names += (names.empty() ? "" : ", ") + entry["name"].get<std::string>();
+  if (!names.empty())
+    throw Error(ErrorKind::data, "some rows of the comparison failed by an error: " + names +
+                                     " (--retry runs them again)");
 }
 
 std::string table_of(const nlohmann::ordered_json& results) {
@@ -103,6 +126,7 @@ class CompareCommand final : public Command {
     session.report["results"] = results;
     print(table_of(results) + "\n" + failures_of(results) + (job_.output / "report.html").string() +
           "\n");
+    require_no_error(results);
   }
 
  private:

@@ -106,7 +106,8 @@ std::vector<std::string> compare_method_names();
 
 /// Runs the steps that are not done yet, writes compare.json, report.md and report.html into the
 /// output folder and returns the content of compare.json (its layout: docs/formats.md). A
-/// competitor that fails is reported in its row. Errors: those of find_comparison_data; usage for
+/// competitor that fails is reported in its row, with "is_error" unless it met a limit or needs a
+/// program that is missing. Errors: those of find_comparison_data; usage for
 /// settings that no competitor could work with (limits, sensor, labels, names); no_input if the
 /// program is not found; cannot_create if the folder has other content or is used by another run.
 nlohmann::ordered_json run_compare(const CompareJob& job, Session& session);

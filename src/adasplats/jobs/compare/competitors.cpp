@@ -50,6 +50,9 @@ void note_failure(Json& entry, const Step& step, const StepResult& result) {
   entry["state"] = end_name(result.child.end);
   entry["failed_step"] = step.name;
   entry["message"] = result.child.message;
+  // Not what met a limit, or needs a program that is not installed.
+  entry["is_error"] = result.child.end == ChildEnd::failed &&
+                      result.child.exit_code != exit_code(ErrorKind::unavailable);
 }
 
 /// Whether a mesh of this name would collide with the folders or pictures of others.
