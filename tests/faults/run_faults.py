@@ -91,7 +91,7 @@ class Runner:
         self.library, self.inputs = library, inputs
         self.words = [*words, *FAST] if words[0] != "export" else words
 
-    def run(self, work, fault=None, counts=None, seconds=120, more=()):
+    def run(self, work, fault=None, counts=None, seconds=120, more=(), prefix=()):
         environment = {**os.environ, "TMPDIR": str(work / "tmp")}
         if fault or counts:
             environment.update(LD_PRELOAD=self.library, ADASPLATS_FAULT_FOLDER=str(work),
@@ -100,9 +100,9 @@ class Runner:
             environment["ADASPLATS_FAULT"] = fault
         if counts:
             environment["ADASPLATS_FAULT_COUNTS"] = str(counts)
-        return subprocess.run([support.PROGRAM, *self.words, *more], cwd=work / "out", env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=seconds,
-                              encoding="utf-8", errors="replace")
+        return subprocess.run([*prefix, support.PROGRAM, *self.words, *more], cwd=work / "out",
+                              env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              timeout=seconds, encoding="utf-8", errors="replace")
 
     def fresh(self):
         work = Path(tempfile.mkdtemp(prefix="faults-"))
@@ -174,8 +174,8 @@ class Runner:
         return left + [name for name in found.keys() | expected.keys()
                        if name.split("/")[0] in tops and found.get(name) != expected.get(name)]
 
-    def next_run(self, work, expected, after, *more):
-        again = self.run(work, more=more)
+    def next_run(self, work, expected, after, *more, seconds=120):
+        again = self.run(work, more=more, seconds=seconds)
         if again.returncode != 0:
             return "wrong", f"{after} the next run failed: {again.stderr.strip()}"
         other = differences(digests(work / "out"), expected)
