@@ -27,12 +27,18 @@ class Connection {
   /// Ends the connection within half a second, because the server stops.
   virtual void stop() = 0;
   ServerClock::time_point deadline() const { return deadline_; }
+  /// Whether it has sent a request with the token.
+  bool has_token() const { return has_token_; }
+  ServerClock::time_point begin() const { return begin_; }
 
  protected:
   void set_deadline(ServerClock::time_point deadline) { deadline_ = deadline; }
+  void set_has_token() { has_token_ = true; }
 
  private:
   ServerClock::time_point deadline_ = ServerClock::time_point::max();
+  ServerClock::time_point begin_ = ServerClock::now();
+  bool has_token_ = false;
 };
 
 /// State shared by the connections of a server. They own it jointly, because a WebSocketPeer may
@@ -46,6 +52,9 @@ struct ServerCore {
   boost::asio::io_context context{1};
   std::set<std::shared_ptr<Connection>> connections;  ///< open ones
 
+  /// Open connections with the token.
+  std::size_t users() const;
+
   ServerClock::time_point stall_deadline() const {
     return ServerClock::now() + options.stall_limit;
   }
@@ -55,9 +64,7 @@ struct ServerCore {
 };
 
 /// Handles the HTTP requests of a socket; hands it over if a request asks for the WebSocket.
-/// `over_limit`: answers the first request with 503, because the server is full.
-void start_http(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
-                bool over_limit);
+void start_http(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core);
 
 /// Answers a request for the WebSocket and passes its messages to the handler.
 void start_websocket(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,

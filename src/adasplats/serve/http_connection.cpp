@@ -88,8 +88,8 @@ http::status fault_of(const Request& request, bool has_body, const ServerCore& c
 class HttpConnection final : public Connection,
                              public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core, bool over_limit)
-      : core_(std::move(core)), socket_(std::move(socket)), over_limit_(over_limit) {}
+  HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core)
+      : core_(std::move(core)), socket_(std::move(socket)) {}
 
   void read();
   void abort() override;
@@ -113,7 +113,6 @@ class HttpConnection final : public Connection,
 
   std::shared_ptr<ServerCore> core_;
   asio::ip::tcp::socket socket_;
-  bool over_limit_;
   bool ended_ = false;
   bool keeps_alive_ = false, is_head_ = false;  // of the request
   beast::flat_buffer buffer_;
@@ -158,13 +157,15 @@ void HttpConnection::answer() {
   const Request& request = parser_->get();
   keeps_alive_ = request.keep_alive();
   is_head_ = request.method() == http::verb::head;
-  if (over_limit_) return send(status_reply(http::status::service_unavailable), true);
   const http::status fault = fault_of(request, !parser_->is_done(), *core_);
   if (fault != http::status::ok) return send(status_reply(fault), true);
   const std::optional<std::string> path =
       path_after_token(to_std(request.target()), core_->options.token);
   if (!path)
     return send(status_reply(http::status::not_found), !keeps_alive_ || !parser_->is_done());
+  if (!has_token() && core_->users() >= core_->options.connections_limit)
+    return send(status_reply(http::status::service_unavailable), true);
+  set_has_token();
   if (*path == "live" && is_read(request.method())) return answer_live();
   if (request.method() == http::verb::post) return read_body(*path);
   act({is_read(request.method()) ? "GET" : "DELETE", *path, {}});
@@ -292,9 +293,8 @@ void HttpConnection::abort() {
 
 }  // namespace
 
-void start_http(asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
-                bool over_limit) {
-  const auto connection = std::make_shared<HttpConnection>(std::move(socket), core, over_limit);
+void start_http(asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core) {
+  const auto connection = std::make_shared<HttpConnection>(std::move(socket), core);
   core->connections.insert(connection);
   connection->read();
 }

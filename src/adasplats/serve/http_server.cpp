@@ -110,6 +110,7 @@ class HttpServer::Implementation {
  private:
   void accept();
   void accepted(ErrorCode error, tcp::socket socket);
+  void make_room();
   void sweep();
   void begin_stop();
   template <class Call>
@@ -155,14 +156,23 @@ void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
     });
     return;
   }
-  const std::size_t limit = core_->options.connections_limit;
-  const std::size_t open = core_->connections.size();
-  // A 503 response takes a connection, too. Beyond twice the limit, sockets are closed without one.
-  if (!error && open < 2 * limit) {
+  if (!error) {
+    make_room();
     socket.set_option(tcp::no_delay(true), error);
-    start_http(std::move(socket), core_, open >= limit);
+    start_http(std::move(socket), core_);
   }
   accept();
+}
+
+/// Closes the oldest connection without the token if there are too many of them.
+void HttpServer::Implementation::make_room() {
+  const auto& all = core_->connections;
+  if (all.size() - core_->users() < core_->options.connections_limit) return;
+  const auto oldest = std::ranges::min_element(all, {}, [](const auto& connection) {
+    return std::pair(connection->has_token(), connection->begin());
+  });
+  const std::shared_ptr<Connection> kept = *oldest;  // abort() removes it from the set
+  kept->abort();
 }
 
 template <class Call>
@@ -191,6 +201,11 @@ void HttpServer::Implementation::begin_stop() {
   pause_.cancel();
   for_connections([](Connection& connection) { connection.stop(); });
   sweep_.cancel();  // and sweep at the shortest interval from now on
+}
+
+std::size_t ServerCore::users() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(connections, [](const auto& one) { return one->has_token(); }));
 }
 
 bool ServerCore::is_allowed_origin(std::string_view origin, std::string_view host) const {

@@ -64,10 +64,12 @@ class WebSocketHandler {
 };
 
 struct HttpServerOptions {
-  std::string address = "127.0.0.1";         ///< numeric
-  std::uint16_t port = 0;                    ///< 0: any free port
-  std::string token;                         ///< first part of every path; not empty
-  std::size_t connections_limit = 64;        ///< further ones get 503
+  std::string address = "127.0.0.1";  ///< numeric
+  std::uint16_t port = 0;             ///< 0: any free port
+  std::string token;                  ///< first part of every path; not empty
+  /// With the token; further ones get 503. As many others are open at most: then the oldest of
+  /// them is closed for a new one, so that clients without the token cannot lock out others.
+  std::size_t connections_limit = 64;
   std::size_t header_bytes_limit = 8 << 10;  ///< of a request
   /// Of a WebSocket message from the client, and of the body of a POST.
   std::size_t message_bytes_limit = 16 << 10;

@@ -266,16 +266,35 @@ TEST_F(HttpServerTest, ConnectionsBeyondTheLimitGet503) {
     third.get("/secret/");
     EXPECT_EQ(status_line(third.reply()), "HTTP/1.1 503 Service Unavailable");
     EXPECT_TRUE(third.ended());
-    // Of silent connections, at most the same number again is kept.
-    std::deque<RawClient> crowd;
-    for (int i = 0; i < 50; ++i) crowd.push_back(client());
-    EXPECT_TRUE(crowd.back().ended());
   }
   EXPECT_TRUE(soon([&] {
     RawClient again = client();
     again.get("/secret/");
     return status_line(again.reply()) == "HTTP/1.1 200 OK";
   }));
+}
+
+TEST_F(HttpServerTest, ConnectionsWithoutTheTokenLockNobodyOut) {
+  options.connections_limit = 3;
+  start();
+  RawClient user = client();
+  user.get("/secret/");
+  user.reply();
+  std::deque<RawClient> crowd;
+  for (int i = 0; i < 20; ++i) {
+    crowd.push_back(client());
+    if (i % 3 == 1) crowd.back().send("GET /secret/");  // and never the rest
+    if (i % 3 == 2) {
+      crowd.back().get("/wrong!/");
+      crowd.back().reply();
+    }
+    RawClient next = client();
+    next.get("/secret/", "Connection: close\r\n");
+    EXPECT_EQ(status_line(next.reply()), "HTTP/1.1 200 OK") << i;
+  }
+  EXPECT_TRUE(crowd.front().ended());  // the oldest was closed
+  user.get("/secret/");
+  EXPECT_EQ(status_line(user.reply()), "HTTP/1.1 200 OK");
 }
 
 TEST_F(HttpServerTest, AHandlerThatThrowsIs500) {

@@ -101,6 +101,7 @@ class WebSocketConnection final : public Connection,
 WebSocketConnection::WebSocketConnection(asio::ip::tcp::socket socket,
                                          std::shared_ptr<ServerCore> core, Request request)
     : core_(std::move(core)), stream_(std::move(socket)), request_(std::move(request)) {
+  set_has_token();
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = core_->options.stall_limit;
   // A ping is sent after half of this time without a frame.
