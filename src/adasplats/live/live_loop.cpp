@@ -30,6 +30,7 @@ void LiveLoop::stop() {
     stops_ = true;
   }
   changed_.notify_all();
+  pacer_.stop();  // a step may be waiting for its parts to be sent
   if (thread_.joinable()) thread_.join();
 }
 

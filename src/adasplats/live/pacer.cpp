@@ -25,13 +25,14 @@ void ask_for_priority() {
 
 Pacer::Pacer() : thread_([this] { run(); }) {}
 
-Pacer::~Pacer() {
+void Pacer::stop() {
   {
     const std::lock_guard lock(mutex_);
     stops_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  drained_.notify_all();
+  if (thread_.joinable()) thread_.join();
 }
 
 void Pacer::add(Clock::time_point due, std::function<void()> action) {
@@ -46,7 +47,7 @@ void Pacer::add(Clock::time_point due, std::function<void()> action) {
 
 void Pacer::drain() {
   std::unique_lock lock(mutex_);
-  drained_.wait(lock, [this] { return actions_.empty() && !is_acting_; });
+  drained_.wait(lock, [this] { return stops_ || (actions_.empty() && !is_acting_); });
 }
 
 Lateness Pacer::lateness() const {
@@ -58,12 +59,17 @@ Lateness Pacer::lateness() const {
     lateness.actions = count_;
   }
   if (late_s.empty()) return lateness;
-  std::ranges::sort(late_s);
+  // Not sorted, because each request for the state asks for it.
+  const auto quantile = [&late_s](std::size_t rank) {
+    const auto at = late_s.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::ranges::nth_element(late_s, at);
+    return static_cast<double>(*at);
+  };
   constexpr double kMost = 0.99;
-  lateness.median_s = static_cast<double>(late_s[late_s.size() / 2]);
-  lateness.p99_s = static_cast<double>(
-      late_s[static_cast<std::size_t>(kMost * static_cast<double>(late_s.size() - 1))]);
-  lateness.max_s = static_cast<double>(late_s.back());
+  lateness.median_s = quantile(late_s.size() / 2);
+  lateness.p99_s =
+      quantile(static_cast<std::size_t>(kMost * static_cast<double>(late_s.size() - 1)));
+  lateness.max_s = quantile(late_s.size() - 1);
   return lateness;
 }
 

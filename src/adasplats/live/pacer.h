@@ -26,15 +26,17 @@ class Pacer {
   using Clock = std::chrono::steady_clock;
 
   Pacer();
-  /// Drops what is left.
-  ~Pacer();
+  ~Pacer() { stop(); }
   Pacer(const Pacer&) = delete;
   Pacer& operator=(const Pacer&) = delete;
 
   /// A time that is over means at once. What it throws is dropped.
   void add(Clock::time_point due, std::function<void()> action);
-  /// Waits until all actions are done.
+  /// Waits until all actions are done, or until stop().
   void drain();
+  /// Drops what is left, for good, and ends the thread. Callable from any thread but that one, once
+  /// at a time.
+  void stop();
   Lateness lateness() const;
 
  private:
