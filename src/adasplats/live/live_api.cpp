@@ -3,7 +3,6 @@
 #include "adasplats/live/live_api.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,6 +22,7 @@ namespace {
 using ApiJson = nlohmann::ordered_json;
 
 constexpr int kBadRequest = 400, kNotFound = 404, kConflict = 409, kInternal = 500, kTooMany = 503;
+constexpr const char* kBusy = "too many requests are waiting";
 constexpr double kMaxSteps = 1e6;
 constexpr double kMaxTurn_rad_s = 10;  // more is a turn in degrees
 
@@ -56,12 +56,6 @@ void answer_with(const HttpAnswer& answer, const Call& call) {
 
 Error unknown_path(const std::string& path) {
   return {ErrorKind::no_input, "unknown path '" + path.substr(0, 60) + "'"};
-}
-
-ApiJson body_of(const HttpRequest& request) {
-  ApiJson json = ApiJson::parse(request.body, nullptr, false);
-  if (!json.is_object()) reject_message("the body is not a JSON object");
-  return json;
 }
 
 /// Rejects members that a request does not have, such as misspelt ones.
@@ -114,7 +108,7 @@ void LiveApi::handle(const HttpRequest& request, const HttpAnswer& answer) {
 template <class Call>
 void LiveApi::on_loop(const HttpAnswer& answer, Call call) {
   const bool waits = loop_.post([answer, call = std::move(call)] { answer_with(answer, call); });
-  if (!waits) answer(error_reply("too many requests are waiting", kTooMany));
+  if (!waits) answer(error_reply(kBusy, kTooMany));
 }
 
 void LiveApi::change(const HttpAnswer& answer, std::function<void()> change) {
@@ -133,7 +127,7 @@ void LiveApi::handle_read(const std::string& path, const HttpAnswer& answer) {
     return answer(reply_of(std::string(live_script()), "text/javascript; charset=utf-8"));
   if (path == "state") return on_loop(answer, [this] { return json_reply(state()); });
   if (folder == "images") return send_picture(rest, answer);
-  if (folder == "scans") return answer(scan(rest));
+  if (folder == "scans") return send_scan(rest, answer);
   if (folder == "calibration") return answer(calibration(rest));
   throw unknown_path(path);
 }
@@ -144,7 +138,7 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
   if (path.starts_with(kObjects)) {
     const std::uint64_t id = object_of(std::string_view(path).substr(kObjects.size()));
     if (request.method == "DELETE") return change(answer, [this, id] { rig_.remove(id); });
-    const ApiJson json = body_of(request);
+    const ApiJson json = parse_message(request.body);
     require_members(json, {"pose", "velocity_m_s", "yaw_rate_rad_s"});
     const UniformMotion motion = motion_of_body(json);
     return change(answer, [this, id, motion] { rig_.move(id, motion); });
@@ -152,7 +146,7 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
   if (request.method != "POST") throw unknown_path(path);
   if (path == "step") return post_step(request, answer);
   if (path == "run") {
-    const ApiJson json = body_of(request);
+    const ApiJson json = parse_message(request.body);
     require_members(json, {"on"});
     const bool on = message_bool(message_member(json, "on"), "on");
     return on_loop(answer, [this, on] {
@@ -165,7 +159,7 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
     });
   }
   if (path == "ego") {
-    const ApiJson json = body_of(request);
+    const ApiJson json = parse_message(request.body);
     require_members(json, {"pose", "velocity_m_s", "yaw_rate_rad_s", "drive"});
     if (json.contains("drive")) {
       if (!message_bool(json["drive"], "drive") || json.size() != 1)
@@ -175,7 +169,7 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
     return change(answer, [this, motion = motion_of_body(json)] { rig_.set_vehicle(motion); });
   }
   if (path == "objects") {
-    const ApiJson json = body_of(request);
+    const ApiJson json = parse_message(request.body);
     require_members(json, {"like", "pose", "velocity_m_s", "yaw_rate_rad_s"});
     const std::string like = message_text(message_member(json, "like"), "like");
     return on_loop(answer, [this, like, motion = motion_of_body(json)] {
@@ -186,11 +180,10 @@ void LiveApi::handle_write(const HttpRequest& request, const HttpAnswer& answer)
 }
 
 void LiveApi::post_step(const HttpRequest& request, const HttpAnswer& answer) {
-  const ApiJson json = body_of(request);
+  const ApiJson json = parse_message(request.body);
   require_members(json, {"count"});
   const double count =
-      json.contains("count") ? message_number(json["count"], "count", 1, kMaxSteps) : 1;
-  if (count != std::floor(count)) reject_message("count: expected a whole number");
+      json.contains("count") ? message_whole_number(json["count"], "count", 1, kMaxSteps) : 1;
   const auto begin = [this, answer, steps = static_cast<std::size_t>(count)] {
     try {
       loop_.make_steps(steps, [this, answer](const std::string& error) {
@@ -200,7 +193,7 @@ void LiveApi::post_step(const HttpRequest& request, const HttpAnswer& answer) {
       answer(error_reply(error.what(), kConflict));
     }
   };
-  if (!loop_.post(begin)) answer(error_reply("too many requests are waiting", kTooMany));
+  if (!loop_.post(begin)) answer(error_reply(kBusy, kTooMany));
 }
 
 void LiveApi::send_picture(const std::string& name, const HttpAnswer& answer) {
@@ -223,7 +216,7 @@ std::size_t LiveApi::sensor_of(const std::string& name) const {
   return static_cast<std::size_t>(found - sensors.begin());
 }
 
-HttpReply LiveApi::scan(const std::string& file) const {
+void LiveApi::send_scan(const std::string& file, const HttpAnswer& answer) {
   const std::size_t dot = std::min(file.rfind('.'), file.size());
   const std::string name = file.substr(0, dot),
                     ending = file.substr(std::min(dot + 1, file.size()));
@@ -232,11 +225,15 @@ HttpReply LiveApi::scan(const std::string& file) const {
   if (format == std::end(kSentFormats))
     throw Error(ErrorKind::no_input, "no scan '" + file.substr(0, 60) +
                                          "': expected NAME.npz, .pcd, .ply, .las or .laz");
-  const std::shared_ptr<const Scan> last = loop_.last_scan(sensor_of(name));
+  std::shared_ptr<const Scan> last = loop_.last_scan(sensor_of(name));
   if (last == nullptr)
     throw Error(ErrorKind::no_input, "sensor '" + name + "' has no scan yet; make a step");
-  std::vector<EncodedFile> files = encode_scan_files(format->second, name, *last);
-  return reply_of(std::move(files.front().bytes), "application/octet-stream");
+  const auto encode = [name, kind = format->second, scan = std::move(last)] {
+    std::vector<EncodedFile> files = encode_scan_files(kind, name, *scan);
+    return reply_of(std::move(files.front().bytes), "application/octet-stream");
+  };
+  if (!encoder_.post([answer, encode] { answer_with(answer, encode); }))
+    answer(error_reply(kBusy, kTooMany));
 }
 
 HttpReply LiveApi::calibration(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adasplats/jobs/session/session.h"
+#include "adasplats/live/answer_thread.h"
 #include "adasplats/live/live_loop.h"
 #include "adasplats/sensors/camera_file.h"
 #include "adasplats/serve/http_server.h"
@@ -19,8 +20,8 @@ class LiveApi {
   LiveApi(LiveRig& rig, LiveStreams& streams, LiveLoop& loop, std::vector<MountedCamera> cameras,
           Session& session);
 
-  /// Answers a request, if need be later from the simulating thread: with JSON, a scan, a picture
-  /// or the page; errors as {"error": "..."} with 400 (bad request), 404 (unknown), 500, 503 (too
+  /// Answers a request, if need be later from another thread: with JSON, a scan, a picture or the
+  /// page; errors as {"error": "..."} with 400 (bad request), 404 (unknown), 500, 503 (too
   /// many).
   void handle(const HttpRequest& request, const HttpAnswer& answer);
   /// What GET state answers. On the simulating thread, or after its end.
@@ -33,7 +34,7 @@ class LiveApi {
   void handle_write(const HttpRequest& request, const HttpAnswer& answer);
   void post_step(const HttpRequest& request, const HttpAnswer& answer);
   void send_picture(const std::string& name, const HttpAnswer& answer);
-  HttpReply scan(const std::string& file) const;
+  void send_scan(const std::string& file, const HttpAnswer& answer);
   HttpReply calibration(const std::string& name) const;
   std::size_t sensor_of(const std::string& name) const;
   /// Answers with brief_state(), after `change` on the simulating thread.
@@ -46,6 +47,7 @@ class LiveApi {
   LiveLoop& loop_;
   const std::vector<MountedCamera> cameras_;
   Session& session_;
+  AnswerThread encoder_;
 };
 
 }  // namespace adasplats

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "adasplats/core/error.h"
@@ -220,14 +221,27 @@ TEST(Pacer, CallsInOrderAndInTime) {
   EXPECT_GE(pacer.lateness().max_s, 1);
 }
 
+TEST(Pacer, StopEndsADrain) {
+  Pacer pacer;
+  bool called = false;
+  pacer.add(Pacer::Clock::now() + 1h, [&] { called = true; });
+  std::thread drain([&] { pacer.drain(); });
+  pacer.stop();
+  drain.join();
+  pacer.add(Pacer::Clock::now(), [&] { called = true; });
+  pacer.drain();
+  EXPECT_FALSE(called);
+}
+
 /// Keeps what a client is sent.
 class MessageClient final : public WebSocketPeer {
  public:
   void send_text(std::string text) override { texts.push_back(Json::parse(text)); }
   void send_binary(SharedBytes bytes) override { frames.push_back(*bytes); }
   std::size_t queued_bytes() const override { return queued; }
-  void close(std::uint16_t /*code*/, std::string_view /*reason*/) override {}
+  void close(std::uint16_t code, std::string_view /*reason*/) override { close_code = code; }
 
+  int close_code = 0;
   std::vector<Json> texts;
   std::vector<std::string> frames;
   std::size_t queued = 0;
@@ -265,12 +279,20 @@ TEST(MessageServer, SendsWhatClientsSubscribe) {
   for (const char* bad : {"", "[]", R"({"op":"fly"})", R"({"op":"subscribe"})",
                           R"({"op":"subscribe","subscriptions":3})",
                           R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})",
-                          R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":0}]})"}) {
+                          R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":0}]})",
+                          R"({"op":"subscribe","subscriptions":[{"id":1.5,"channelId":0}]})",
+                          R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1e999}]})"}) {
     const std::size_t before = client->texts.size();
     server.received(client, bad);
     ASSERT_EQ(client->texts.size(), before + 1) << bad;
     EXPECT_EQ(client->texts.back()["op"], "status") << bad;
   }
+  // Errors do not fill the queue of a client that does not read them.
+  client->queued = 2000;
+  const std::size_t before = client->texts.size();
+  server.received(client, "{}");
+  EXPECT_EQ(client->texts.size(), before);
+  EXPECT_EQ(client->close_code, 1008);
   server.closed(client);
   EXPECT_EQ(server.clients(), 0U);
 }
@@ -370,7 +392,9 @@ TEST(LiveApi, RejectsBadRequests) {
   for (const char* body :
        {"", "[]", "{", "nonsense", R"({"pose": 3})", R"({"pose": [1, 2, 3]})", R"({})",
         R"({"pose": [0, 0, NaN, 0, 0, 0, 1]})", R"({"pose": [0, 0, null, 0, 0, 0, 1]})",
-        R"({"pose": [0, 0, 1e300, 0, 0, 0, 1]})", R"({"pose": [0, 0, 0, 0, 0, 0, 2]})",
+        R"({"pose": [0, 0, 1e300, 0, 0, 0, 1]})", R"({"pose": [0, 0, 1e999, 0, 0, 0, 1]})",
+        R"({"pose": [0, 0, 0, 0, 0, 0, 2]})", R"({"pose": [0, 0, Infinity, 0, 0, 0, 1]})",
+        R"({"pose": [0, 0, 0, 0, 0, 0, 1], "velocity_m_s": [1e8, 0, 0]})",
         R"({"pose": [0, 0, 0, 0, 0, 0, 1], "velocity": [1, 0, 0]})",
         R"({"pose": [0, 0, 0, 0, 0, 0, 1], "yaw_rate_rad_s": 30})",
         R"({"like": "wall", "pose": [0, 0, 0, 1, 0, 0, 0]})", R"({"pose": [0, 0, 0, 1, 0, 0, 0]})",
@@ -392,6 +416,30 @@ TEST(LiveApi, RejectsBadRequests) {
     EXPECT_EQ(status("GET", path), 404) << path;
   setup.ask("POST", "run", R"({"on": true})");
   EXPECT_EQ(status("POST", "step", "{}"), 409);
+}
+
+TEST(LiveApi, ErrorsNameWhatIsWrong) {
+  LiveSetup setup;
+  const auto error = [&](const std::string& body) {
+    return setup.json("POST", "ego", body)["error"].get<std::string>();
+  };
+  EXPECT_EQ(error(R"({"pose": [0, 0, 1e999, 0, 0, 0, 1]})"),
+            "expected a JSON object; a number is too large");
+  EXPECT_EQ(error(R"({"pose": [NaN]})"), "expected a JSON object; it is not valid at byte 11");
+  EXPECT_EQ(error("[1]"), "expected a JSON object, found a list");
+  constexpr std::size_t kDeep = 30'000;
+  const std::string deep = std::string(kDeep, '[') + std::string(kDeep, ']');
+  EXPECT_TRUE(error(R"({"yaw_rate_rad_s": )" + deep + R"(, "pose": [0, 0, 0, 0, 0, 0, 1]})")
+                  .ends_with("found a list"));
+}
+
+TEST(LiveApi, ScansAreEncodedOnAnotherThread) {
+  LiveSetup setup;
+  setup.ask("POST", "step", "{}");
+  std::promise<std::thread::id> encoder;
+  setup.api.handle({"GET", "scans/lidar.npz", {}},
+                   [&](const HttpReply&) { encoder.set_value(std::this_thread::get_id()); });
+  EXPECT_NE(encoder.get_future().get(), std::this_thread::get_id());
 }
 
 TEST(LiveApi, AThousandRequestsGetAnAnswerEach) {

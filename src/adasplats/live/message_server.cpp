@@ -36,7 +36,7 @@ std::string status_text(const std::string& message) {
 
 std::uint32_t subscription_of(const FoxgloveJson& json, const std::string& name) {
   constexpr double kMax = 4294967295.0;
-  return static_cast<std::uint32_t>(message_number(json, name, 0, kMax));
+  return static_cast<std::uint32_t>(message_whole_number(json, name, 0, kMax));
 }
 
 const FoxgloveJson& list_of(const FoxgloveJson& json, const std::string& name) {
@@ -125,8 +125,7 @@ void MessageServer::opened(const std::shared_ptr<WebSocketPeer>& peer) {
 
 void MessageServer::received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) {
   try {
-    const FoxgloveJson json = FoxgloveJson::parse(text, nullptr, false);
-    if (!json.is_object()) reject_message("expected a JSON object");
+    const FoxgloveJson json = parse_message(text);
     const std::string operation = message_text(message_member(json, "op"), "op");
     const std::lock_guard lock(mutex_);
     const auto client = std::ranges::find(clients_, peer, &Client::peer);
@@ -150,6 +149,9 @@ void MessageServer::received(const std::shared_ptr<WebSocketPeer>& peer, std::st
       reject_message("unsupported op '" + operation.substr(0, 60) + "'");
     }
   } catch (const Error& error) {
+    constexpr std::uint16_t kPolicyViolation = 1008;  // RFC 6455, 7.4.1
+    if (peer->queued_bytes() > queue_bytes_)
+      return peer->close(kPolicyViolation, "client too slow");
     peer->send_text(status_text(error.what()));
   }
 }

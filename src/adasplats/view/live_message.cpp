@@ -32,7 +32,7 @@ double number_of(const Json& json, const Setting& setting) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (is_in_range(setting, value)) return value;
   reject_message(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
-                 json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
+                 message_excerpt(json));
 }
 
 /// Sets the setting of a key from JSON and appends the option of `simulate` for it.
@@ -158,7 +158,8 @@ LivePose parse_pose(const Json& json, Vec3d origin) {
 
 ObjectMessage parse_object(const Json& json, Vec3d origin) {
   ObjectMessage object;
-  object.id = static_cast<std::size_t>(message_number(message_member(json, "id"), "id", 0, 1e9));
+  object.id =
+      static_cast<std::size_t>(message_whole_number(message_member(json, "id"), "id", 0, 1e9));
   const Json& pose = message_member(json, "pose");
   if (!pose.is_null()) object.world_from_object = moved_by(message_transform(pose, "pose"), origin);
   return object;
@@ -166,7 +167,8 @@ ObjectMessage parse_object(const Json& json, Vec3d origin) {
 
 PickMessage parse_pick(const Json& json, Vec3d origin) {
   PickMessage pick;
-  pick.id = static_cast<std::int64_t>(message_number(message_member(json, "id"), "id", 0, 1e15));
+  pick.id =
+      static_cast<std::int64_t>(message_whole_number(message_member(json, "id"), "id", 0, 1e15));
   pick.origin = message_vector(message_member(json, "origin"), "origin") + origin;
   pick.direction = message_vector(message_member(json, "direction"), "direction");
   if (!(length(pick.direction) > 0)) reject_message("direction: expected a non-zero vector");
@@ -218,8 +220,7 @@ ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor) {
 }
 
 LiveMessage parse_live_message(std::string_view text, Vec3d origin) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw Error(ErrorKind::data, "expected a JSON object");
+  const Json json = parse_message(text);
   const std::string type = message_text(message_member(json, "type"), "type");
   if (type == "pose") return parse_pose(json, origin);
   if (type == "ready") return ReadyMessage();

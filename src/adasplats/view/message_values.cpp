@@ -27,6 +27,29 @@ std::array<double, N> message_array(const MessageJson& json, const std::string& 
 
 void reject_message(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
+MessageJson parse_message(std::string_view text) {
+  MessageJson json;
+  try {
+    json = MessageJson::parse(text);
+  } catch (const MessageJson::out_of_range&) {
+    throw Error(ErrorKind::data, "expected a JSON object; a number is too large");
+  } catch (const MessageJson::parse_error& error) {
+    throw Error(ErrorKind::data,
+                "expected a JSON object; it is not valid at byte " + std::to_string(error.byte));
+  }
+  if (!json.is_object())
+    throw Error(ErrorKind::data,
+                std::string("expected a JSON object, found ") + message_excerpt(json));
+  return json;
+}
+
+std::string message_excerpt(const MessageJson& json) {
+  // Not dumped, because that needs a stack as deep as the value.
+  if (json.is_array()) return "a list";
+  if (json.is_object()) return "an object";
+  return json.dump(-1, ' ', true, MessageJson::error_handler_t::replace).substr(0, 60);
+}
+
 const MessageJson& message_member(const MessageJson& json, const std::string& name) {
   const auto found = json.find(name);
   if (found == json.end()) reject_message("'" + name + "' is missing");
@@ -37,8 +60,14 @@ double message_number(const MessageJson& json, const std::string& name, double m
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (value >= min && value <= max) return value;
   reject_message(name + ": expected a number from " + MessageJson(min).dump() + " to " +
-                 MessageJson(max).dump() + ", found " +
-                 json.dump(-1, ' ', true, MessageJson::error_handler_t::replace).substr(0, 60));
+                 MessageJson(max).dump() + ", found " + message_excerpt(json));
+}
+
+double message_whole_number(const MessageJson& json, const std::string& name, double min,
+                            double max) {
+  const double value = message_number(json, name, min, max);
+  if (value != std::floor(value)) reject_message(name + ": expected a whole number");
+  return value;
 }
 
 bool message_bool(const MessageJson& json, const std::string& name) {

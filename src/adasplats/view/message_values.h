@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "adasplats/core/maths/rigid_transform.h"
 
@@ -19,12 +20,19 @@ inline constexpr double kMaxMessageDistance_m = 1e7;
 inline constexpr double kMaxMessageTime_s = 1e11;
 
 [[noreturn]] void reject_message(const std::string& message);
+/// Errors: data (not a JSON object, or a number beyond double precision), instead of usage.
+nlohmann::ordered_json parse_message(std::string_view text);
+/// A value for an error, short.
+std::string message_excerpt(const nlohmann::ordered_json& json);
 /// The member of an object.
 const nlohmann::ordered_json& message_member(const nlohmann::ordered_json& json,
                                              const std::string& name);
 /// From `min` to `max`.
 double message_number(const nlohmann::ordered_json& json, const std::string& name, double min,
                       double max);
+/// The same without fractions.
+double message_whole_number(const nlohmann::ordered_json& json, const std::string& name, double min,
+                            double max);
 bool message_bool(const nlohmann::ordered_json& json, const std::string& name);
 std::string message_text(const nlohmann::ordered_json& json, const std::string& name);
 /// Three numbers.
