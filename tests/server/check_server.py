@@ -58,11 +58,13 @@ class Server:
     ALLOCATOR = {"MALLOC_ARENA_MAX": "1", "MALLOC_MMAP_THRESHOLD_": "65536",
                  "MALLOC_TRIM_THRESHOLD_": "65536"}
 
-    def __init__(self, folder, *options):
+    WORDS = ["view", "place.ply", "--no-browser", "--sensor", "hdl-64-paper"]
+    MESSAGE_LIMIT = 16 << 10
+
+    def __init__(self, folder):
         self.process = subprocess.Popen(
-            [PROGRAM, "view", "place.ply", "--port", "0", "--no-browser", "--sensor",
-             "hdl-64-paper", *options], cwd=folder, env=os.environ | self.ALLOCATOR, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            encoding="utf-8")
+            [PROGRAM, *self.WORDS, "--port", "0"], cwd=folder, env=os.environ | self.ALLOCATOR,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8")
         line = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)(/(\w+)/)", line)
         if not found:
@@ -170,6 +172,7 @@ class ServerTest(unittest.TestCase):
             self.assertLess(sent, 1000)
 
     def malformed_frames(self):
+        limit = self.server.MESSAGE_LIMIT
         for data, code in [
                 (frame(TEXT, b"{}", masked=False), 1002),
                 (frame(TEXT, b"{}", reserved=4), 1002),
@@ -183,8 +186,8 @@ class ServerTest(unittest.TestCase):
                 (frame(TEXT, b"{", last=False) + frame(TEXT, b"}"), 1002),
                 (frame(BINARY, b"{}"), 1003),
                 (frame(TEXT, b"\xff\xfe"), 1007),
-                (frame(TEXT, b"{" + b" " * 16384), 1009),
-                (frame(TEXT, b"{" * 10_000, last=False) + frame(0, b"{" * 10_000), 1009),
+                (frame(TEXT, b"{" + b" " * limit), 1009),
+                (frame(TEXT, b"{" * (limit - 1), last=False) + frame(0, b"{{"), 1009),
                 (frame(TEXT, b"{}", size=1 << 40), 1009),
                 (frame(TEXT, b"{}", size=(1 << 63) - 1), 1009),
                 (frame(TEXT, b"{}", size=1 << 63), None),
@@ -397,14 +400,6 @@ class Live(ServerTest):
     def test_twenty_clients(self):
         self.crowd(scans=3)
         self.assert_alive()
-
-    def test_rate(self):
-        results = []
-        self.drive(3, results)
-        begin = time.monotonic()
-        self.drive(40, results)
-        rate = 40 / (time.monotonic() - begin)
-        print(f"one client: {rate:.1f} scans/s of up to {max(results[1]):,} points")
 
     def test_more_connections_than_it_takes(self):
         crowd = [self.server.client() for _ in range(200)]

@@ -281,6 +281,8 @@ TEST(MessageServer, SendsWhatClientsSubscribe) {
                           R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})",
                           R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":0}]})",
                           R"({"op":"subscribe","subscriptions":[{"id":1.5,"channelId":0}]})",
+                          R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})",
+                          R"({"op":"subscribe","subscriptions":[{"id":10,"channelId":0}]})",
                           R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1e999}]})"}) {
     const std::size_t before = client->texts.size();
     server.received(client, bad);

@@ -19,7 +19,6 @@ using FoxgloveJson = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "frames are written little-endian");
 
 constexpr char kMessageData = 1, kTime = 2;  // operations of binary frames
-constexpr std::size_t kMaxSubscriptions = 1000;
 
 template <class T>
 void append_value(std::string& bytes, T value) {
@@ -132,12 +131,15 @@ void MessageServer::received(const std::shared_ptr<WebSocketPeer>& peer, std::st
     if (client == clients_.end()) return;
     if (operation == "subscribe") {
       for (const FoxgloveJson& one : list_of(json, "subscriptions")) {
-        if (client->channel_of.size() >= kMaxSubscriptions)
-          reject_message("more than " + std::to_string(kMaxSubscriptions) + " subscriptions");
         const std::uint32_t id = subscription_of(message_member(one, "id"), "id");
         const std::uint32_t channel =
             subscription_of(message_member(one, "channelId"), "channelId");
         if (channel >= channels_.size()) reject_message("no channel " + std::to_string(channel));
+        // Once, because each subscription gets a copy of every message.
+        for (const auto& [other, subscribed] : client->channel_of)
+          if (other == id || subscribed == channel)
+            reject_message("subscription " + std::to_string(other) + " to channel " +
+                           std::to_string(subscribed) + " exists already");
         client->channel_of[id] = channel;
         if (const auto last = latched_.find(channel); last != latched_.end())
           send(*client, id, last->second.time_ns, last->second.bytes);
