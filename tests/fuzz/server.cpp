@@ -80,7 +80,7 @@ class ServedConnection {
   ServedConnection() : core_(make_core(handler_)) {
     boost::asio::ip::tcp::socket socket(core_->context);
     socket.assign(boost::asio::ip::tcp::v4(), pair_.served);
-    start_http(std::move(socket), core_, false);
+    start_http(std::move(socket), core_);
   }
 
   /// Sends bytes, and lets the server do what it can without more.
