@@ -99,13 +99,6 @@ struct Program {
     for (const auto& command : commands) command->mark_required();
   }
 
-  RenamedOptions renamed() const {
-    RenamedOptions renamed;
-    for (const auto& command : commands)
-      renamed.insert(command->options().renamed().begin(), command->options().renamed().end());
-    return renamed;
-  }
-
   /// A subcommand that only has subcommands.
   CLI::App& group(const std::string& name, const std::string& description,
                   const std::string& examples) {
@@ -117,17 +110,9 @@ struct Program {
   }
 };
 
-/// The arguments with deprecated options replaced by the new ones, last one first as the parser
-/// wants them.
-std::vector<std::string> reversed_arguments(int argc, char** argv, const RenamedOptions& renamed) {
+/// The arguments, last one first as the parser wants them.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  for (std::string& argument : arguments) {
-    if (argument == "--") break;
-    if (!argument.starts_with("--")) continue;
-    const std::size_t end = std::min(argument.find('='), argument.size());
-    const std::string name = current_name(argument.substr(2, end - 2), renamed, "--");
-    argument.replace(2, end - 2, name);
-  }
   std::ranges::reverse(arguments);
   return arguments;
 }
@@ -180,8 +165,7 @@ Command& find_command(Program& program, CLI::App& chosen) {
 
 void run_command(Program& program, Command& command) {
   const CommonOptions& common = command.common();
-  if (!common.config.empty())
-    apply_config(common.config, program.app, command.options().parser(), program.renamed());
+  if (!common.config.empty()) apply_config(common.config, program.app, command.options().parser());
   command.check_required();
   command.check_outputs();
   if (!common.report.empty()) check_output_file(common.report);
@@ -200,7 +184,7 @@ int run(int argc, char** argv) {
   install_signal_handlers();
   Program program;
   try {
-    program.app.parse(reversed_arguments(argc, argv, program.renamed()));
+    program.app.parse(reversed_arguments(argc, argv));
   } catch (const CLI::CallForHelp&) {
     program.mark_required();
     print(help_text(command_entry(chosen_app(program.app)), HelpLength::short_help));

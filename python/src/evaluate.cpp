@@ -336,7 +336,6 @@ rarer classes do not count in 'miou_present'. Raises TypeError, ValueError, OSEr
   void take(Keywords& keywords) {
     take_scan_range(keywords, job.scans);
     keywords.take("labels", job.labels);
-    keywords.accept_old_name("least_share", "min_share");
     keywords.take("min_share", job.options.min_share);
     work.take(keywords);
   }

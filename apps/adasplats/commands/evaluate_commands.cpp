@@ -485,7 +485,6 @@ class EvaluateSegmentationCommand final : public ResultCommand {
     app.add_option("--min-share", job_.options.min_share,
                    "Minimum share of the true points of a class that counts in the mean")
         ->capture_default_str();
-    app.add_old_name("least-share", "min-share");
   }
 
  private:

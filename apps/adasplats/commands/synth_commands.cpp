@@ -56,7 +56,6 @@ class SynthStreetCommand final : public Command {
     app.add_option("--max-driving-scans", job_.scan.max_driving_scans,
                    "Maximum number of scans of the driving sequence")
         ->capture_default_str();
-    app.add_old_name("most-driving-scans", "max-driving-scans");
   }
 
   void run(Session& session) override {

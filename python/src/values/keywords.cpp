@@ -51,16 +51,6 @@ std::optional<py::object> Keywords::find(const char* name, const py::object& def
   return py::object((*given_)[name]);
 }
 
-void Keywords::accept_old_name(const char* old_name, const char* name) {
-  if (!given_ || !given_->contains(old_name)) return;
-  const std::string warning =
-      function_ + "(): " + old_name + " is deprecated; use " + std::string(name);
-  if (PyErr_WarnEx(PyExc_DeprecationWarning, warning.c_str(), 1) != 0)
-    throw py::error_already_set();
-  (*given_)[name] = py::object((*given_)[old_name]);
-  PyDict_DelItemString(given_->ptr(), old_name);
-}
-
 void Keywords::wrong_type(const char* name, const char* expected, py::handle got) const {
   throw py::type_error(function_ + "(): " + name + " must be " + expected + ", not " +
                        type_name(got));

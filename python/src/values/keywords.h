@@ -73,9 +73,6 @@ class Keywords {
     value = words[take_word(name, chosen, known)].second;
   }
 
-  /// Accepts a deprecated name as `name`, with a DeprecationWarning; before `name` is taken.
-  void accept_old_name(const char* old_name, const char* name);
-
   /// To be called when everything was taken. Errors: TypeError.
   void finish() const;
 
@@ -101,7 +98,6 @@ template <class Settings>
 void take_settings(Keywords& keywords, Settings& settings,
                    const char* Setting::*word = &Setting::name) {
   visit_settings(settings, [&keywords, word]<class T>(const Setting& setting, T& value) {
-    if (*setting.old_name != 0) keywords.accept_old_name(setting.old_name, setting.*word);
     if constexpr (std::is_enum_v<T>) {
       keywords.take<T>(setting.*word, value, words_of(value));
     } else {

@@ -39,7 +39,6 @@ struct Setting {
   double max = std::numeric_limits<double>::max();
   bool exclusive_min = false;  ///< the minimum itself is out of range
   bool basic = false;          ///< in the short help, too
-  const char* old_name = "";   ///< deprecated name and key, accepted for one release
 };
 
 /// "--sub-rays".

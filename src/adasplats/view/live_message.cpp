@@ -45,7 +45,7 @@ class SettingFromJson {
 
   template <class T>
   void operator()(const Setting& setting, T& value) {
-    if (key_ != setting.key && key_ != setting.old_name) return;
+    if (key_ != setting.key) return;
     found_ = true;
     if constexpr (std::is_enum_v<T>) {
       set_word(setting, value);

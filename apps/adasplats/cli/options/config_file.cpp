@@ -25,7 +25,6 @@ struct Source {
   const std::filesystem::path& file;
   CLI::App& program;
   CLI::App& chosen;
-  const RenamedOptions& renamed;
   std::map<const CLI::Option*, std::string> given;  ///< options set so far, and their keys
 };
 
@@ -151,13 +150,12 @@ void apply_subtable(Source& source, const std::string& key, const toml::table& t
 void apply_table(Source& source, const toml::table& table, CLI::App& app) {
   CLI::App& target = &app == &source.program ? source.chosen : app;
   for (const auto& [key_node, node] : table) {
-    std::string key(key_node.str());
+    const std::string key(key_node.str());
     const toml::source_index line = key_node.source().begin.line;
     if (const toml::table* subtable = node.as_table()) {
       apply_subtable(source, key, *subtable, line, app);
       continue;
     }
-    key = current_name(key, source.renamed, "");
     CLI::Option* option = find_setting(target, key);
     if (option == nullptr) {
       throw config_error(source.file, line, unknown_word("key", key, names_of(target)));
@@ -168,9 +166,8 @@ void apply_table(Source& source, const toml::table& table, CLI::App& app) {
 
 }  // namespace
 
-void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen,
-                  const RenamedOptions& renamed) {
-  Source source{file, program, chosen, renamed, {}};
+void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen) {
+  Source source{file, program, chosen, {}};
   const toml::table table = parse(file);
   apply_table(source, table, program);
 }

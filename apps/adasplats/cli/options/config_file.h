@@ -5,16 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "cli/options/option_set.h"
-
 namespace adasplats::app {
 
 /// Sets options of the subcommand `chosen` that the command line did not set from a TOML file.
-/// Keys are long option names without dashes, current or `renamed` ones, at the top of the file or
-/// in a table named after the subcommand ([model], [evaluate.c2c]). Tables of other subcommands are
-/// checked and ignored. Errors: no_input, config with file and line (syntax, unknown key with the
-/// nearest known one, duplicate key, a value that the option rejects).
-void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen,
-                  const RenamedOptions& renamed);
+/// Keys are long option names without dashes, at the top of the file or in a table named after the
+/// subcommand ([model], [evaluate.c2c]). Tables of other subcommands are checked and ignored.
+/// Errors: no_input, config with file and line (syntax, unknown key with the nearest known one,
+/// duplicate key, a value that the option rejects).
+void apply_config(const std::filesystem::path& file, CLI::App& program, CLI::App& chosen);
 
 }  // namespace adasplats::app

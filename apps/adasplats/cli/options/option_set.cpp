@@ -9,8 +9,6 @@
 #include <optional>
 #include <vector>
 
-#include "cli/terminal.h"
-
 namespace adasplats::app {
 
 Option* Option::type_name(const std::string& name) {
@@ -68,14 +66,6 @@ Option* Option::repeatable() {
   return this;
 }
 
-std::string current_name(const std::string& name, const RenamedOptions& renamed,
-                         const std::string& dashes) {
-  const auto found = renamed.find(name);
-  if (found == renamed.end()) return name;
-  print_message("warning: " + dashes + name + " is deprecated; use " + dashes + found->second);
-  return found->second;
-}
-
 Option* OptionSet::added(CLI::Option* option) {
   if (!heading_.empty()) option->group(heading_);
   return &options_.emplace_back(*option);
@@ -104,10 +94,6 @@ Option* OptionSet::add_version_flag(const std::string& names, const std::string&
 
 OptionSet& OptionSet::add_group(const std::string& name, const std::string& description) {
   return groups_.emplace_back(*app_, name + ", " + description);
-}
-
-void OptionSet::add_old_name(const std::string& old_name, const std::string& new_name) {
-  renamed_[old_name] = new_name;
 }
 
 bool OptionSet::is_given(const std::string& name) const {

@@ -4,7 +4,6 @@
 
 #include <deque>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,14 +51,6 @@ class Option {
 /// Whether the short help shows an option.
 bool is_basic(const CLI::Option& option);
 
-/// Deprecated names of options and the new ones, both without dashes.
-using RenamedOptions = std::map<std::string, std::string>;
-
-/// The current name of an option; warns if `name` is a deprecated one. `dashes`: how both names are
-/// written, "--" or "".
-std::string current_name(const std::string& name, const RenamedOptions& renamed,
-                         const std::string& dashes);
-
 /// The options of one subcommand, or those under one heading of its help.
 class OptionSet {
  public:
@@ -83,15 +74,12 @@ class OptionSet {
                            const std::string& help);
   /// Options under a heading of their own: "NAME, DESCRIPTION".
   OptionSet& add_group(const std::string& name, const std::string& description);
-  /// Accepts a deprecated name of an option for one more release; names without dashes.
-  void add_old_name(const std::string& old_name, const std::string& new_name);
 
   /// Whether the user has given an option, on the command line or in a configuration.
   bool is_given(const std::string& name) const;
   /// The first option of a group that is given; empty: none.
   std::string first_given(const std::string& group) const;
 
-  const RenamedOptions& renamed() const { return renamed_; }
   CLI::App& parser() const { return *app_; }
 
  private:
@@ -99,7 +87,6 @@ class OptionSet {
 
   CLI::App* app_;
   std::string heading_;
-  RenamedOptions renamed_;
   std::deque<Option> options_;
   std::deque<OptionSet> groups_;
 };

@@ -11,11 +11,6 @@ void OptionsOfSettings::finish(const Setting& setting, Option* option) const {
   if (*setting.group != 0) option->group(setting.group);
   if (*setting.value != 0) option->type_name(setting.value);
   if (setting.basic) option->basic();
-  if (*setting.old_name == 0) return;
-  const std::string old_name = option_of({.name = setting.old_name, .help = ""}).substr(2);
-  const std::string new_name = option_of(setting).substr(2);
-  app_.add_old_name(old_name, new_name);
-  if (option->is_flag()) app_.add_old_name("no-" + old_name, "no-" + new_name);
 }
 
 template <class T>

@@ -146,8 +146,7 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                         "manufacturer's file (default: Ouster metadata in the bag, metadata.json "
                         "or calibration*.yaml next to the file)",
                 .value = "SENSOR",
-                .group = group,
-                .old_name = "packets_of"},
+                .group = group},
         drive.packets_of);
 }
 

@@ -23,9 +23,9 @@ using Json = nlohmann::ordered_json;
 
 /// What may differ between the job that made a city and one that adds to it: what is read, and how
 /// it is corrected.
-constexpr const char* kOfInputs[] = {"inputs",      "input_bytes", "load",   "scans",
-                                     "keep_points", "add_to",      "labels", "network",
-                                     "max_shift_m", "most_shift_m"};
+constexpr const char* kOfInputs[] = {"inputs", "input_bytes", "load",
+                                     "scans",  "keep_points", "add_to",
+                                     "labels", "network",     "max_shift_m"};
 
 Json settings_of(const CityJob& job) {
   Json settings = content_of(job);

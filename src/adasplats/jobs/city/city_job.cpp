@@ -24,8 +24,7 @@ struct PutLoadSetting {
 
   template <class T>
   void operator()(const Setting& setting, const T& value) const {
-    // By its old name, if it has one: a city that was begun earlier can be finished.
-    json[*setting.old_name != 0 ? setting.old_name : setting.name] = json_of_value(value);
+    json[setting.name] = json_of_value(value);
   }
 
   static Json json_of_value(const fs::path& value) { return value.string(); }

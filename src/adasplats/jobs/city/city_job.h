@@ -72,8 +72,7 @@ void visit_settings(AdditionChoice& choice, Visit&& visit) {
                 .key = "max_shift_m",
                 .group = "Cities",
                 .min = 0,
-                .max = 1'000,
-                .old_name = "most_shift"},
+                .max = 1'000},
         choice.max_shift_m);
 }
 

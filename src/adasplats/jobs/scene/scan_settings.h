@@ -59,8 +59,7 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
   visit(Setting{.name = "sensor_offsets",
                 .help = "Apply the calibrated range offsets of the sensor's rings (range_offsets_m "
                         "of its file)",
-                .group = kGroup,
-                .old_name = "unit_offsets"},
+                .group = kGroup},
         scan.sensor_offsets);
   visit_settings(scan.overrides, visit);
   visit_settings(scan.beam, visit);
