@@ -25,4 +25,5 @@ install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindZSTD.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+              ${PROJECT_SOURCE_DIR}/packaging/copyright
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)

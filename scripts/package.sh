@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Packages the checked-out commit into dist/: a .deb of the program, a wheel of the Python package with
-# the libraries it needs, and a source archive.
+# the libraries it needs, a source archive, the components with their licences (SPDX), and SHA256SUMS.
 # usage: scripts/package.sh [deb] [wheel] [sdist] [--cuda] [--test]     (default: all three)
 #   --cuda   support NVIDIA GPUs; needs nvcc. The packages also run without a driver
 #   --test   install each package into a minimal system (debootstrap; needs root) and run it there
@@ -48,9 +48,13 @@ export SOURCE_DATE_EPOCH
 umask 022
 mkdir -p "$dist"
 
+# no_build_path FILE: fails if a program contains this folder, since its bytes would depend on it.
+no_build_path() { ! grep -qF "$root/" "$1" || fail "$1 contains the path $root"; }
+
 make_deb() {
   cmake --preset package -DADASPLATS_USE_CUDA=$cuda
   cmake --build build/package --target adasplats_program
+  no_build_path build/package/bin/adasplats
   rm -f "$dist"/adasplats_*.deb
   cpack --config build/package/CPackConfig.cmake -B build/package/packed
   mv build/package/packed/adasplats_*.deb "$dist/"
@@ -67,6 +71,18 @@ make_wheel() {
 make_sdist() {
   rm -f "$dist"/adasplats-*.tar.gz
   "$python" packaging/make_sdist.py "$dist"
+}
+
+# The components of the packages that were made, in SPDX.
+make_sbom() {
+  local version system
+  local -a cuda_version=()
+  version=$(sed -n 's/^project(adasplats VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+  system=$(sed -n 's/^ID=//p' /etc/os-release)$(sed -n 's/^VERSION_ID=//p' /etc/os-release)
+  [[ $cuda == OFF ]] || cuda_version=(--cuda "$(nvcc --version | sed -n 's/.*release \([0-9.]*\).*/\1/p')")
+  rm -f "$dist"/adasplats-*.spdx.json
+  "$python" packaging/sbom.py "${cuda_version[@]}" "$@" >build/sbom.json
+  mv build/sbom.json "$dist/adasplats-$version-${system//\"/}.spdx.json"
 }
 
 # The code name of this system's release.
@@ -155,6 +171,7 @@ test_package() {
   esac
 }
 
+made=()
 for kind in "${kinds[@]}"; do
   begin=$SECONDS
   "make_$kind"
@@ -164,6 +181,8 @@ for kind in "${kinds[@]}"; do
     sdist) file=$(echo "$dist"/adasplats-*.tar.gz) ;;
   esac
   say "$kind: ${file#"$root/"}, $(size_of "$file") bytes, made in $((SECONDS - begin)) s"
+  [[ $kind == sdist ]] || made+=("$file")
   if $test; then test_package "$kind" "$file"; fi
 done
+((${#made[@]} == 0)) || make_sbom "${made[@]}"
 (cd "$dist" && sha256sum -- adasplats* | tee SHA256SUMS)

@@ -66,6 +66,8 @@ maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  reference distances in tests
 maybe-test patchelf        patchelf      wheels with bundled libraries (scripts/package.sh)
+maybe-test dpkg-dev        dpkg-shlibdeps .deb packages (scripts/package.sh)
+maybe-test file            file          .deb packages (scripts/package.sh)
 maybe-test zsh             zsh           shell completion
 maybe-test fish            fish          shell completion
 maybe-test groff-base      groff         the program's manual pages
