@@ -19,10 +19,12 @@ import sys
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-COMPILED_IN = ("fonts-dejavu-core", "libboost-dev", "libcli11-dev", "libstb-dev", "nlohmann-json3-dev")
+COMPILED_IN = ("fonts-dejavu-core", "libboost-dev", "libcli11-dev", "libstb-dev", "nlohmann-json3-dev",
+               "pybind11-dev")
 # The npm packages that make the page but are not in it.
 PAGE_TOOLS = ("esbuild",)
 # Licences of the libraries themselves, by the beginnings of their packages' names in Debian and Ubuntu.
+# Releases of liblzma before 5.6 are in the public domain.
 LICENCES = {
     "fonts-dejavu": "Bitstream-Vera", "libblosc": "BSD-3-Clause", "libboost": "BSL-1.0",
     "libbz2": "bzip2-1.0.6", "libc6": "LGPL-2.1-or-later", "libcli11": "BSD-3-Clause",
@@ -31,11 +33,11 @@ LICENCES = {
     "libjemalloc": "BSD-2-Clause", "liblog4cplus": "Apache-2.0 OR BSD-2-Clause",
     "liblz4": "BSD-2-Clause", "liblzma": "0BSD", "libopenblas": "BSD-3-Clause",
     "libopenvdb": "MPL-2.0", "libpng": "libpng-2.0", "libpugixml": "MIT",
-    "libquadmath": "LGPL-2.1-or-later", "libsharpyuv": "BSD-3-Clause", "libsnappy": "BSD-3-Clause",
+    "libquadmath": "LGPL-2.0-or-later", "libsharpyuv": "BSD-3-Clause", "libsnappy": "BSD-3-Clause",
     "libsqlite3": "blessing", "libssl": "Apache-2.0", "libstb": "MIT OR Unlicense",
     "libstdc++6": "GPL-3.0-or-later WITH GCC-exception-3.1", "libtbb": "Apache-2.0",
     "libtomlplusplus": "MIT", "libwebp": "BSD-3-Clause", "libzstd": "BSD-3-Clause OR GPL-2.0-only",
-    "nlohmann-json": "MIT", "zlib1g": "Zlib"}
+    "nlohmann-json": "MIT", "pybind11": "BSD-3-Clause", "zlib1g": "Zlib"}
 
 
 def output_of(*command):
