@@ -146,7 +146,7 @@ build_example() {
   cmake --install build/release --prefix build/install >/dev/null
   local file
   for file in man/man1/adasplats.1 man/man1/adasplats-evaluate-c2c.1 doc/adasplats/LICENSE \
-    doc/adasplats/CHANGELOG.md bash-completion/completions/adasplats \
+    doc/adasplats/CHANGELOG.md doc/adasplats/copyright bash-completion/completions/adasplats \
     zsh/site-functions/_adasplats fish/vendor_completions.d/adasplats.fish; do
     [[ -s build/install/share/$file ]]
   done

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/list_folder.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -52,10 +53,7 @@ std::string bytes_of(const std::vector<T>& values) {
 
 /// Rejects scans of an earlier, longer run, which would have no pose.
 void refuse_other_scans(const std::filesystem::path& folder, std::size_t scans) {
-  std::error_code problem;
-  std::filesystem::directory_iterator entry(folder, problem);
-  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
-    const std::filesystem::path& path = entry->path();
+  for (const std::filesystem::path& path : list_folder(folder)) {
     const std::string name = path.stem().string();
     if (path.extension() != ".bin") continue;
     const bool ours = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos &&
@@ -65,7 +63,6 @@ void refuse_other_scans(const std::filesystem::path& folder, std::size_t scans) 
                   path.string() + ": belongs to another run; this one wrote " +
                       std::to_string(scans) + " scans; remove it or use another folder");
   }
-  if (problem) throw system_error(ErrorKind::io, folder, "cannot be listed", problem.value());
 }
 
 bool ascends(const Trajectory& trajectory) {

@@ -85,6 +85,16 @@ TEST(MeshModel, ClassesOutOfRange) {
                  [&] { load_mesh(folder.write("m.ply", ply_with_class("double class", value))); });
 }
 
+TEST(MeshModel, FilesOfOtherFormatsAreErrors) {
+  const TemporaryFolder folder;
+  std::string text = ply_with_class("int class", "1");
+  text.insert(text.find("element"), "comment adasplats.mesh 1\n");
+  EXPECT_EQ(load_mesh(folder.write("m.ply", text)).mesh.classes.size(), 1u);
+  text.replace(text.find("mesh 1"), 6, "mesh 2");
+  expect_error(ErrorKind::data, {"m.ply", "format version 2", "reads version 1"},
+               [&] { load_mesh(folder.write("m.ply", text)); });
+}
+
 TEST(MeshModel, VerticesThatAreNotFinite) {
   const TemporaryFolder folder;
   std::string text = ply_with_class("int class", "1");
