@@ -644,7 +644,7 @@ class Sensor:
     def range_resolution_m(self) -> float:
         """Ranges are multiples of this, m; 0: continuous."""
     @property
-    def most_returns(self) -> int:
+    def max_returns(self) -> int:
         """Maximum number of returns per firing."""
     @property
     def rings(self) -> int:
@@ -688,7 +688,7 @@ class Sensor:
         divergence_horizontal_rad: float | None = None,
         divergence_vertical_rad: float | None = None,
         divergence_kind: DivergenceKind | None = None,
-        most_returns: int = 1,
+        max_returns: int = 1,
     ) -> Sensor: ...
     @staticmethod
     def from_rays(
@@ -708,7 +708,7 @@ class Sensor:
         divergence_horizontal_rad: float | None = None,
         divergence_vertical_rad: float | None = None,
         divergence_kind: DivergenceKind | None = None,
-        most_returns: int = 1,
+        max_returns: int = 1,
     ) -> Sensor: ...
     def replaced(self, **changes: object) -> Sensor: ...
     def firings(self, scan_index: int = 0) -> Firings: ...

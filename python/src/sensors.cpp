@@ -65,7 +65,7 @@ void fields(Archive& archive, LidarModel& model) {
   archive("range_resolution_m", model.range_resolution_m);
   archive("divergence_rad", model.divergence_rad);
   archive("divergence_kind", model.divergence_kind);
-  archive("most_returns", model.max_returns);
+  archive("max_returns", model.max_returns);
   archive("clockwise", model.clockwise);
   archive("free_pattern", model.free_pattern);
   archive("rosette", model.rosette);
@@ -136,7 +136,7 @@ void take_common(Keywords& keywords, LidarModel& model) {
   keywords.take("angular_noise_rad", model.angular_noise_rad);
   keywords.take("range_resolution_m", model.range_resolution_m);
   take_divergence(keywords, model);
-  keywords.take("most_returns", model.max_returns);
+  keywords.take("max_returns", model.max_returns);
 }
 
 void require(bool holds, const char* message) {
@@ -322,7 +322,7 @@ void add_attributes(SensorClass& type) {
                     "Standard deviation of angles, rad.")
       .def_readonly("range_resolution_m", &LidarModel::range_resolution_m,
                     "Ranges are multiples of this, m; 0: continuous.")
-      .def_readonly("most_returns", &LidarModel::max_returns,
+      .def_readonly("max_returns", &LidarModel::max_returns,
                     "Maximum number of returns per firing.")
       .def_property_readonly("rings", &LidarModel::rings, "Number of beams.")
       .def_property_readonly("rays_per_scan", &LidarModel::rays_per_scan, "Firings per scan.")

@@ -75,7 +75,7 @@ class City(ProgramTest):
             scans[name] = [path.read_bytes() for path in sorted(output.rglob("*.bin"))]
             if name != "whole":
                 self.assertGreater(report["tiles"]["loaded"], 0)
-                self.assertGreater(report["tiles"]["most_bytes"], 0)
+                self.assertGreater(report["tiles"]["max_bytes"], 0)
         self.assertEqual(len(scans["whole"]), 3)
         self.assertGreater(len(scans["whole"][0]), 0)
         self.assertEqual(scans["tiles"], scans["whole"])

@@ -69,7 +69,7 @@ class MeshesAsScenes(ProgramTest):
 
     # Oracle: the wall's distance, and its two classes.
     def test_simulate(self):
-        scans = self.simulate(self.wall, "scans", "--no-range-noise", "--labels", "semantickitti")
+        scans = self.simulate(self.wall, "scans", "--no-noise", "--labels", "semantickitti")
         self.assertEqual(labels_of(scans), {BUILDING, ROAD})
         points = (scans / "sequences" / "00" / "velodyne" / "000000.bin").read_bytes()
         values = struct.unpack(f"<{len(points) // 4}f", points)
@@ -100,7 +100,7 @@ class MeshesAsScenes(ProgramTest):
 
     # Oracle: beams of scans simulated in the mesh hit it again where they were.
     def test_resimulate(self):
-        scans = self.simulate(self.wall, "scans", "--no-range-noise") / "sequences" / "00"
+        scans = self.simulate(self.wall, "scans", "--no-noise") / "sequences" / "00"
         report = self.report("evaluate", "resimulate", self.wall, scans)
         self.assertGreater(report["rays"], 100)
         self.assertEqual(report["no_hit"], 0)

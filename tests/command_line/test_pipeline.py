@@ -18,7 +18,7 @@ class Pipeline(ProgramTest):
     def test_every_method(self):
         for method in ["basic", "descriptors", "semantic", "consistent"]:
             model = self.model(f"{method}.ply", "--method", method)
-            scans = self.simulate(model, f"{method} scans", "--no-range-noise")
+            scans = self.simulate(model, f"{method} scans", "--no-noise")
             report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class", "--labels",
                                  "semantickitti")
             # Large splats reach beyond the edges of the place by less than half a metre on
@@ -114,7 +114,7 @@ class Pipeline(ProgramTest):
     def test_a_model_predicts_its_own_scans(self):
         """Round trip: scans without noise cast again hit where they came from."""
         model = self.model()
-        scans = self.simulate(model, "scans", "--no-range-noise")
+        scans = self.simulate(model, "scans", "--no-noise")
         report = self.report("evaluate", "resimulate", model, scans, "--min-range", "0.5")
         self.assertGreater(report["rays"], 1000)
         self.assertGreater(report["within"]["0.02"], 0.98)

@@ -41,7 +41,7 @@ class Realism(ProgramTest):
         # The sensor's own noise: 20 mm.
         self.assertAlmostEqual(same["statistics"]["range_noise_m"]["real"], 0.02, delta=0.002)
 
-        still = self.realism(self.scans("still", "--no-range-noise"), real)
+        still = self.realism(self.scans("still", "--no-noise"), real)
         self.assertGreater(still["auc"]["geometry"], 0.99)
         self.assertGreater(still["logistic"]["auc"]["geometry"], 0.99)
         self.assertAlmostEqual(still["auc"]["dropout"], 0.5, delta=0.06)

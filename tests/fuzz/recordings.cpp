@@ -113,7 +113,7 @@ void survey_clouds(const Input& input) {
     require(topic.clouds.size() <= topic.messages, "no more clouds than messages");
   DriveSettings settings;
   if (is_read_by_packets(survey, settings)) {
-    settings.packets_of = "velodyne-vlp-16";
+    settings.packet_sensor = "velodyne-vlp-16";
     for (const auto& [name, source] : survey_packets(survey, settings, quiet).sources)
       require(source.packets <= source.datagrams, "no more packets than datagrams");
   }

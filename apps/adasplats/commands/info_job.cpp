@@ -389,7 +389,7 @@ FileFacts packet_facts(const PacketSurvey& survey, const char* kind,
   }
   if (survey.decoder) {
     facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
-    facts.json["packets_of"] = survey.decoder->sensor().model.name;
+    facts.json["packet_sensor"] = survey.decoder->sensor().model.name;
   }
   facts.json["sources"] = nlohmann::ordered_json::array();
   for (const auto& [name, source] : survey.sources) {
@@ -471,7 +471,7 @@ FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme
 FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                         const LoadOptions& options, Session& session) {
   const PacketSurvey survey =
-      survey_packets(input, decoder_of_capture(input, options.packets_of), session.progress);
+      survey_packets(input, decoder_of_capture(input, options.packet_sensor), session.progress);
   FileFacts facts = packet_facts(survey, "capture", scheme, options, session);
   const DatagramCounts& counts = survey.counts;
   facts.rows.emplace_back("frames", grouped(counts.frames) + ", " + grouped(counts.others) +

@@ -73,7 +73,7 @@ nlohmann::ordered_json sensor_json(const LidarModel& sensor, const SensorFacts& 
           {"min_range_m", sensor.min_range_m},
           {"max_range_m", sensor.max_range_m},
           {"range_noise_m", sensor.range_noise_m},
-          {"most_returns", sensor.max_returns},
+          {"max_returns", sensor.max_returns},
           {"clockwise", sensor.clockwise},
           {"repeats", repeats(sensor)},
           {"source", sensor.source}};

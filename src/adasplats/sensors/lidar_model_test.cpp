@@ -253,7 +253,7 @@ TEST_F(LidarFiles, EveryNewKeyOfATomlFileIsRead) {
             "elevations_deg = [10, -10]\ncolumns = 8\nfirst_azimuth_deg = -90\n"
             "beam_origins_m = [[0.1, 0, 0.2], [0.3, 0.4, 0.5]]\nfiring_times_us = [1.5, 0]\n"
             "angular_noise_deg = 0.01\nrange_resolution_m = 0.002\n"
-            "divergence_deg = [0.2, 0.1]\ndivergence_kind = \"1/e2\"\nmost_returns = 3\nsource = "
+            "divergence_deg = [0.2, 0.1]\ndivergence_kind = \"1/e2\"\nmax_returns = 3\nsource = "
             "\"a book\"\n"));
   EXPECT_DOUBLE_EQ(model.first_azimuth_rad, -90 * kDegree);
   ASSERT_EQ(model.beam_origins_m.size(), 2U);
@@ -389,7 +389,7 @@ TEST_F(LidarFiles, WrongNewKeysAreRefusedWithTheirLine) {
   reject("divergence_deg = [60, 1]\ndivergence_kind = \"1/e2-half\"", "wider than 90 degrees");
   reject("divergence_deg = [1]", "is not [horizontal, vertical]");
   reject("divergence_deg = []", "is not a list of numbers");
-  reject("most_returns = 0", "bad.toml:3: most_returns");
+  reject("max_returns = 0", "bad.toml:3: max_returns");
   reject("column_steps = [0, 1]", "bad.toml:3: column_steps");
   reject("column_phases = [0, 1]", "needs column_steps");
   reject("column_steps = [2, 2]\ncolumn_phases = [0, 2]", "not below its step");

@@ -38,7 +38,7 @@ const TomlKeys& sensor_keys() {
                                 "max_range_m",
                                 "range_noise_m",
                                 "range_resolution_m",
-                                "most_returns",
+                                "max_returns",
                                 "divergence_deg",
                                 "divergence_kind",
                                 "angular_noise_deg",
@@ -305,8 +305,8 @@ void read_measuring(const TomlTable& table, LidarModel& model) {
       table.number("range_resolution_m", model.range_resolution_m, 0, kFar_m);
   if (table.has("angular_noise_deg"))
     model.angular_noise_rad = radians(table.number("angular_noise_deg", 0, 0, 90));
-  if (table.has("most_returns"))
-    model.max_returns = static_cast<int>(table.whole_number("most_returns", 1, 255));
+  if (table.has("max_returns"))
+    model.max_returns = static_cast<int>(table.whole_number("max_returns", 1, 255));
 }
 
 /// "'fwhm', '1/e2', ...": the values of divergence_kind.

@@ -66,7 +66,7 @@ struct DriveSettings {
   std::string topic, poses_topic;
   std::string scene;  ///< of a nuScenes data root; empty: its only scene
   /// The sensor that sent the packets of a capture or recording (load_lidar_model()).
-  std::string packets_of;
+  std::string packet_sensor;
   /// Start beams at the poses even if the sensor is recognised (ScanBeams).
   bool beams_from_poses = false;
 
@@ -147,7 +147,7 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                         "or calibration*.yaml next to the file)",
                 .value = "SENSOR",
                 .group = group},
-        drive.packets_of);
+        drive.packet_sensor);
 }
 
 }  // namespace adasplats

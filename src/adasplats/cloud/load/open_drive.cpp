@@ -342,7 +342,8 @@ std::optional<KittiSequence> open_drive(const DriveInput& drive, const Executor&
   if (is_capture(drive.folder))
     return open_packet_drive(
         drive,
-        survey_packets(drive.folder, decoder_of_capture(drive.folder, drive.packets_of), progress),
+        survey_packets(drive.folder, decoder_of_capture(drive.folder, drive.packet_sensor),
+                       progress),
         executor, progress);
   return open_files(drive, executor, progress);
 }

@@ -22,7 +22,7 @@ struct DriveInput : DriveSettings {
   std::filesystem::path folder;
   bool with_classes = true;  ///< read the classes that the files have
   /// A sensor of a rig: points in world coordinates with a stated mount are a drive, too, and
-  /// `packets_of` may name the sensor of points instead of packets.
+  /// `packet_sensor` may name the sensor of points instead of packets.
   bool is_rig_sensor = false;
 };
 

@@ -178,7 +178,7 @@ void require_applicable_options(const LoadOptions& options, std::span<const Open
     throw usage(
         "`topic` needs a recording, a packet capture or a data set of several LiDARs; no input is "
         "one");
-  if (!options.packets_of.empty() && !has_packets)
+  if (!options.packet_sensor.empty() && !has_packets)
     throw usage("`packet_sensor` needs a packet capture or a recording; no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)

@@ -304,7 +304,7 @@ SensorCones cones_of_packets(const PacketSurvey& survey, const DriveInput& drive
     if (!cones.cones.empty() && are_same(cones, known)) cones.sensor = known.sensor;
     if (cones.sensor == known.sensor) return cones;
   }
-  fs::path file = drive.packets_of;
+  fs::path file = drive.packet_sensor;
   if (file.empty() && survey.recording == nullptr)
     file = survey.path.parent_path() / fs::path(sensor_of_capture(survey.path, "")).filename();
   if (file.has_filename()) cones.sensor = file.string();

@@ -77,7 +77,7 @@ class RecordedPacketsTest : public testing::Test {
                  {{}, {10, 0, 0, 1}, 2368}, sent.payloads[k]);
     writer.finish();
     DriveInput drive = drive_of_file("sent.pcap");
-    drive.packets_of = sensor;
+    drive.packet_sensor = sensor;
     drive.trajectory = trajectory();
     return open(drive);
   }
@@ -117,12 +117,12 @@ TEST_F(RecordedPacketsTest, VelodyneScansAreReadAsACapture) {
     const std::string name = cdr ? "drive.mcap" : "drive.bag";
     folder_.write(name, cdr ? bags_test::mcap_of(messages) : bags_test::bag_of(messages));
     DriveInput drive = drive_of_file(name);
-    drive.packets_of = "velodyne-vlp-16";
+    drive.packet_sensor = "velodyne-vlp-16";
     drive.trajectory = trajectory();
     expect_same(open(drive), capture);
     drive.topic = "/velodyne_packets";
     expect_same(open(drive), capture);
-    drive.packets_of.clear();
+    drive.packet_sensor.clear();
     expect_error(ErrorKind::usage, {name, "`packet_sensor`"}, [&] { open(drive); });
   }
 }
@@ -141,7 +141,7 @@ TEST_F(RecordedPacketsTest, PosesAreThoseOfTheRecording) {
                                                     "velodyne", {0.1 * k, 0, 0, 0, 0, 0, 1})});
   folder_.write("drive.mcap", bags_test::mcap_of(messages));
   DriveInput drive = drive_of_file("drive.mcap");
-  drive.packets_of = "velodyne-vlp-16";
+  drive.packet_sensor = "velodyne-vlp-16";
   const KittiSequence sequence = open(drive);
   ASSERT_EQ(sequence.trajectory.size(), capture.trajectory.size());
   for (std::size_t k = 0; k < capture.trajectory.size(); ++k)
@@ -222,7 +222,7 @@ TEST_F(RecordedPacketsTest, ScansOfHesaisDriversAreReadAsACapture) {
       const std::string name = cdr ? "drive.mcap" : "drive.bag";
       folder_.write(name, cdr ? bags_test::mcap_of(messages) : bags_test::bag_of(messages));
       DriveInput drive = drive_of_file(name);
-      drive.packets_of = sensor;
+      drive.packet_sensor = sensor;
       drive.trajectory = trajectory();
       expect_same(open(drive), capture);
     }
@@ -238,7 +238,7 @@ TEST_F(RecordedPacketsTest, ASensorWithoutPacketsIsAnError) {
                 bags_test::mcap_of({{"/pose", "geometry_msgs/msg/PoseStamped", 5,
                                      bags_test::pose_message(5, "map", {0, 0, 0, 0, 0, 0, 1})}}));
   DriveInput drive = drive_of_file("drive.mcap");
-  drive.packets_of = "velodyne-vlp-16";
+  drive.packet_sensor = "velodyne-vlp-16";
   expect_error(ErrorKind::usage, {"drive.mcap: `packet_sensor` needs a topic of packets"},
                [&] { open(drive); });
 }

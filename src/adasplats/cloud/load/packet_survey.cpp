@@ -187,11 +187,11 @@ PacketSurvey survey_packets(const RecordingSurvey& recording, const DriveSetting
   PacketSurvey survey{
       recording.recording->path(), packets_of_recording(shared), shared, nullptr, {}, {}};
   const TopicSurvey* const metadata =
-      settings.packets_of.empty() ? topic_of_metadata(recording, settings.topic) : nullptr;
+      settings.packet_sensor.empty() ? topic_of_metadata(recording, settings.topic) : nullptr;
   if (metadata != nullptr)
     survey.decoder = decoder_of(ouster_lidar_model(metadata->metadata, metadata->topic.name));
   else
-    survey.decoder = decoder_of_capture(survey.path, settings.packets_of);
+    survey.decoder = decoder_of_capture(survey.path, settings.packet_sensor);
   return surveyed(std::move(survey), progress);
 }
 
@@ -203,11 +203,11 @@ bool is_read_by_packets(const RecordingSurvey& survey, const DriveSettings& sett
     has_clouds = has_clouds || topic.holds_clouds();
     has_packets = has_packets || !topic.packets.empty();
   }
-  if (!settings.packets_of.empty() && !has_packets && !may_lack_packets)
+  if (!settings.packet_sensor.empty() && !has_packets && !may_lack_packets)
     throw Error(ErrorKind::usage,
                 survey.recording->path().string() + ": `packet_sensor` needs a topic of packets; " +
                     (settings.topic.empty() ? "there is none" : settings.topic + " is none"));
-  return has_packets && (!has_clouds || !settings.packets_of.empty());
+  return has_packets && (!has_clouds || !settings.packet_sensor.empty());
 }
 
 std::string sensor_of_capture(const std::filesystem::path& capture, const std::string& stated) {

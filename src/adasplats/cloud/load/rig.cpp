@@ -39,7 +39,7 @@ void visit_rig_settings(DriveSettings& drive, const Visit& visit) {
   visit("topic", drive.topic);
   visit("poses_topic", drive.poses_topic);
   visit("scene", drive.scene);
-  visit("sensor", drive.packets_of);
+  visit("sensor", drive.packet_sensor);
 }
 
 TomlKeys sensor_keys() {
@@ -219,8 +219,9 @@ Rig parse_rig(std::string_view text, const fs::path& file) {
     visit_rig_settings(sensor, read);
     // A file of a sensor is beside the rig file; other words are names of the library.
     std::error_code ignored;
-    if (!sensor.packets_of.empty() && fs::is_regular_file(folder / sensor.packets_of, ignored))
-      sensor.packets_of = (folder / sensor.packets_of).string();
+    if (!sensor.packet_sensor.empty() &&
+        fs::is_regular_file(folder / sensor.packet_sensor, ignored))
+      sensor.packet_sensor = (folder / sensor.packet_sensor).string();
     rig.sensors.push_back(std::move(sensor));
   }
   if (rig.sensors.empty()) throw whole.error("sensors", "has no sensor");
@@ -255,8 +256,8 @@ std::string rig_toml(const Rig& rig) {
     if (!sensor.is_in_model) text += "in_model = false\n";
     put("body", sensor.body);
     std::error_code ignored;
-    if (fs::is_regular_file(sensor.packets_of, ignored))
-      sensor.packets_of = relative_path(sensor.packets_of, folder);
+    if (fs::is_regular_file(sensor.packet_sensor, ignored))
+      sensor.packet_sensor = relative_path(sensor.packet_sensor, folder);
     visit_rig_settings(sensor, put);
   }
   for (const MountedCamera& camera : rig.cameras) text += "\n" + camera_toml(camera);

@@ -20,7 +20,7 @@ struct RigBox {
   Vec3d size_m;  ///< length, width, height
 };
 
-/// A LiDAR of a rig. Its `topic` is the topic or port of its data, `packets_of` its model.
+/// A LiDAR of a rig. Its `topic` is the topic or port of its data, `packet_sensor` its model.
 struct RigSensor : DriveInput {
   std::string name;
   /// Its points become part of models. Otherwise it is only calibrated and evaluated.

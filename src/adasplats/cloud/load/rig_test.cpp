@@ -55,7 +55,7 @@ TEST(Rig, EveryKey) {
   EXPECT_EQ(front.given_mount(), std::nullopt);
   EXPECT_EQ(top.trajectory, "car/poses.csv");
   EXPECT_EQ(front.trajectory, "car/other/poses.csv");
-  EXPECT_EQ(front.packets_of, "velodyne-vlp-16");
+  EXPECT_EQ(front.packet_sensor, "velodyne-vlp-16");
   EXPECT_EQ(front.points_in, PointsIn::world);
   EXPECT_EQ(front.sweep_points, SweepPoints::measured);
   EXPECT_EQ(front.scan_times, "car/times.txt");
@@ -95,7 +95,7 @@ TEST(Rig, FilesOfSensorsAreNextToIt) {
   folder.write("mine.toml", "");
   const auto file = folder.path() / "rig.toml";
   const Rig rig = parse_rig(with("sensor = \"mine.toml\""), file);
-  EXPECT_EQ(rig.sensors[0].packets_of, (folder.path() / "mine.toml").string());
+  EXPECT_EQ(rig.sensors[0].packet_sensor, (folder.path() / "mine.toml").string());
   EXPECT_NE(rig_toml(rig).find("sensor = \"mine.toml\""), std::string::npos) << rig_toml(rig);
 }
 

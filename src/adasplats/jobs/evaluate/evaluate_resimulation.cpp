@@ -183,7 +183,7 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
                 "`topic` and `poses_topic` are for a recording, a packet capture or a data set");
   if (!is_drive && !scans.scene.empty())
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
-  if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packets_of.empty())
+  if (!is_capture(scans.sequence) && !is_recording(scans.sequence) && !scans.packet_sensor.empty())
     throw Error(ErrorKind::usage, "`packet_sensor` is for a packet capture or a recording");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
                              !(scans.mount_rotation_deg == Vec3d{}) ||

@@ -542,7 +542,7 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
                      {"written", result.seconds_written}};
   if (result.tiles)
     json["tiles"] = {{"loaded", result.tiles->loaded},
-                     {"most_bytes", result.tiles->max_bytes},
+                     {"max_bytes", result.tiles->max_bytes},
                      {"waited_s", result.tiles->waited_s}};
   return json;
 }

@@ -68,7 +68,7 @@ nlohmann::ordered_json to_json(const SynthCityReport& report) {
   return {{"scans", report.scans},
           {"points", report.points},
           {"pieces", report.pieces},
-          {"most_pieces", report.max_pieces},
+          {"max_pieces", report.max_pieces},
           {"pieces_made_again", report.pieces_made_again},
           {"mesh_triangles", report.mesh_triangles}};
 }

@@ -33,10 +33,10 @@ std::string sender_text(const UdpEndpoint& sender) {
 DriveSettings reading_of(const SimulateJob& job, const RigWriterSensor& sensor,
                          const DriveSettings& given, const fs::path& folder) {
   DriveSettings reading;
-  reading.packets_of = given.packets_of;
+  reading.packet_sensor = given.packet_sensor;
   std::error_code ignored;
-  if (fs::is_regular_file(given.packets_of, ignored))
-    reading.packets_of = fs::absolute(given.packets_of).string();
+  if (fs::is_regular_file(given.packet_sensor, ignored))
+    reading.packet_sensor = fs::absolute(given.packet_sensor).string();
   // PandaSet's files contain the poses of the LiDAR.
   if (job.format == ScanFormat::pandaset) return reading;
   reading.trajectory = folder / "poses.csv";

@@ -56,7 +56,7 @@ std::vector<MountedSensor> sensors_of_rig(const Rig& rig, const ScanChoice& scan
   std::vector<MountedSensor> sensors;
   for (std::size_t k = 0; k < rig.sensors.size(); ++k) {
     const RigSensor& sensor = rig.sensors[k];
-    if (sensor.packets_of.empty())
+    if (sensor.packet_sensor.empty())
       throw sensor_error(rig, sensor, ErrorKind::usage,
                          "has no key sensor, which simulation needs: a name from 'adasplats "
                          "sensors', or a file");
@@ -68,7 +68,7 @@ std::vector<MountedSensor> sensors_of_rig(const Rig& rig, const ScanChoice& scan
                              "frame of one trajectory");
     MountedSensor made{sensor.name, {}, mount_of(sensor), sensor.time_offset_s.value_or(0), {}};
     try {
-      made.settings = scan.settings_of(load_lidar_model(sensor.packets_of),
+      made.settings = scan.settings_of(load_lidar_model(sensor.packet_sensor),
                                        k == 0 ? seed : Random::mix(seed + k));
     } catch (const Error& error) {
       throw sensor_error(rig, sensor, error.kind(), error.what());

@@ -52,7 +52,7 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
         scan.frame);
   visit(Setting{.name = "noise",
                 .help = "Simulate the sensor's noise of ranges and angles",
-                .opposite = "no-noise,no-range-noise",
+                .opposite = "no-noise",
                 .group = kGroup,
                 .basic = true},
         scan.noise);
