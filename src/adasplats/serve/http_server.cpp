@@ -34,6 +34,9 @@ using asio::ip::tcp;
 
 /// Pause before accepting again after an error (no descriptors, no memory), which may persist.
 constexpr std::chrono::milliseconds kAcceptPause{100};
+/// Limit of connections without the token as a multiple of the others. A client in a flood has the
+/// time of that many new connections to send its request.
+constexpr std::size_t kStrangersPerUser = 8;
 /// Limits of the interval at which deadlines are checked.
 constexpr std::chrono::milliseconds kMinSweep{10};
 constexpr std::chrono::milliseconds kMaxSweep{250};
@@ -167,7 +170,8 @@ void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
 /// Closes the oldest connection without the token if there are too many of them.
 void HttpServer::Implementation::make_room() {
   const auto& all = core_->connections;
-  if (all.size() - core_->users() < core_->options.connections_limit) return;
+  const std::size_t limit = kStrangersPerUser * core_->options.connections_limit;
+  if (all.size() - core_->users() < limit) return;
   const auto oldest = std::ranges::min_element(all, {}, [](const auto& connection) {
     return std::pair(connection->has_token(), connection->begin());
   });

@@ -67,8 +67,8 @@ struct HttpServerOptions {
   std::string address = "127.0.0.1";  ///< numeric
   std::uint16_t port = 0;             ///< 0: any free port
   std::string token;                  ///< first part of every path; not empty
-  /// With the token; further ones get 503. As many others are open at most: then the oldest of
-  /// them is closed for a new one, so that clients without the token cannot lock out others.
+  /// With the token; further ones get 503. Eight times as many others are open at most: then the
+  /// oldest of them is closed for a new one, so that they cannot lock out clients with the token.
   std::size_t connections_limit = 64;
   std::size_t header_bytes_limit = 8 << 10;  ///< of a request
   /// Of a WebSocket message from the client, and of the body of a POST.

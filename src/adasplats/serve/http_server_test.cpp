@@ -281,7 +281,7 @@ TEST_F(HttpServerTest, ConnectionsWithoutTheTokenLockNobodyOut) {
   user.get("/secret/");
   user.reply();
   std::deque<RawClient> crowd;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 40; ++i) {
     crowd.push_back(client());
     if (i % 3 == 1) crowd.back().send("GET /secret/");  // and never the rest
     if (i % 3 == 2) {
