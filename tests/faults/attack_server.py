@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attacks the servers of 'view' and 'serve-sensor' while a user works with them.
 
-    ADASPLATS_PROGRAM=PROGRAM attack_server.py [--server view|serve-sensor] [--attacks NAME,...]
+    ADASPLATS_PROGRAM=PROGRAM attack_server.py [--server view|serve-sensor] [--attacks NAME ...]
         [--seconds S] [--soak SECONDS] [--json FILE]
 
 The server listens on 127.0.0.1 and has a small model. Each attack runs S seconds from two processes.
@@ -410,12 +410,10 @@ def attack_server(kind, folder, arguments):
     for attack in ATTACKS:  # what the first attack needs once, others do not need again
         attacker(server, [attack], time.monotonic() + 0.2, multiprocessing.Queue())
     server.first = server.cost()[0]
-    chosen = [attack for attack in ATTACKS
-              if not arguments.attacks or attack.__name__ in arguments.attacks.split(",")]
     if arguments.soak:
-        results = [run(server, chosen, arguments.soak, USERS)]
+        results = [run(server, arguments.attacks, arguments.soak, USERS)]
     else:
-        results = [run(server, [attack], arguments.seconds, 1) for attack in chosen]
+        results = [run(server, [attack], arguments.seconds, 1) for attack in arguments.attacks]
     begin = time.monotonic()
     code, text = server.end()
     ended_s = time.monotonic() - begin
@@ -428,11 +426,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--server", choices=["view", "serve-sensor"])
-    parser.add_argument("--attacks", help="some of: " + ", ".join(a.__name__ for a in ATTACKS))
+    by_name = {attack.__name__: attack for attack in ATTACKS}
+    parser.add_argument("--attacks", nargs="+", choices=by_name, default=list(by_name),
+                        metavar="NAME", help="some of: " + ", ".join(by_name))
     parser.add_argument("--seconds", type=float, default=5, help="of an attack")
     parser.add_argument("--soak", type=float, metavar="SECONDS")
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
+    arguments.attacks = [by_name[name] for name in arguments.attacks]
     multiprocessing.set_start_method("fork")
     folder = Path(tempfile.mkdtemp(prefix="adasplats attack "))
     check_server.FOLDER = folder
