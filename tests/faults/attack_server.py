@@ -14,6 +14,7 @@ The exit code is 1 if anything failed. Times depend on the machine, so this is n
 tests/server/check_server.py is, and shares its attacks.
 """
 import argparse
+import atexit
 import collections
 import contextlib
 import json
@@ -406,6 +407,7 @@ def run(server, attacks, seconds, users):
 
 def attack_server(kind, folder, arguments):
     server = kind(folder)
+    atexit.register(server.process.kill)  # if this script fails
     server.learn()
     for attack in ATTACKS:  # what the first attack needs once, others do not need again
         attacker(server, [attack], time.monotonic() + 0.2, multiprocessing.Queue())
