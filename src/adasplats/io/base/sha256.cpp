@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/base/sha256.h"
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
@@ -20,10 +23,25 @@ void require_success(int result) {
   if (result != 1) throw std::runtime_error("OpenSSL cannot compute SHA-256");
 }
 
+/// The algorithm, in a library context of our own: if memory runs out while OpenSSL 3.0 sets up its
+/// default context, the next use crashes. Kept until the program ends.
+const EVP_MD* sha256_algorithm() {
+  static const EVP_MD* const algorithm = [] {
+    std::unique_ptr<OSSL_LIB_CTX, void (*)(OSSL_LIB_CTX*)> library(OSSL_LIB_CTX_new(),
+                                                                   &OSSL_LIB_CTX_free);
+    const EVP_MD* const found = library ? EVP_MD_fetch(library.get(), "SHA256", nullptr) : nullptr;
+    if (found == nullptr) throw std::bad_alloc();
+    static_cast<void>(library.release());
+    return found;
+  }();
+  return algorithm;
+}
+
 }  // namespace
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-  require_success(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
+  if (!context_ || EVP_DigestInit_ex(context_.get(), sha256_algorithm(), nullptr) != 1)
+    throw std::bad_alloc();
 }
 
 void Sha256::add(const void* data, std::size_t bytes) {
