@@ -42,7 +42,7 @@ BEFORE_COMMITS = ()
 LOOKS_DEFINED = re.compile(r'^\[[^\]\n]+\]: \S+\.json.*$', re.M)
 DEFINITION = re.compile(r'^\[([^\]\n]+)\]: (\S+\.json) "(.+) as (.+)"$', re.M)
 LINK = re.compile(r"\[([^\[\]\n]*)\]\[([^\[\]\n]+)\]")
-TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: (\S+))? -->\n)(.*?)(<!-- /table -->)", re.S)
+TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: ([^\n]+?))? -->\n)(.*?)(<!-- /table -->)", re.S)
 FORMAT = re.compile(r"(0,000|0)(?:\.(0+))?( ?)(%|cm|mm|ms|s|m|GB|MB|kB|M|k|x|times|)$")
 SCALES = {"%": 100, "cm": 100, "mm": 1000, "ms": 1000, "GB": 1e-9, "MB": 1e-6, "kB": 1e-3,
           "M": 1e-6, "k": 1e-3}
@@ -291,6 +291,12 @@ DENSITY = [("splats", "primitives", "0.00 M"), ("C2C, scans of the model", "own_
                for thing in ("road", "building", "vegetation", *THIN)),
            ("rays with a hit", "hits", "0.0 %"),
            ("measured to simulated", "all_scans/completeness_m", "0.0 cm")]
+ODOMETRY = [
+    ("drift, real", "real/drift", "0.00 %"), ("simulated", "simulated/drift", "0.00 %"),
+    ("held-out scans", "scans", "0"), *(
+        (f"{title}, {name}", f"{key}/{value}_m", "0.0 cm")
+        for title, key in (("on simulated", "with_simulated"), ("on real", "with_real"))
+        for name, value in (("shift", "shift"), ("forward", "forward"), ("left", "left"), ("up", "up")))]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (default key of the rows, columns). A column without values is omitted.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
@@ -299,6 +305,7 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "mounts": ("mounts", MOUNTS), "streets": ("streets", STREETS),
           "lidar4d": (None, LIDAR4D),
           "headlines": ("figures", HEADLINES), "density": (None, DENSITY),
+          "odometry": ("drives", ODOMETRY),
           "segmentation": ("networks", SEGMENTATION),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
