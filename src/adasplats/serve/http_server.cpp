@@ -175,8 +175,7 @@ void HttpServer::Implementation::make_room() {
   const auto oldest = std::ranges::min_element(all, {}, [](const auto& connection) {
     return std::pair(connection->has_token(), connection->begin());
   });
-  const std::shared_ptr<Connection> kept = *oldest;  // abort() removes it from the set
-  kept->abort();
+  core_->connections.extract(oldest).value()->abort();
 }
 
 template <class Call>
