@@ -118,7 +118,7 @@ py() { PYTHONPATH="$bin/../python" "$python" -B "$bench/$1.py" "${@:2}"; }
 make_street() {
   [[ -s street.ply ]] && return
   bin/adasplats synth street --points 3300000 -o street --overwrite
-  bin/adasplats model street/mapping.ply -o street.ply --method basic --overwrite
+  bin/adasplats model street/mapping.ply -o street.ply --method basic
 }
 live() {
   make_street

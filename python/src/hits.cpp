@@ -15,6 +15,8 @@ origins, directions: (N, 3), or (3,) for one that all rays share; world coordina
 vectors. float32 and float64 arrays with any strides are read in blocks without a full copy.
 Coordinates are made relative to Scene.origin in float64; with local, they already are. Hits count
 for t_min < t <= t_max, m (None: no limit). depth: maximum number of hits per ray, nearest first.
+In a scene with opacities the hit of depth 1 is where the ray most likely ends; with more depth the
+hits are the disks themselves.
 Neighbouring rays of similar directions are faster. A ray that is not finite hits nothing.
 Returns Hits. Raises TypeError (no numbers), ValueError (shapes).)";
 
