@@ -246,6 +246,12 @@ def faults_of(counts, kinds, most):
                 yield f"{kind}:{number}+"
 
 
+def summed(rows):
+    """Calls and outcomes of some rows."""
+    sums = {key: sum(row[key] for row in rows) for key in ("calls", "harmless", "error", "wrong")}
+    return {**sums, "runs": sums["harmless"] + sums["error"] + sums["wrong"]}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("library", type=Path)
@@ -283,10 +289,14 @@ def main():
                 print(f"{case:14} {kind:7} {row['calls']:7} calls: {row['harmless']} harmless, "
                       f"{row['error']} errors, {row['wrong']} wrong", flush=True)
     if options.json:
-        publish({"points": options.points, "kills": options.kills, "found": found, "wrong": wrong},
-                support.PROGRAM, options.json)
-    total = {key: sum(row[key] for rows in found.values() for row in rows.values())
-             for key in ("harmless", "error", "wrong")}
+        by_case = {case: list(rows.values()) for case, rows in found.items()}
+        by_kind = {kind: [rows[kind] for rows in found.values() if kind in rows]
+                   for kind in (*KINDS, "kill")}
+        publish({"points": options.points, "kills": options.kills, "seed": options.seed,
+                 "cases": [{"name": name, **summed(rows)} for name, rows in by_case.items()],
+                 "kinds": [{"name": name, **summed(rows)} for name, rows in by_kind.items() if rows],
+                 "wrong": wrong}, support.PROGRAM, options.json)
+    total = summed([row for rows in found.values() for row in rows.values()])
     print(f"{total['harmless'] + total['error']} passed, {total['wrong']} failed")
     return 1 if wrong else 0
 
