@@ -30,7 +30,12 @@ void reject_message(const std::string& message) { throw Error(ErrorKind::usage, 
 MessageJson parse_message(std::string_view text) {
   MessageJson json;
   try {
-    json = MessageJson::parse(text);
+    json = MessageJson::parse(text, [](int depth, MessageJson::parse_event_t, const MessageJson&) {
+      // Copying a value needs a stack as deep as the value.
+      if (depth > kMaxMessageDepth)
+        throw Error(ErrorKind::data, "expected a JSON object; it is nested too deeply");
+      return true;
+    });
   } catch (const MessageJson::out_of_range&) {
     throw Error(ErrorKind::data, "expected a JSON object; a number is too large");
   } catch (const MessageJson::parse_error& error) {
@@ -44,7 +49,6 @@ MessageJson parse_message(std::string_view text) {
 }
 
 std::string message_excerpt(const MessageJson& json) {
-  // Not dumped, because that needs a stack as deep as the value.
   if (json.is_array()) return "a list";
   if (json.is_object()) return "an object";
   return json.dump(-1, ' ', true, MessageJson::error_handler_t::replace).substr(0, 60);

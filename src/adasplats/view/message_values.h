@@ -16,11 +16,14 @@ namespace adasplats {
 
 /// Maximum position and speed in messages.
 inline constexpr double kMaxMessageDistance_m = 1e7;
+/// Maximum depth of lists and objects within each other.
+inline constexpr int kMaxMessageDepth = 16;
 /// Maximum time; more than any clock has seconds.
 inline constexpr double kMaxMessageTime_s = 1e11;
 
 [[noreturn]] void reject_message(const std::string& message);
-/// Errors: data (not a JSON object, or a number beyond double precision), instead of usage.
+/// Errors: data (not a JSON object, nested too deeply, or a number beyond double precision),
+/// instead of usage.
 nlohmann::ordered_json parse_message(std::string_view text);
 /// A value for an error, short.
 std::string message_excerpt(const nlohmann::ordered_json& json);
