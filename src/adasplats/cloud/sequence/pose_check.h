@@ -69,8 +69,9 @@ void require_no_jump(const KittiSequence& sequence);
 /// require_no_jump(). Throws data with the figures where weigh_poses(sequence) contradicts, or,
 /// unless it confirms, mirrored or exchanged axes or a factor of weigh_scales(sequence) do; also
 /// where the times of the poses are no seconds: neighbouring scans more than 20 s apart and a
-/// vehicle slower than 0.5 m/s, or less than 2 ms and faster than 150 m/s. Returns in one line what
-/// could not be checked; empty: all was.
+/// vehicle slower than 0.5 m/s, or less than 2 ms and faster than 150 m/s; and where the poses
+/// stand but no two distant scans align. Returns in one line what could not be checked; empty: all
+/// was.
 std::string verify_poses(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats
